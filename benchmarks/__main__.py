@@ -15,8 +15,8 @@ from typing import Any
 
 import psutil
 
-from lagrange_casadi.codegen import find_compiler
-from lagrange_casadi.codegen.compiler import FLAGS
+from lagrange_casadi.engine.codegen import find_compiler
+from lagrange_casadi.engine.codegen.compiler import FLAGS
 from lagrange_casadi.version import __version__
 
 from . import comparisons, plot, programs

@@ -21,9 +21,9 @@ from scipy.signal import butter, filtfilt
 
 from lagrange_casadi import Measurements, Scene, SpatialMechanism, identify
 from lagrange_casadi.base.arrays import Array
-from lagrange_casadi.identification import Comparison
-from lagrange_casadi.identification.measurements import Filter
 from lagrange_casadi.motion import polynomial
+from lagrange_casadi.studies.identification import Comparison
+from lagrange_casadi.studies.identification.measurements import Filter
 
 RATE = 200.0
 """Rows a second."""

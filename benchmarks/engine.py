@@ -9,18 +9,19 @@ from typing import Any
 
 import numpy as np
 
-from lagrange_casadi import Mechanism, Scene, codegen, compile_scene, load_case
+from lagrange_casadi import Mechanism, Scene, compile_scene, load_case
 from lagrange_casadi.base.quantities import FORCES
 from lagrange_casadi.base.space import cores
 from lagrange_casadi.base.vocabulary import Backend
-from lagrange_casadi.declare.motion import polynomial
-from lagrange_casadi.equations.program import Program
-from lagrange_casadi.instants.backends import rows, run
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.instants.grids import empty
-from lagrange_casadi.instants.ordering import in_order
-from lagrange_casadi.instants.section_law import SectionLaw
-from lagrange_casadi.instants.solution import Provenance, Solution
+from lagrange_casadi.engine import codegen
+from lagrange_casadi.engine.instants.backends import rows, run
+from lagrange_casadi.engine.instants.evaluation_method import EvaluationMethod
+from lagrange_casadi.engine.instants.grids import empty
+from lagrange_casadi.engine.program import Program
+from lagrange_casadi.model.motion import polynomial
+from lagrange_casadi.results.ordering import in_order
+from lagrange_casadi.results.section_law import SectionLaw
+from lagrange_casadi.results.solution import Provenance, Solution
 from lagrange_casadi.studies.designs.engine import DesignEngine
 from lagrange_casadi.studies.designs.outcome import KEPT
 

@@ -14,9 +14,10 @@ from typing import Any
 
 import numpy as np
 
-from lagrange_casadi import codegen, compile_scene, export, load_case
-from lagrange_casadi.codegen.compiler import FLAGS
-from lagrange_casadi.instants.backends import rows
+from lagrange_casadi import compile_scene, export, load_case
+from lagrange_casadi.engine import codegen
+from lagrange_casadi.engine.codegen.compiler import FLAGS
+from lagrange_casadi.engine.instants.backends import rows
 
 N = 1000
 _ROUNDS = 300

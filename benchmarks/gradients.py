@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable
 
 from lagrange_casadi import load_case, prepare
-from lagrange_casadi.shipped_cases import shipped_cases
+from lagrange_casadi.base.shipped_cases import shipped_cases
 
 
 def report(rounds: int) -> str:

@@ -7,8 +7,8 @@ import time
 
 import numpy as np
 
-from lagrange_casadi import codegen
-from lagrange_casadi.codegen.compiler import Language
+from lagrange_casadi.engine import codegen
+from lagrange_casadi.engine.codegen.compiler import Language
 
 from .engine import chain
 

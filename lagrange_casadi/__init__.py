@@ -10,7 +10,7 @@ from typing import Any
 
 import lazy_loader
 
-from .methods import missing
+from .base.methods import missing
 
 _named, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 

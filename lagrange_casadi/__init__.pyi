@@ -17,33 +17,33 @@ from . import (
     strength,
 )
 from .base.symbolic import symbolic
-from .case import Case, load_case
-from .declare.curves import Curve, curve, table
-from .declare.mechanism import Mechanism
-from .declare.scene import Scene
-from .declare.shaking import shaking
-from .declare.spatial import SpatialMechanism
-from .elastic.vibration import vibration
-from .equations.derive import compile_scene, derive
-from .equations.lagrange import LagrangeSystem
+from .engine.derive import compile_scene, derive
+from .engine.lagrange import LagrangeSystem
 from .errors import LagrangeCasadiError
-from .exports import export
-from .formats import read, save_model
-from .forward.running import flywheel, free
-from .identification import (
+from .interop.exports import export
+from .interop.formats import read, save_model
+from .interop.load_cases import LoadCase, link_load_cases, write_load_cases, write_spectrum
+from .model.curves import Curve, curve, table
+from .model.mechanism import Mechanism
+from .model.scene import Scene
+from .model.shaking import shaking
+from .model.spatial import SpatialMechanism
+from .results.elastic.vibration import vibration
+from .results.holding import holding
+from .results.solution import Peak, Solution
+from .results.store.runs import check, load, save
+from .results.strength.bearings import BearingLoads, bearing_loads
+from .studies.case import Case, load_case
+from .studies.designs.prepared import Prepared, prepare
+from .studies.evaluate import evaluate
+from .studies.forward.running import flywheel, free
+from .studies.identification import (
     Identification,
     Measurements,
     excite,
     identify,
     read_measurements,
 )
-from .instants.holding import holding
-from .instants.solution import Peak, Solution
-from .load_cases import LoadCase, link_load_cases, write_load_cases, write_spectrum
-from .store.runs import check, load, save
-from .strength.bearings import BearingLoads, bearing_loads
-from .studies.designs.prepared import Prepared, prepare
-from .studies.evaluate import evaluate
 from .studies.optimise import Front, Optimum, optimise
 from .studies.peaks import refine
 from .studies.sensitivities import Sensitivities, sensitivities

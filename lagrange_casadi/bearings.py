@@ -2,9 +2,9 @@
 tables to choose from.
 """
 
-from .declare.fitted import Pin, Plain, Rolling, fit
-from .strength.bearings import bending_of_pin, equivalent_load, rated_hours
-from .strength.rolling_bearings import (
+from .model.fitted import Pin, Plain, Rolling, fit
+from .results.strength.bearings import bending_of_pin, equivalent_load, rated_hours
+from .results.strength.rolling_bearings import (
     RollingBearing,
     deep_groove,
     dynamic_rating,

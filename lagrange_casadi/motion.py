@@ -1,11 +1,11 @@
-"""Laws of motion, for scenes: the public part of :mod:`.declare.motion`, :mod:`.declare.moves`,
-:mod:`.declare.recordings`.
+"""Laws of motion, for scenes: the public part of :mod:`.model.motion`, :mod:`.model.moves`,
+:mod:`.model.recordings`.
 """
 
-from .declare.motion import Motion, expression, harmonic, polynomial, samples
-from .declare.moves import Dwell, Move, dwell, move, moves
-from .declare.recordings import read_motion, read_samples
-from .declare.rest_laws import s_curve, trapezoid
+from .model.motion import Motion, expression, harmonic, polynomial, samples
+from .model.moves import Dwell, Move, dwell, move, moves
+from .model.recordings import read_motion, read_samples
+from .model.rest_laws import s_curve, trapezoid
 
 __all__ = [
     "Dwell",

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from lagrange_casadi.codegen import find_compiler
+from lagrange_casadi.engine.codegen import find_compiler
 
 from . import arm_data
 from .paper_case import Array, Work

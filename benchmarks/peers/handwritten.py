@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from lagrange_casadi.codegen.compiler import find_compiler, loaded
+from lagrange_casadi.engine.codegen.compiler import find_compiler, loaded
 
 from .paper_case import Array, SliderCrank, Work
 

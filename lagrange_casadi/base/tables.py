@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
-from ..base.brief import Brief
+from .brief import Brief
 
 CONVENTIONS = (
     "SI units; plane x-y; angles in rad, counter-clockwise; a link's axis e runs from its base (xi"

@@ -18,9 +18,9 @@ from typing import Any
 import click
 
 from ..base.interrupts import SENTENCE, STATUS, interrupts, keep_status
+from ..base.methods import missing
 from ..base.standard_streams import lead_nowhere
 from ..errors import LagrangeCasadiError, PostureError, UnknownNameError, one_line
-from ..methods import missing
 from ..version import __version__
 from .commands import GROUPS
 from .echo import echo

@@ -9,14 +9,14 @@ from typing import Any
 
 import click
 
-from ..animation import Film, check_ending, write_animation
 from ..base.publish import check_writable
-from ..case import load_case
-from ..declare.scene import Scene, kinds
-from ..store.runs import load
-from ..store.untrusted import reported_as
+from ..model.scene import Scene, kinds
+from ..results.store.runs import load
+from ..results.store.untrusted import reported_as
+from ..results.verification.certificate import refuse_failed
+from ..studies.case import load_case
 from ..studies.evaluate import evaluate
-from ..verification.certificate import refuse_failed
+from ..views.animation.film import Film, check_ending, write_animation
 from .echo import echo
 from .options import HDF5
 

@@ -12,9 +12,9 @@ import shutil
 from pathlib import Path
 
 from ..base.publish import filling
+from ..base.shipped_cases import shipped_cases
 from ..base.vocabulary import SIMPLE
 from ..errors import DeclarationError, ModelFileError, PathError, UnknownNameError
-from ..shipped_cases import shipped_cases
 from .echo import echo
 
 
@@ -52,7 +52,7 @@ def new(folder: Path, like: str | None, source: Path | None, accept_inertias: bo
     if like is not None and source is not None:
         raise DeclarationError("--like and --from exclude each other")
     if source is not None:
-        from ..formats import case_of
+        from ..interop.formats import case_of
 
         try:
             files = {"case.py": case_of(source, accept_inertias=accept_inertias).encode()}

@@ -11,9 +11,9 @@ from ..base.apart import LostError, run_apart
 from ..base.seal import kind_of
 from ..base.vocabulary import TIME_LIMIT
 from ..errors import StoreError
-from ..store import runs as store
-from ..store.opening import IDENTIFICATION, check_identification
-from ..store.untrusted import check_shape
+from ..results.store import runs as store
+from ..results.store.opening import IDENTIFICATION, check_identification
+from ..results.store.untrusted import check_shape
 from ..studies.optimise.file import check_optimum, is_optimum
 from ..studies.sweep import is_sweep
 from ..studies.sweep.checking import check_sweep, progress, unfinished

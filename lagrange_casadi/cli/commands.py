@@ -9,13 +9,7 @@ import click
 
 from ..base.packages import check_installed
 from ..base.space import MOST_THREADS
-from ..base.vocabulary import (
-    LOAD_FORMATS,
-    RATE,
-    SECONDS,
-    TIME_LIMIT,
-    WIDTH,
-)
+from ..base.vocabulary import LOAD_FORMATS, RATE, SECONDS, TIME_LIMIT, WIDTH
 from .design_commands import (
     best,
     drive,

@@ -8,14 +8,7 @@ from __future__ import annotations
 import click
 
 from ..base.space import MOST_THREADS
-from ..base.vocabulary import (
-    CRITERIA,
-    KEEPS,
-    PEAK_SEARCHES,
-    POINTS,
-    SAMPLES,
-    YIELDING,
-)
+from ..base.vocabulary import CRITERIA, KEEPS, PEAK_SEARCHES, POINTS, SAMPLES, YIELDING
 from .help import Body, command
 from .options import (
     AXIS,

@@ -9,13 +9,13 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 
+from ..base.methods import method
 from ..base.publish import writing
-from ..declare.scene import Scene
 from ..errors import LagrangeCasadiError, PostureError
-from ..instants.solution import Solution
-from ..methods import method
-from ..shapes.index import write_index
-from ..shapes.specs import Spec
+from ..model.scene import Scene
+from ..results.solution import Solution
+from ..views.shapes.index import write_index
+from ..views.shapes.specs import Spec
 from .echo import echo
 from .progress import bar_of
 

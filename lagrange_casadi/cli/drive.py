@@ -12,15 +12,19 @@ from typing import Any
 
 import click
 
-from ..actuators import Choice, Duty, Motor, duty_of, inertia_at, plot_duty, read_motors, select
-from ..actuators.duty import slides
 from ..base.arrays import Array
-from ..case import load_case
 from ..errors import NoDesignError, UnknownNameError
-from ..instants.solution import Solution
-from ..shapes.pictures import check_picture
+from ..results.solution import Solution
+from ..results.verification.certificate import certified_outputs, refuse_failed, summary
+from ..studies.actuators.catalogue import read_motors
+from ..studies.actuators.choice import Choice, select
+from ..studies.actuators.duty import Duty, duty_of, slides
+from ..studies.actuators.inertia import inertia_at
+from ..studies.actuators.motor import Motor
+from ..studies.case import load_case
 from ..studies.evaluate import evaluate
-from ..verification.certificate import certified_outputs, refuse_failed, summary
+from ..views.charts.duty import plot_duty
+from ..views.shapes.pictures import check_picture
 from .echo import echo
 
 _BAR = 40

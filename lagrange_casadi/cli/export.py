@@ -8,8 +8,8 @@ from typing import Any
 
 import click
 
-from ..case import load_case
-from ..exports import export as write
+from ..interop.exports import export as write
+from ..studies.case import load_case
 from .echo import echo
 
 
@@ -27,7 +27,7 @@ def export(
         raise click.UsageError("--fmu-by goes with --fmu")
     loaded = load_case(case)
     if model is not None:
-        from ..formats import save_model
+        from ..interop.formats import save_model
 
         save_model(loaded.scene, model, given["parameters"])
         echo(f"wrote {model}")

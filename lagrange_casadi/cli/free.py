@@ -10,16 +10,17 @@ from typing import Any
 import click
 
 from ..base.numerals import real
-from ..case import load_case
-from ..declare.even_points import EvenPoints
 from ..errors import UnknownNameError
-from ..forward import FreeMotion, Law, dc_motor, induction_motor, power, torque
-from ..forward.plot import plot_cycle
-from ..forward.running import flywheel
-from ..forward.running import free as run
-from ..shapes.pictures import check_picture
-from ..store.runs import check_target, save
-from ..verification.certificate import refuse_failed, summary
+from ..model.even_points import EvenPoints
+from ..model.torques import Law, dc_motor, induction_motor, power, torque
+from ..results.store.runs import check_target, save
+from ..results.verification.certificate import refuse_failed, summary
+from ..studies.case import load_case
+from ..studies.forward.motion import FreeMotion
+from ..studies.forward.running import flywheel
+from ..studies.forward.running import free as run
+from ..views.charts.free_cycle import plot_cycle
+from ..views.shapes.pictures import check_picture
 from .echo import echo
 from .options import HDF5, target
 

@@ -9,15 +9,15 @@ from typing import Any
 
 import click
 
-from ..case import load_case
-from ..identification import Comparison, Identification, read_measurements
-from ..identification import identify as estimate
-from ..identification.file import save_identification
-from ..identification.page import check_page, report_identification
-from ..identification.plot import plot_identification
-from ..shapes.pictures import check_picture
-from ..store.opening import IDENTIFICATION
-from ..store.runs import check_target
+from ..results.store.opening import IDENTIFICATION
+from ..results.store.runs import check_target
+from ..studies.case import load_case
+from ..studies.identification import Comparison, Identification, read_measurements
+from ..studies.identification import identify as estimate
+from ..studies.identification.file import save_identification
+from ..views.charts.identification import plot_identification
+from ..views.charts.identification_page import check_page, report_identification
+from ..views.shapes.pictures import check_picture
 from .echo import echo
 from .options import HDF5, target
 

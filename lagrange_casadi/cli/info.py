@@ -8,14 +8,14 @@ from pathlib import Path
 
 import click
 
-from ..case import load_case
-from ..declare.description import Description, coordinates_of
-from ..declare.scene import Scene, kinds
-from ..equations.derive import compile_scene
-from ..equations.model_data import template
-from ..equations.scene_lines import scene_lines
-from ..instants.solution import Solution
-from ..store import runs as store
+from ..engine.derive import compile_scene
+from ..engine.model_data import template
+from ..engine.scene_lines import scene_lines
+from ..model.description import Description, coordinates_of
+from ..model.scene import Scene, kinds
+from ..results.solution import Solution
+from ..results.store import runs as store
+from ..studies.case import load_case
 from ..studies.sweep import Sweep, is_sweep
 from ..studies.sweep.axes import counted
 from ..studies.sweep.checking import progress, unfinished

@@ -13,13 +13,13 @@ import click
 from ..base.publish import check_writable
 from ..base.table_file import TableFile
 from ..base.vocabulary import LOAD_FORMATS
-from ..case import load_case
 from ..errors import DeclarationError
-from ..load_cases import LoadCase, link_load_cases, write_load_cases, write_spectrum
-from ..load_cases.beam_model import modelled
-from ..strength.bearings import bearing_loads
+from ..interop.load_cases import LoadCase, link_load_cases, write_load_cases, write_spectrum
+from ..interop.load_cases.beam_model import modelled
+from ..results.strength.bearings import bearing_loads
+from ..results.verification.certificate import certified_outputs, refuse_failed, summary
+from ..studies.case import load_case
 from ..studies.evaluate import evaluate
-from ..verification.certificate import certified_outputs, refuse_failed, summary
 from .echo import echo
 
 

@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from ..base.publish import check_writable, writing
-from ..case import load_case
-from ..figures.optimum import draw_front, draw_optimum
-from ..shapes.pictures import PICTURES
+from ..studies.case import load_case
 from ..studies.optimise import Front, Optimum
 from ..studies.optimise import optimise as search
+from ..views.figures.optimum import draw_front, draw_optimum
+from ..views.shapes.pictures import PICTURES
 from .echo import echo
 from .optimum_lines import front_lines, optimum_lines
 from .options import HDF5, target

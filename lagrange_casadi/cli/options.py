@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
     from ..base.table_file import TableFile
-    from ..declare.even_points import EvenPoints
-    from ..declare.times import Over
+    from ..model.even_points import EvenPoints
+    from ..model.times import Over
     from ..studies.sweep import Axis
 
 EVEN_POINTS = "START:STOP:COUNT"
@@ -67,7 +67,7 @@ class _Case(_Path):
         """Names of cases, and files."""
         from click.shell_completion import CompletionItem
 
-        from ..shipped_cases import shipped_cases
+        from ..base.shipped_cases import shipped_cases
 
         names = [name for name in shipped_cases() if name.startswith(incomplete)]
         return [*super().shell_complete(ctx, param, incomplete), *map(CompletionItem, names)]

@@ -11,10 +11,10 @@ from functools import cached_property
 import numpy as np
 
 from ..base.quantities import Output
-from ..declare.description import bends_of
-from ..instants.ordering import error_of, ordered
-from ..instants.solution import Peak, Solution
-from ..instants.statistics import Statistics
+from ..model.description import bends_of
+from ..results.ordering import error_of, ordered
+from ..results.solution import Peak, Solution
+from ..results.statistics import Statistics
 
 _ROUNDING = 5e-7
 """Errors below this share of the largest value of their unit are rounding."""

@@ -9,22 +9,22 @@ from typing import Any
 import click
 
 from ..base.publish import check_writable
-from ..case import load_case, reference
-from ..codegen.compiler import statements
+from ..engine.codegen.compiler import statements
 from ..errors import DeclarationError, LagrangeCasadiError, one_line
-from ..instants.solution import Solution
-from ..portable.wasm import check_zig
-from ..report import ENDINGS, Live, with_motion, write_comparison, write_report
-from ..report.comparison import same_runs
-from ..report.instants import shown_instants
-from ..report.live import run_of
-from ..report.of_sweep import is_of, write_sweep_report
-from ..store.runs import load
-from ..store.untrusted import reported_as
+from ..interop.portable.wasm import check_zig
+from ..results.solution import Solution
+from ..results.store.runs import load
+from ..results.store.untrusted import reported_as
+from ..results.verification.certificate import refuse_failed
+from ..studies.case import load_case, reference
 from ..studies.evaluate import evaluate
 from ..studies.sweep import Sweep, is_sweep
 from ..studies.sweep.axes import grouped
-from ..verification.certificate import refuse_failed
+from ..views.report import ENDINGS, Live, with_motion, write_comparison, write_report
+from ..views.report.comparison import same_runs
+from ..views.report.instants import shown_instants
+from ..views.report.live import run_of
+from ..views.report.of_sweep import is_of, write_sweep_report
 from .echo import echo, say_step
 from .options import HDF5
 from .strength_lines import not_evaluated_lines

@@ -18,25 +18,25 @@ from ..base.quantities import AVERAGED, Output
 from ..base.streams import is_standard_output
 from ..base.table_file import TableFile
 from ..base.vocabulary import Backend
-from ..case import load_case
-from ..declare import revolutions
-from ..declare.description import beams_of, fitted_of, kinds_of_described, pieces_of, values_of
-from ..declare.scene import Scene
-from ..declare.times import Timing
-from ..declare.wanted_names import among
-from ..elastic.vibration import vibration
 from ..errors import DeclarationError
-from ..instants.frames import TIME, columns
-from ..instants.ordering import ordered
-from ..instants.solution import Solution
-from ..sensitivity.peaks import PeakKind
-from ..shapes.index import MANIFEST
-from ..shapes.kept import dump_specs
-from ..store.runs import check_target, save
+from ..model import revolutions
+from ..model.description import beams_of, fitted_of, kinds_of_described, pieces_of, values_of
+from ..model.scene import Scene
+from ..model.times import Timing
+from ..model.wanted_names import among
+from ..results.elastic.vibration import vibration
+from ..results.frames import TIME, columns
+from ..results.ordering import ordered
+from ..results.sensitivity.peaks import PeakKind
+from ..results.solution import Solution
+from ..results.store.runs import check_target, save
+from ..results.verification.certificate import refuse_failed, summary
+from ..studies.case import load_case
 from ..studies.evaluate import evaluate
 from ..studies.peaks import forces, refine, resultants
 from ..studies.sensitivities import Changes, sensitivities
-from ..verification.certificate import refuse_failed, summary
+from ..views.shapes.index import MANIFEST
+from ..views.shapes.kept import dump_specs
 from .drawing import draw_with_progress
 from .echo import echo
 from .options import HDF5, target

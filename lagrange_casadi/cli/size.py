@@ -9,8 +9,8 @@ from typing import Any
 
 import click
 
-from ..beams.profiles import read_profiles
-from ..case import load_case
+from ..model.beams.profiles import read_profiles
+from ..studies.case import load_case
 from ..studies.sizing import Sized
 from ..studies.sizing import size as choose
 from .echo import echo

@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection, Iterator, Sequence
 
-from ..declare.description import beams_of, fitted_of
-from ..declare.scene import Scene
-from ..declare.wanted_names import among
-from ..equations.stress import KINDS
+from ..engine.stress import KINDS
 from ..errors import DeclarationError
-from ..instants.solution import Solution
-from ..strength.parts import not_evaluated
-from ..strength.safety import Life, Safety
-from ..strength.stress import Stress, StressPeak
+from ..model.description import beams_of, fitted_of
+from ..model.scene import Scene
+from ..model.wanted_names import among
+from ..results.solution import Solution
+from ..results.strength.parts import not_evaluated
+from ..results.strength.safety import Life, Safety
+from ..results.strength.stress import Stress, StressPeak
 from ..studies.strength_peaks import refine_safety, refine_stress
 from .report import NOT_FOUND, card, ratio
 

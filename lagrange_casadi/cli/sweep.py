@@ -10,9 +10,9 @@ from typing import Any
 import click
 
 from ..base.status import Status
-from ..case import load_case
-from ..declare.notes import drawing_notes
 from ..errors import CertificateError
+from ..model.notes import drawing_notes
+from ..studies.case import load_case
 from ..studies.sweep import Axis, Sweep, read_designs
 from ..studies.sweep import sweep as carry_out
 from ..studies.sweep.axes import counted, grouped

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ..base.table_file import Cell, TableFile
-from ..case import load_case
+from ..studies.case import load_case
 from ..studies.tolerances import Spreads
 from ..studies.tolerances import tolerances as spreads
 from .echo import echo

@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from ..base.publish import check_writable, writing
-from ..case import load_case
+from ..engine.instants.evaluation_method import EvaluationMethod
 from ..errors import DeclarationError
-from ..figures.trade_plot import draw_trade
-from ..instants.evaluation_method import EvaluationMethod
-from ..shapes.pictures import PICTURES
+from ..studies.case import load_case
 from ..studies.trade import METHODS, Trade
 from ..studies.trade import trade as measure
+from ..views.figures.trade_plot import draw_trade
+from ..views.shapes.pictures import PICTURES
 from .echo import echo
 from .options import target
 from .progress import bar_of

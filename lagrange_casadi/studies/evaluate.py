@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated
 
-from ..arguments import LATER, Outputs, ThreadCount, public
+from ..base.arguments import LATER, Outputs, ThreadCount, public
 from ..base.vocabulary import Backend, Precision
-from ..declare.even_points import EvenPoints
-from ..declare.scene import Scene
-from ..declare.scene_arguments import Elastic
-from ..declare.times import Over, Times
-from ..instants.evaluation_method import EvaluationMethod
+from ..engine.instants.evaluation_method import EvaluationMethod
+from ..model.even_points import EvenPoints
+from ..model.scene import Scene
+from ..model.scene_arguments import Elastic
+from ..model.times import Over, Times
 from .request import Request
 
 if TYPE_CHECKING:
-    from ..instants.solution import Solution
+    from ..results.solution import Solution
 
 
 @public

@@ -16,28 +16,28 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..arguments import Count, public
+from ..base.arguments import Count, public
 from ..base.arrays import Array
 from ..base.brief import Brief
 from ..base.quantities import Output, compared, parts_along
 from ..base.symbolic import symbolic
 from ..base.tables import LARGEST
-from ..codegen.stages import stages_for
-from ..declare.description import values_of
-from ..declare.even_points import EvenPoints, are_even
-from ..declare.scene import Scene
-from ..declare.times import Over, Times, span_of
-from ..equations.derive import compile_scene
-from ..equations.program import Program
-from ..equations.reciprocals import differentiable
+from ..engine.codegen.stages import stages_for
+from ..engine.derive import compile_scene
+from ..engine.instants.backends import Interpreter, searching
+from ..engine.peak_search.intervals import TOPS, Listed, Peaks
+from ..engine.peak_search.sharpness import Sharpness
+from ..engine.program import Program
+from ..engine.reciprocals import differentiable
 from ..errors import DeclarationError
-from ..instants.backends import Interpreter, searching
-from ..instants.section_law import SectionLaw, Side
-from ..instants.signals import Quantity, SectionForce, Signals
-from ..instants.sizes import size_of
-from ..instants.solution import Peak, Solution
-from ..peak_search.intervals import TOPS, Listed, Peaks
-from ..peak_search.sharpness import Sharpness
+from ..model.description import values_of
+from ..model.even_points import EvenPoints, are_even
+from ..model.scene import Scene
+from ..model.times import Over, Times, span_of
+from ..results.section_law import SectionLaw, Side
+from ..results.signals import Quantity, SectionForce, Signals
+from ..results.sizes import size_of
+from ..results.solution import Peak, Solution
 from .evaluate import evaluate
 
 _SAME = 1e-6

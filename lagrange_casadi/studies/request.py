@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from ..declare.even_points import EvenPoints
-from ..declare.times import Over, Times
-from ..instants.evaluation_method import EvaluationMethod
+from ..engine.instants.evaluation_method import EvaluationMethod
+from ..model.even_points import EvenPoints
+from ..model.times import Over, Times
 
 
 @dataclass(frozen=True)

@@ -10,21 +10,21 @@ from functools import cached_property
 
 import numpy as np
 
-from ..arguments import public
+from ..base.arguments import public
 from ..base.arrays import Array
 from ..base.brief import listed
 from ..base.quantities import Output
 from ..base.vocabulary import Backend
-from ..declare.scene import Scene
+from ..engine.instants.evaluation_method import EvaluationMethod
+from ..engine.peak_search.intervals import Listed
+from ..engine.peak_search.sharpness import Sharpness
 from ..errors import DeclarationError, UnknownNameError
-from ..instants.evaluation_method import EvaluationMethod
-from ..instants.solution import Solution
-from ..instants.statistics import shares
-from ..peak_search.intervals import Listed
-from ..peak_search.sharpness import Sharpness
-from ..sensitivity.ends import Ends
-from ..sensitivity.peaks import AS_LARGE, MovingPeaks, PeakKind, faint, mean_slopes
-from ..sensitivity.slopes import Numbers, Slopes
+from ..model.scene import Scene
+from ..results.sensitivity.ends import Ends
+from ..results.sensitivity.peaks import AS_LARGE, MovingPeaks, PeakKind, faint, mean_slopes
+from ..results.sensitivity.slopes import Numbers, Slopes
+from ..results.solution import Solution
+from ..results.statistics import shares
 from .peaks import ContinuousSolution, resultants
 
 _BLOCK = 1 << 16

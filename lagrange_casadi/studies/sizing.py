@@ -11,24 +11,24 @@ from functools import partial
 
 import casadi as ca
 
-from ..arguments import Positive, public
-from ..arithmetic.scalars import column
+from ..base.arguments import Positive, public
 from ..base.brief import Brief
 from ..base.numerals import readable
-from ..beams.profiles import Profile
-from ..declare.description import Template, beams_of, values_of
-from ..declare.end_conditions import ends_of
-from ..declare.parts import Parameter
-from ..declare.scene import Scene
-from ..declare.times import Over, Times
-from ..elastic.compliance import Compliance
-from ..elastic.deflection import Against, Deflection
-from ..equations.model_data import beam_at, template
-from ..equations.two_force_links import unaimed
+from ..base.scalars import column
+from ..engine.model_data import beam_at, template
+from ..engine.two_force_links import unaimed
 from ..errors import DeclarationError, LagrangeCasadiError, NoDesignError, UnknownNameError
-from ..instants.solution import Solution
-from ..strength.member import Member
-from ..strength.safety import Safety, Verdict, as_column, rated
+from ..model.beams.profiles import Profile
+from ..model.description import Template, beams_of, values_of
+from ..model.end_conditions import ends_of
+from ..model.parts import Parameter
+from ..model.scene import Scene
+from ..model.times import Over, Times
+from ..results.elastic.compliance import Compliance
+from ..results.elastic.deflection import Against, Deflection
+from ..results.solution import Solution
+from ..results.strength.member import Member
+from ..results.strength.safety import Safety, Verdict, as_column, rated
 from .request import Request
 from .solving import solve
 

@@ -12,30 +12,30 @@ import numpy as np
 from ..base.arrays import Array
 from ..base.quantities import Output
 from ..base.space import cores, in_words, require
-from ..declare.ends import BEYOND
-from ..declare.even_points import checked_ratios, points
-from ..declare.laws import Laws
-from ..declare.scene import Scene
-from ..declare.scene_arguments import Elastic
-from ..declare.times import Timing, instants_of, span_of
-from ..declare.wanted_names import by_parameters
-from ..equations.derive import compiled_for
-from ..equations.model_data import ModelData
-from ..equations.program import Program
+from ..engine.derive import compiled_for
+from ..engine.instants.backends import Evaluated
+from ..engine.instants.determinacy import completed, determinate, undetermined
+from ..engine.instants.evaluation_method import EvaluationMethod, seconds
+from ..engine.instants.from_table import columns
+from ..engine.instants.phases import phases
+from ..engine.instants.refusal import refuse
+from ..engine.model_data import ModelData
+from ..engine.program import Program
 from ..errors import CertificateWarning, DeclarationError, warn
-from ..instants.backends import Evaluated
-from ..instants.derivatives import Derivatives
-from ..instants.determinacy import completed, determinate, undetermined
-from ..instants.evaluation_method import EvaluationMethod, seconds
-from ..instants.from_table import columns
-from ..instants.holding import holding
-from ..instants.ordering import in_order
-from ..instants.phases import phases
-from ..instants.refusal import refuse
-from ..instants.solution import Solution
-from ..sensitivity.series import series_slopes
-from ..verification.accuracy import estimate, explained
-from ..verification.certificate import certify, failure, tolerance
+from ..model.ends import BEYOND
+from ..model.even_points import checked_ratios, points
+from ..model.laws import Laws
+from ..model.scene import Scene
+from ..model.scene_arguments import Elastic
+from ..model.times import Timing, instants_of, span_of
+from ..model.wanted_names import by_parameters
+from ..results.derivatives import Derivatives
+from ..results.holding import holding
+from ..results.ordering import in_order
+from ..results.sensitivity.series import series_slopes
+from ..results.solution import Solution
+from ..results.verification.accuracy import estimate, explained
+from ..results.verification.certificate import certify, failure, tolerance
 from .request import Request
 
 _BESIDE, _CHECKED = 8, 2

@@ -1,7 +1,7 @@
 """Stresses and factors of safety over all times of a solution's span: as :mod:`.peaks`, of what is
 largest along a whole link.
 
-At a time the largest stress along a link is exact (:mod:`..strength.stress`). Over time it is the
+At a time the largest stress along a link is exact (:mod:`.strength.stress`). Over time it is the
 upper edge of smooth curves, one for each fibre and summit: where two cross it has a kink that
 points downward, beside which the search looks more closely.
 """
@@ -14,17 +14,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arguments import public
+from ..base.arguments import public
 from ..base.arrays import Array
 from ..base.quantities import Output, parts_along
-from ..declare.even_points import are_even
-from ..declare.scene import Scene
-from ..equations.buckling import Column
-from ..instants.backends import searching
-from ..instants.solution import Solution
-from ..strength.member import Member
-from ..strength.safety import Safety, Verdict, as_column, buckling, safety, yielded
-from ..strength.stress import Stress, StressPeak
+from ..engine.buckling import Column
+from ..engine.instants.backends import searching
+from ..model.even_points import are_even
+from ..model.scene import Scene
+from ..results.solution import Solution
+from ..results.strength.member import Member
+from ..results.strength.safety import Safety, Verdict, as_column, buckling, safety, yielded
+from ..results.strength.stress import Stress, StressPeak
 from .peaks import ContinuousSolution
 
 

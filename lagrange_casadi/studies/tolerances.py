@@ -10,17 +10,17 @@ from typing import Annotated
 
 import numpy as np
 
-from ..arguments import Outputs, public
+from ..base.arguments import Outputs, public
 from ..base.arrays import Array
 from ..base.brief import Brief
 from ..base.numerals import real
 from ..base.status import Status
 from ..base.units import Within, number, typed
 from ..base.vocabulary import SAMPLES, Backend
-from ..declare.parts import Parameter
-from ..declare.scene import Scene
-from ..declare.times import Over, Times
 from ..errors import DeclarationError, UnknownNameError
+from ..model.parts import Parameter
+from ..model.scene import Scene
+from ..model.times import Over, Times
 from .designs.prepared import prepare
 
 _LARGEST = 1_000_000

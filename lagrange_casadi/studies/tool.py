@@ -14,19 +14,19 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments import public
+from ..base.arguments import public
 from ..base.arrays import Array
 from ..base.brief import Brief
-from ..declare.description import beams_of
-from ..declare.parts import Body, Point
-from ..declare.pushed import with_push
-from ..declare.scene import Scene
-from ..declare.times import Over, Times
-from ..elastic.compliance import Compliance, nodes
-from ..equations.model_data import template
+from ..engine.model_data import template
 from ..errors import DeclarationError
-from ..instants.solution import Solution
-from ..strength.member import Member
+from ..model.description import beams_of
+from ..model.parts import Body, Point
+from ..model.pushed import with_push
+from ..model.scene import Scene
+from ..model.times import Over, Times
+from ..results.elastic.compliance import Compliance, nodes
+from ..results.solution import Solution
+from ..results.strength.member import Member
 from .evaluate import evaluate
 
 

@@ -23,17 +23,17 @@ from ..base.arrays import Array, Json
 from ..base.status import Status
 from ..base.tables import ANGLE, LENGTH
 from ..base.vocabulary import PEAK_SEARCHES, PRECISIONS, PeakSearch
-from ..codegen import find_compiler
-from ..declare.scene import Scene
-from ..declare.times import Over, Times, Timing, instants_of
-from ..equations.derive import compile_scene
-from ..equations.program import Program
+from ..engine.codegen import find_compiler
+from ..engine.derive import compile_scene
+from ..engine.instants.backends import Evaluated, run
+from ..engine.instants.evaluation_method import EvaluationMethod
+from ..engine.instants.from_table import columns
+from ..engine.instants.refusal import resting, unfinished
+from ..engine.program import Program
 from ..errors import AccuracyError, AssemblyError, CompilerError, DeclarationError
-from ..instants.backends import Evaluated, run
-from ..instants.evaluation_method import EvaluationMethod
-from ..instants.from_table import columns
-from ..instants.refusal import resting, unfinished
-from ..verification.reference import reference
+from ..model.scene import Scene
+from ..model.times import Over, Times, Timing, instants_of
+from ..results.verification.reference import reference
 from .designs.engine import DesignEngine
 from .peaks import Shortfall, shortfall
 

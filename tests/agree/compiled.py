@@ -6,7 +6,7 @@ import stat
 import subprocess
 from importlib import resources
 
-HEADER = resources.files("lagrange_casadi.codegen").joinpath("lanes.h")
+HEADER = resources.files("lagrange_casadi.engine.codegen").joinpath("lanes.h")
 PEDANTIC = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wno-unused-parameter"]
 STRICT = [*PEDANTIC, "-Wdouble-promotion", "-Wfloat-conversion"]
 

@@ -172,7 +172,7 @@ def test_a_second_process_derives_nothing(fresh_cache, tmp_path):
     program = (
         f"import sys; sys.path[:0] = {FOLDERS!r}; from mechanisms import"
         " slider_crank;"
-        " __import__('importlib').import_module('lagrange_casadi.equations.derive').assemble ="
+        " __import__('importlib').import_module('lagrange_casadi.engine.derive').assemble ="
         " None; from lagrange_casadi import evaluate; print(evaluate(slider_crank(),"
         " backend='c').effort('O').tobytes().hex())"
     )

@@ -12,16 +12,7 @@ from design_rows import around, assert_refined
 from every_way import DECLARED, SCENES, TABLED
 from exported import by_c99, compare, expected, exported, instants, solve
 
-from lagrange_casadi import (
-    animation,
-    check,
-    derive,
-    evaluate,
-    load,
-    prepare,
-    save,
-    sweep,
-)
+from lagrange_casadi import animation, check, derive, evaluate, load, prepare, save, sweep
 
 
 def everything(solution):

@@ -84,7 +84,7 @@ IN_TURN = """
 import threading
 import casadi as ca
 from lagrange_casadi import symbolic
-from lagrange_casadi.declare.kinks import Smooth
+from lagrange_casadi.model.kinks import Smooth
 from threaded import press
 
 scenes, moving = [press(0), press(1)], ca.SX.sym("t")

@@ -12,9 +12,9 @@ import pytest
 from reports import CASES
 
 from lagrange_casadi import Mechanism, Scene, evaluate, export
-from lagrange_casadi.case import load_case
 from lagrange_casadi.cli import main
 from lagrange_casadi.motion import polynomial
+from lagrange_casadi.studies.case import load_case
 
 # Where ziglang has no C library yet, it builds one.
 pytestmark = [alive.NEEDS_BROWSER, alive.NEEDS_ENGINE, pytest.mark.early]

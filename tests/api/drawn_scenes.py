@@ -4,7 +4,7 @@ import functools
 from pathlib import Path
 
 from lagrange_casadi import Scene, SpatialMechanism, evaluate, motion
-from lagrange_casadi.case import load_case
+from lagrange_casadi.studies.case import load_case
 
 CASES = (
     "arm6",

@@ -15,11 +15,7 @@ from model_files import (
     urdf,
 )
 
-from lagrange_casadi import (
-    Scene,
-    evaluate,
-    read,
-)
+from lagrange_casadi import Scene, evaluate, read
 from lagrange_casadi.motion import polynomial
 
 

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, density, evaluate
-from lagrange_casadi.case import load_case
 from lagrange_casadi.motion import polynomial
+from lagrange_casadi.studies.case import load_case
 
 CASES = Path(__file__).parents[2] / "cases"
 

@@ -26,10 +26,7 @@ from model_parts import (
     wheels,
 )
 
-from lagrange_casadi import (
-    evaluate,
-    read,
-)
+from lagrange_casadi import evaluate, read
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

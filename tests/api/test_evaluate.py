@@ -15,16 +15,7 @@ from forging import edit
 from mechanisms import press, slider_crank, uneven
 from stepped import two_rods
 
-from lagrange_casadi import (
-    check,
-    evaluate,
-    export,
-    load,
-    motion,
-    prepare,
-    save,
-    sweep,
-)
+from lagrange_casadi import check, evaluate, export, load, motion, prepare, save, sweep
 from lagrange_casadi.errors import (
     AssemblyError,
     DeclarationError,

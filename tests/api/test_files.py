@@ -14,12 +14,7 @@ from conftest import ROOT
 from forging import edit, flip
 
 from lagrange_casadi import Sweep, check, evaluate, load, save
-from lagrange_casadi.errors import (
-    BusyError,
-    DeclarationError,
-    PathError,
-    StoreError,
-)
+from lagrange_casadi.errors import BusyError, DeclarationError, PathError, StoreError
 
 pytestmark = pytest.mark.quick
 

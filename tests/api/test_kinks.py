@@ -12,16 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lagrange_casadi import (
-    Mechanism,
-    Scene,
-    elements,
-    evaluate,
-    export,
-    prepare,
-    sweep,
-    table,
-)
+from lagrange_casadi import Mechanism, Scene, elements, evaluate, export, prepare, sweep, table
 from lagrange_casadi.errors import AssemblyError, DeclarationError
 from lagrange_casadi.motion import expression, polynomial
 

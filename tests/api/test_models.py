@@ -32,14 +32,7 @@ from model_parts import (
     numbers,
 )
 
-from lagrange_casadi import (
-    Mechanism,
-    Scene,
-    SpatialMechanism,
-    evaluate,
-    load_case,
-    read,
-)
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate, load_case, read
 from lagrange_casadi.motion import harmonic
 
 pytestmark = pytest.mark.usefixtures("interpreted")

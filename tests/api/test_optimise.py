@@ -10,14 +10,7 @@ import pytest
 from conftest import CASES
 from scipy.optimize import minimize_scalar
 
-from lagrange_casadi import (
-    Front,
-    Mechanism,
-    Scene,
-    load_case,
-    optimise,
-    prepare,
-)
+from lagrange_casadi import Front, Mechanism, Scene, load_case, optimise, prepare
 from lagrange_casadi.errors import DeclarationError, NoDesignError, ParameterError, UnknownNameError
 from lagrange_casadi.motion import expression, harmonic, polynomial
 

@@ -14,11 +14,7 @@ from commands import command
 from reports import HOSTILE, held, hostile, page, press, solved
 from strong import slider
 
-from lagrange_casadi import (
-    evaluate,
-    load_case,
-    save,
-)
+from lagrange_casadi import evaluate, load_case, save
 from lagrange_casadi.errors import DeclarationError
 
 

@@ -10,16 +10,7 @@ import numpy as np
 import pytest
 from mechanisms import four_bar, slider_crank
 
-from lagrange_casadi import (
-    Mechanism,
-    Scene,
-    derive,
-    evaluate,
-    export,
-    load_case,
-    refine,
-    sweep,
-)
+from lagrange_casadi import Mechanism, Scene, derive, evaluate, export, load_case, refine, sweep
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import (
     AssemblyError,

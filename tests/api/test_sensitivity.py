@@ -17,16 +17,7 @@ from mechanisms import pendulum, slider_crank
 from reports import wound
 from stepped import iterated
 
-from lagrange_casadi import (
-    Mechanism,
-    Scene,
-    check,
-    evaluate,
-    load,
-    load_case,
-    save,
-    sensitivities,
-)
+from lagrange_casadi import Mechanism, Scene, check, evaluate, load, load_case, save, sensitivities
 from lagrange_casadi.cli import main
 from lagrange_casadi.density import polynomial as density
 from lagrange_casadi.errors import DeclarationError

@@ -7,13 +7,7 @@ import pytest
 from mechanisms import bracket
 from spatial_scenes import beams
 
-from lagrange_casadi import (
-    Mechanism,
-    Scene,
-    evaluate,
-    load,
-    save,
-)
+from lagrange_casadi import Mechanism, Scene, evaluate, load, save
 from lagrange_casadi.errors import UnknownNameError
 from lagrange_casadi.motion import polynomial
 

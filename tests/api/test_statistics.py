@@ -8,12 +8,7 @@ import numpy as np
 import pytest
 from mechanisms import slider_crank
 
-from lagrange_casadi import (
-    Mechanism,
-    Scene,
-    evaluate,
-    load_case,
-)
+from lagrange_casadi import Mechanism, Scene, evaluate, load_case
 from lagrange_casadi.errors import UnknownNameError
 from lagrange_casadi.motion import polynomial
 

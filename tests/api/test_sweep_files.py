@@ -20,13 +20,7 @@ from forging import flip
 from sweeps import StopError, stop_after
 
 from lagrange_casadi import Scene, Sweep, motion, read_designs, sweep
-from lagrange_casadi.errors import (
-    BusyError,
-    DeclarationError,
-    PathError,
-    StoppedError,
-    StoreError,
-)
+from lagrange_casadi.errors import BusyError, DeclarationError, PathError, StoppedError, StoreError
 
 ASKED = {"t": (0, 0.08, 7)}
 GRID = {"l": (0.15, 0.4, 20), "r": [0.05, 0.1, 0.07]}

@@ -20,10 +20,7 @@ from lagrange_casadi import Sweep, read_designs
 from lagrange_casadi.actuators import read_motors
 from lagrange_casadi.beams import read_profiles
 from lagrange_casadi.cli import main
-from lagrange_casadi.errors import (
-    DeclarationError,
-    PathError,
-)
+from lagrange_casadi.errors import DeclarationError, PathError
 
 pytestmark = pytest.mark.quick
 

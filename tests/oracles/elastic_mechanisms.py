@@ -3,12 +3,7 @@
 import numpy as np
 from internals import Compliance, Member, nodes
 
-from lagrange_casadi import (
-    Mechanism,
-    Scene,
-    SpatialMechanism,
-    beams,
-)
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams
 from lagrange_casadi.motion import harmonic
 
 STEEL = beams.material("S235")

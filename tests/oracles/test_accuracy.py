@@ -131,7 +131,7 @@ def test_what_the_code_did_wrong_is_an_error_of_what_it_did_wrong(monkeypatch):
         return table, provenance
 
     monkeypatch.setattr(
-        importlib.import_module("lagrange_casadi.instants.from_table"), "run", spoilt
+        importlib.import_module("lagrange_casadi.engine.instants.from_table"), "run", spoilt
     )
     with pytest.warns(CertificateWarning, match="balance"):
         solution = evaluate(slider_crank(["all"]))

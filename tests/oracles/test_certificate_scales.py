@@ -164,6 +164,6 @@ def test_a_millionth_of_any_large_force_fails(name):
 
 def test_blocks_change_no_certificate(solution, monkeypatch):
     whole = certify(solution)
-    monkeypatch.setattr("lagrange_casadi.verification.certificate._BLOCK", 77)
+    monkeypatch.setattr("lagrange_casadi.results.verification.certificate._BLOCK", 77)
     for name, values in certify(solution).items():
         assert np.array_equal(values, whole[name])

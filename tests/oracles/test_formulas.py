@@ -36,7 +36,7 @@ EXACTLY = [
 @pytest.mark.sampled(7)
 @pytest.mark.parametrize("name", EXACTLY)
 def test_formulas_to_forty_digits(name, monkeypatch):
-    monkeypatch.setattr("lagrange_casadi.verification.reference.arithmetic", lambda: EXACT)
+    monkeypatch.setattr("lagrange_casadi.results.verification.reference.arithmetic", lambda: EXACT)
     scene = declared(CASES / name)
     program, p = derive(scene, ["all"]), list(scene.mechanism.values().values())
     t = scene.t[0] + np.array(PARTS.get(name, (0.0, 0.4, 0.77))) * (scene.t[1] - scene.t[0])

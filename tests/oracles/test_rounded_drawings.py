@@ -8,15 +8,7 @@ import pytest
 from conftest import SPATIAL
 from drawings import drawing, drawn
 
-from lagrange_casadi import (
-    Mechanism,
-    Scene,
-    SpatialMechanism,
-    evaluate,
-    load,
-    save,
-    sweep,
-)
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate, load, save, sweep
 from lagrange_casadi.errors import AssemblyError, ParameterError
 from lagrange_casadi.motion import polynomial
 

@@ -10,13 +10,7 @@ import pytest
 from mechanisms import crank_and_rod
 from strong import robot
 
-from lagrange_casadi import (
-    beams,
-    evaluate,
-    link_load_cases,
-    load_case,
-    write_load_cases,
-)
+from lagrange_casadi import beams, evaluate, link_load_cases, load_case, write_load_cases
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

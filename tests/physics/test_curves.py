@@ -14,16 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from splines import by_hand
 
-from lagrange_casadi import (
-    Mechanism,
-    Scene,
-    curve,
-    density,
-    evaluate,
-    motion,
-    prepare,
-    table,
-)
+from lagrange_casadi import Mechanism, Scene, curve, density, evaluate, motion, prepare, table
 from lagrange_casadi.errors import AssemblyError, DeclarationError, ParameterError
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]

@@ -13,13 +13,13 @@ import pytest
 import strong
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from internals import codegen
 
 from lagrange_casadi import (
     Mechanism,
     Scene,
     SpatialMechanism,
     beams,
-    codegen,
     evaluate,
     export,
     strength,

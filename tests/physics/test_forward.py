@@ -11,15 +11,7 @@ import numpy as np
 import pytest
 from conftest import CASES
 
-from lagrange_casadi import (
-    Mechanism,
-    Scene,
-    SpatialMechanism,
-    flywheel,
-    forward,
-    free,
-    load_case,
-)
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, flywheel, forward, free, load_case
 from lagrange_casadi.errors import DeclarationError, LagrangeCasadiError
 from lagrange_casadi.motion import polynomial
 

@@ -17,16 +17,8 @@ from elastic_mechanisms import (
     three_cranks,
 )
 
-from lagrange_casadi import (
-    Mechanism,
-    Scene,
-    beams,
-    evaluate,
-)
-from lagrange_casadi.errors import (
-    DeclarationError,
-    UnknownNameError,
-)
+from lagrange_casadi import Mechanism, Scene, beams, evaluate
+from lagrange_casadi.errors import DeclarationError, UnknownNameError
 from lagrange_casadi.motion import polynomial
 
 pytestmark = pytest.mark.usefixtures("interpreted")

@@ -46,7 +46,7 @@ import json, sys, lagrange_casadi as lc
 names = dir(lc)
 for name in (names, names[::-1])[int(sys.argv[1]) if sys.argv[1:] else 0]:
     getattr(lc, name)
-import lagrange_casadi.cli, lagrange_casadi.exports, lagrange_casadi.studies.sweep
+import lagrange_casadi.cli, lagrange_casadi.interop.exports, lagrange_casadi.studies.sweep
 print(json.dumps({name: type(getattr(lc, name)).__name__ for name in names}))
 """
     tree = ast.parse(STUB.read_text())
@@ -76,15 +76,15 @@ LOADED = "import json, sys\n{}\nprint(json.dumps(sorted(name for name in sys.mod
     [
         (
             "import lagrange_casadi",
-            ("numpy", "casadi", "h5py", "matplotlib", "lagrange_casadi.declare"),
+            ("numpy", "casadi", "h5py", "matplotlib", "lagrange_casadi.model"),
         ),
         (
             "import lagrange_casadi as lc; lc.Mechanism, lc.Scene, lc.evaluate",
-            ("h5py", "matplotlib", "lagrange_casadi.equations"),
+            ("h5py", "matplotlib", "lagrange_casadi.engine"),
         ),
         (
             "import lagrange_casadi.cli",
-            ("numpy", "casadi", "h5py", "matplotlib", "tqdm", "lagrange_casadi.declare"),
+            ("numpy", "casadi", "h5py", "matplotlib", "tqdm", "lagrange_casadi.model"),
         ),
         (
             "import lagrange_casadi as lc\nfor name in dir(lc): getattr(lc, name)",

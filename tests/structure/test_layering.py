@@ -151,7 +151,7 @@ def without(leaf, commands):
     global gone
     gone, name_of_leaf, out = {leaf}, f"lagrange_casadi.{leaf}", "x.h5"
     from lagrange_casadi.errors import MissingPackageError
-    from lagrange_casadi.methods import METHODS, method
+    from lagrange_casadi.base.methods import METHODS, method
     lost, refused = [], []
     for found in pkgutil.walk_packages(lagrange_casadi.__path__, "lagrange_casadi."):
         if not found.name.endswith("__main__") and found.name != name_of_leaf:

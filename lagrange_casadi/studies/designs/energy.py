@@ -25,7 +25,7 @@ from ...base.quantities import Output
 from ...base.status import Status
 from ...base.symbolic import symbolic_property
 from ...errors import DeclarationError
-from ...sensitivity.ends import Ends
+from ...results.sensitivity.ends import Ends
 from .engine import DesignEngine
 from .outcome import KEPT, Results
 

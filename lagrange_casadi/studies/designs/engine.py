@@ -17,29 +17,29 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from ... import codegen
 from ...base.arrays import Array
 from ...base.quantities import Output, compared
 from ...base.space import cores, require
 from ...base.status import Status
 from ...base.symbolic import symbolic_property
 from ...base.vocabulary import PEAK_SEARCHES, PeakSearch
-from ...codegen.stages import Stages
-from ...declare.scene import Scene
-from ...declare.times import Times, Timing
-from ...equations.derive import compile_scene
-from ...equations.program import Program
+from ...engine import codegen
+from ...engine.codegen.stages import Stages
+from ...engine.derive import compile_scene
+from ...engine.instants.backends import begun, compiled, provenance
+from ...engine.instants.determinacy import undetermined
+from ...engine.instants.evaluation_method import EvaluationMethod, seconds
+from ...engine.instants.grids import empty
+from ...engine.peak_search.intervals import TOPS, Listed
+from ...engine.peak_search.sharpness import bent, with_watched
+from ...engine.program import Program
 from ...errors import DeclarationError, UnknownNameError
-from ...instants.backends import begun, compiled, provenance
-from ...instants.determinacy import undetermined
-from ...instants.evaluation_method import EvaluationMethod, seconds
-from ...instants.grids import empty
-from ...instants.solution import Provenance
-from ...peak_search.intervals import TOPS, Listed
-from ...peak_search.sharpness import bent, with_watched
-from ...sensitivity.ends import Ends
-from ...sensitivity.peaks import AS_LARGE, MeanSlopes, MovingPeaks, PeakSlopes, faint
-from ...sensitivity.slopes import Slopes
+from ...model.scene import Scene
+from ...model.times import Times, Timing
+from ...results.sensitivity.ends import Ends
+from ...results.sensitivity.peaks import AS_LARGE, MeanSlopes, MovingPeaks, PeakSlopes, faint
+from ...results.sensitivity.slopes import Slopes
+from ...results.solution import Provenance
 from ..solving import checked_span, outputs_of, unwind
 from .interpreted import InterpretedDesigns
 from .outcome import KEPT, History, Outcome, Results, outcome_of, refuse, rows_of

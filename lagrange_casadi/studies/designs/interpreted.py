@@ -11,14 +11,14 @@ import numpy.typing as npt
 
 from ...base.arrays import Array
 from ...base.status import Status
-from ...equations.program import Program
-from ...instants.backends import Evaluated, Interpreter, run
-from ...instants.determinacy import undetermined
-from ...instants.evaluation_method import EvaluationMethod
-from ...instants.refusal import refusal
-from ...instants.signals import Quantity, Signals, section_forces
-from ...instants.statistics import counted, shares
-from ...peak_search.intervals import TOPS, Listed
+from ...engine.instants.backends import Evaluated, Interpreter, run
+from ...engine.instants.determinacy import undetermined
+from ...engine.instants.evaluation_method import EvaluationMethod
+from ...engine.instants.refusal import refusal
+from ...engine.peak_search.intervals import TOPS, Listed
+from ...engine.program import Program
+from ...results.signals import Quantity, Signals, section_forces
+from ...results.statistics import counted, shares
 from .outcome import KEPT, Results
 from .reduction import KeptOutputs
 

@@ -13,22 +13,22 @@ from typing import Annotated, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ...arguments import LATER, Numeric, Outputs, ThreadCount, public
+from ...base.arguments import LATER, Numeric, Outputs, ThreadCount, public
 from ...base.arrays import Array
 from ...base.brief import listed
 from ...base.status import Status
 from ...base.symbolic import symbolic_property
 from ...base.units import Number
 from ...base.vocabulary import Backend, PeakSearch, Precision
-from ...declare.description import fitted_of
-from ...declare.scene import Scene
-from ...declare.times import Over, Times
-from ...declare.wanted_names import without_fitted, without_life
-from ...equations.model_data import template
+from ...engine.instants.evaluation_method import EvaluationMethod
+from ...engine.model_data import template
 from ...errors import AssemblyError, DeclarationError, UnknownNameError, shown
-from ...instants.evaluation_method import EvaluationMethod
-from ...instants.solution import Solution
-from ...sensitivity.peaks import MeanSlopes
+from ...model.description import fitted_of
+from ...model.scene import Scene
+from ...model.times import Over, Times
+from ...model.wanted_names import without_fitted, without_life
+from ...results.sensitivity.peaks import MeanSlopes
+from ...results.solution import Solution
 from ..request import Request
 from .engine import DesignEngine
 from .outcome import KEPT, Outcome

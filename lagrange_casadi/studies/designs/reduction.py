@@ -9,23 +9,23 @@ from typing import Any
 
 import casadi as ca
 
-from ...arithmetic.scalars import column
 from ...base.arrays import Array
 from ...base.quantities import AVERAGED, Output, compared
+from ...base.scalars import column
 from ...base.symbolic import symbolic
 from ...base.tables import Table, table_of
-from ...codegen.link_curves import Along, mass_properties_of
-from ...codegen.reduction import Reduction
-from ...codegen.stages import Stages, compensated, plain, stages_for
-from ...equations.distributed_loads import distributed_loads_of
-from ...equations.mobility import load_points_of
-from ...equations.model_data import ModelData
-from ...equations.program import Program
+from ...engine.codegen.link_curves import Along, mass_properties_of
+from ...engine.codegen.reduction import Reduction
+from ...engine.codegen.stages import Stages, compensated, plain, stages_for
+from ...engine.distributed_loads import distributed_loads_of
+from ...engine.instants.evaluation_method import EvaluationMethod
+from ...engine.instants.rules import limits
+from ...engine.mobility import load_points_of
+from ...engine.model_data import ModelData
+from ...engine.peak_search.sharpness import Sharpness
+from ...engine.program import Program
 from ...errors import DeclarationError
-from ...instants.evaluation_method import EvaluationMethod
-from ...instants.laws import made_of
-from ...instants.rules import limits
-from ...peak_search.sharpness import Sharpness
+from ...results.laws import made_of
 
 
 @symbolic

@@ -14,16 +14,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...arithmetic.compensated import ROUNDING
 from ...base.arrays import Array
+from ...base.compensated import ROUNDING
 from ...base.quantities import Output
-from ...equations.program import Program
-from ...instants.backends import run
-from ...instants.evaluation_method import EvaluationMethod
-from ...instants.phases import phases
-from ...instants.solution import Solution
-from ...verification.accuracy import estimate
-from ...verification.certificate import COARSE, tolerance
+from ...engine.instants.backends import run
+from ...engine.instants.evaluation_method import EvaluationMethod
+from ...engine.instants.phases import phases
+from ...engine.program import Program
+from ...results.solution import Solution
+from ...results.verification.accuracy import estimate
+from ...results.verification.certificate import COARSE, tolerance
 from ..solving import outputs_of, residuals_of
 
 INSTANTS = 5

@@ -9,10 +9,10 @@ import numpy as np
 
 from ...base.arrays import Array
 from ...base.symbolic import symbolic_property
-from ...declare.even_points import are_even
-from ...declare.laws import Laws
-from ...declare.motion_inverse import MotionInverse
-from ...declare.times import Timing, instants_of
+from ...model.even_points import are_even
+from ...model.laws import Laws
+from ...model.motion_inverse import MotionInverse
+from ...model.times import Timing, instants_of
 
 _SAMPLES = 65
 """Least number of times at which a motion is checked for reversal."""

@@ -13,9 +13,9 @@ import numpy.typing as npt
 
 from ...base.arrays import Array
 from ...base.status import Status
-from ...declare.corners import Corners
-from ...declare.ends import BEYOND
-from ...equations.program import Program
+from ...engine.program import Program
+from ...model.corners import Corners
+from ...model.ends import BEYOND
 
 if TYPE_CHECKING:
     import casadi as ca

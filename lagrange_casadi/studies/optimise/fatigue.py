@@ -21,13 +21,13 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.arrays import Expression
-from ...beams.material import Material
-from ...equations.fibre_stresses import LinkStress
-from ...equations.program import Program
+from ...engine.fibre_stresses import LinkStress
+from ...engine.program import Program
 from ...errors import DeclarationError
-from ...instants.statistics import counted
-from ...strength.fatigue import cycle_squares, loaded, strengths, use_score, used
-from ...strength.worst import LinkHistories, Maximum
+from ...model.beams.material import Material
+from ...results.statistics import counted
+from ...results.strength.fatigue import cycle_squares, loaded, strengths, use_score, used
+from ...results.strength.worst import LinkHistories, Maximum
 from .sampled_design import KEEP, Point, SampledDesign
 
 

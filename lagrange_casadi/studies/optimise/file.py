@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.seal import kind_of
-from ...store.opening import opened_file, read_all, sealed_file
-from ...store.untrusted import check_dataset, shown
+from ...results.store.opening import opened_file, read_all, sealed_file
+from ...results.store.untrusted import check_dataset, shown
 from .front import Front
 from .optimum import Optimum
 from .search_run import CONVERGED

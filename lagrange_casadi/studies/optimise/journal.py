@@ -19,7 +19,7 @@ from ...base.arrays import Json
 from ...base.locks import lock
 from ...base.publish import check_writable, reporting, settled
 from ...errors import BusyError, PathError, StoreError
-from ...store.untrusted import check_shape
+from ...results.store.untrusted import check_shape
 from ..sweep.plan import difference
 from .search_run import WORDS, SearchRun
 from .solver import SearchTask

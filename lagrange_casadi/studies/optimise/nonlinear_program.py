@@ -15,8 +15,8 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ...arithmetic.ipopt import ipopt
 from ...base.arrays import Array
+from ...base.ipopt import ipopt
 from ...base.quantities import Output
 from ...base.symbolic import symbolic
 from ..designs.energy import DriveEnergy

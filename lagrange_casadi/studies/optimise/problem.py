@@ -14,13 +14,13 @@ import numpy as np
 from ...base.arrays import Array, Json, Operand
 from ...base.numerals import real
 from ...base.vocabulary import Backend
-from ...declare.scene import Scene
-from ...declare.times import Times, Timing
-from ...equations.fingerprint import sources
-from ...equations.model_data import materials_of, template
+from ...engine.fingerprint import sources
+from ...engine.instants.evaluation_method import EvaluationMethod
+from ...engine.model_data import materials_of, template
 from ...errors import DeclarationError, UnknownNameError, check_kind
-from ...instants.evaluation_method import EvaluationMethod
-from ...strength.fatigue import lacking, strengths
+from ...model.scene import Scene
+from ...model.times import Times, Timing
+from ...results.strength.fatigue import lacking, strengths
 from ..designs.engine import DesignEngine
 from ..peaks import wanted_for
 from ..sweep.meanings import WAYS

@@ -7,16 +7,16 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, overload
 
-from ...arguments import public
+from ...base.arguments import public
+from ...base.methods import method
 from ...base.publish import uninterrupted
 from ...base.units import Within
 from ...base.vocabulary import POINTS, Backend
-from ...case import Case, scene_of
-from ...declare.scene import Scene
-from ...declare.times import Times
 from ...errors import DeclarationError
-from ...methods import method
-from ...store.runs import check_target
+from ...model.scene import Scene
+from ...model.times import Times
+from ...results.store.runs import check_target
+from ..case import Case, scene_of
 from .file import SCHEMA, save
 from .front import Front, front_of
 from .journal import kept

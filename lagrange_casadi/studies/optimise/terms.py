@@ -12,10 +12,10 @@ from typing import Literal, TypeAlias
 
 import casadi as ca
 
-from ...arguments import public
+from ...base.arguments import public
 from ...base.numerals import real
 from ...base.quantities import AVERAGED, Output
-from ...equations.model_data import ModelData
+from ...engine.model_data import ModelData
 from ...errors import DeclarationError
 
 Kind: TypeAlias = Literal["peak", "max", "min", "mean", "rms", "fluctuation", "mass", "parameter"]

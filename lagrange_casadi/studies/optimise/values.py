@@ -21,13 +21,13 @@ from ...base.arrays import Array, Expression
 from ...base.quantities import Output
 from ...base.symbolic import symbolic, symbolic_property
 from ...base.tables import table_of
-from ...declare.limits import END
-from ...equations.checks import Column
-from ...equations.program import Program
-from ...equations.reciprocals import differentiable
-from ...equations.section_function import Place
+from ...engine.checks import Column
+from ...engine.program import Program
+from ...engine.reciprocals import differentiable
+from ...engine.section_function import Place
 from ...errors import DeclarationError
-from ...sensitivity.jacobian import resultant
+from ...model.limits import END
+from ...results.sensitivity.jacobian import resultant
 from ..designs.times import DesignTimes
 from .fatigue import Tired
 from .sampled_design import Point

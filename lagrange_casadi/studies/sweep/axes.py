@@ -16,13 +16,10 @@ from typing import Annotated, ClassVar, TypeAlias, cast
 import numpy as np
 import numpy.typing as npt
 
-from ...arguments import LATER, public
+from ...base.arguments import LATER, public
 from ...base.arrays import Array
 from ...base.brief import Brief
 from ...base.units import Number, number, typed
-from ...declare.even_points import points
-from ...declare.limits import parameter_faults
-from ...declare.parts import Parameter
 from ...errors import (
     DeclarationError,
     NumberError,
@@ -31,6 +28,9 @@ from ...errors import (
     check_kind,
     shown,
 )
+from ...model.even_points import points
+from ...model.limits import parameter_faults
+from ...model.parts import Parameter
 
 Numbers = npt.NDArray[np.int64]
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ...arguments import public
+from ...base.arguments import public
 from ...base.arrays import Array, Operand
 from ...base.numerals import real
 from ...base.units import typed

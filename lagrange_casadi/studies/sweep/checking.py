@@ -10,11 +10,11 @@ import h5py
 import numpy as np
 
 from ...base.status import Status
-from ...declare.description import values_of
-from ...declare.even_points import points
 from ...errors import one_line
-from ...store.untrusted import check_chunks, parsed, reported_as
-from ...store.words import unlike, unlike_conventions
+from ...model.description import values_of
+from ...model.even_points import points
+from ...results.store.untrusted import check_chunks, parsed, reported_as
+from ...results.store.words import unlike, unlike_conventions
 from .axes import are_described, counted, grouped, size_of
 from .blocks import slabs
 from .contents import KeptColumn

@@ -19,36 +19,29 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from ...arithmetic.scalars import column
 from ...base.arrays import Array, Json, Operand
 from ...base.quantities import Output
+from ...base.scalars import column
 from ...base.status import Status
 from ...base.tables import table_of
 from ...base.vocabulary import KEEPS, Keep, PeakSearch
-from ...declare.density import Density
-from ...declare.even_points import EvenPoints, points
-from ...declare.times import Timing
-from ...declare.wanted_names import SENSITIVITY
-from ...equations.fingerprint import sources
-from ...equations.model_data import ModelData
-from ...equations.program import Program
+from ...engine.fingerprint import sources
+from ...engine.instants.evaluation_method import EvaluationMethod
+from ...engine.model_data import ModelData
+from ...engine.program import Program
 from ...errors import DeclarationError, UnknownNameError
-from ...instants.evaluation_method import EvaluationMethod
-from ...instants.laws import law_of
-from ...instants.section_law import SectionLaw
-from ...instants.statistics import of_counted
+from ...model.density import Density
+from ...model.even_points import EvenPoints, points
+from ...model.times import Timing
+from ...model.wanted_names import SENSITIVITY
+from ...results.laws import law_of
+from ...results.section_law import SectionLaw
+from ...results.statistics import of_counted
 from ..designs.energy import DriveEnergy
 from ..designs.engine import DesignEngine
 from ..designs.outcome import Outcome
 from .chunks import encoded
-from .meanings import (
-    ERROR,
-    FLUCTUATION,
-    STATUS,
-    TIMES,
-    InstantAxis,
-    Meanings,
-)
+from .meanings import ERROR, FLUCTUATION, STATUS, TIMES, InstantAxis, Meanings
 from .strength import Kept
 
 MISSING = "NaN for designs for which it is indeterminate, by equilibrium or by friction at rest"

@@ -10,7 +10,14 @@ from typing import Any, TypedDict
 import h5py
 import numpy as np
 
-from ...store.untrusted import check_dataset, check_links, check_shape, parsed, read_json, shown
+from ...results.store.untrusted import (
+    check_dataset,
+    check_links,
+    check_shape,
+    parsed,
+    read_json,
+    shown,
+)
 from .axes import DESIGN
 from .file import WORDS
 from .meanings import KINDS, STATUS

@@ -20,8 +20,8 @@ import numpy.typing as npt
 
 from ...base.publish import PatientFile
 from ...errors import DeclarationError
-from ...store.scales import LARGE, Scales
-from ...store.words import conventions, say
+from ...results.store.scales import LARGE, Scales
+from ...results.store.words import conventions, say
 from .axes import DESIGN, Designs, Grid
 from .blocks import chunk_of, slabs
 from .chunks import FILTERS

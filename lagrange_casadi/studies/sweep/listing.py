@@ -11,7 +11,7 @@ from collections.abc import Collection, Sequence
 
 import numpy as np
 
-from ...arguments import public
+from ...base.arguments import public
 from ...base.csv_rows import Row, headings, read_rows
 from ...base.units import typed
 from ...errors import DeclarationError

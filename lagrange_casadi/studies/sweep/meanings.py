@@ -14,13 +14,13 @@ from ...base.arrays import Array
 from ...base.quantities import Kinds, Output, quotient
 from ...base.status import Status
 from ...base.tables import ANGLE, LENGTH, Table
-from ...declare.description import Description, kinds_of_described, motions_of
-from ...declare.even_points import points
-from ...declare.mass_properties import ALL
-from ...declare.times import Timing, instants_of
-from ...declare.wanted_names import SENSITIVITY
-from ...equations.model_data import ModelData
-from ...instants.ordering import table_of_described
+from ...engine.model_data import ModelData
+from ...model.description import Description, kinds_of_described, motions_of
+from ...model.even_points import points
+from ...model.mass_properties import ALL
+from ...model.times import Timing, instants_of
+from ...model.wanted_names import SENSITIVITY
+from ...results.ordering import table_of_described
 from .axes import DESIGN
 
 OVER, CYCLE = "over", "cycle"

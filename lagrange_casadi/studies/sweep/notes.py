@@ -11,15 +11,15 @@ import numpy as np
 
 from ...base.arrays import spread
 from ...base.status import Status
-from ...beams.beam import beam_of
-from ...declare.description import kinds_of_described
-from ...declare.notes import rest_note
-from ...declare.revolutions import note
-from ...declare.scene import Scene
-from ...declare.times import Over, Times, Timing
-from ...equations.model_data import template
+from ...engine.model_data import template
 from ...errors import LagrangeCasadiError
-from ...strength.fatigue import lacking
+from ...model.beams.beam import beam_of
+from ...model.description import kinds_of_described
+from ...model.notes import rest_note
+from ...model.revolutions import note
+from ...model.scene import Scene
+from ...model.times import Over, Times, Timing
+from ...results.strength.fatigue import lacking
 from ..evaluate import evaluate
 from .axes import DesignsLike, designs_of
 from .meanings import LEAST

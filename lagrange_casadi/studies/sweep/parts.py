@@ -22,7 +22,7 @@ from typing import BinaryIO, TypedDict
 from ...base.locks import lock
 from ...base.publish import flush, put, reporting, settled
 from ...errors import BusyError, PathError, StoreError, one_line
-from ...store.untrusted import parsed
+from ...results.store.untrusted import parsed
 from .columns import Column
 from .plan import IDENTITY, Identity
 

@@ -16,12 +16,12 @@ import numpy as np
 from ...base.arrays import Array, Json, spread
 from ...base.space import in_words, require
 from ...base.vocabulary import Keep, PeakSearch, Precision
-from ...declare.description import Description, beams_of, fitted_of, shape_of
-from ...declare.even_points import checked_ratios
-from ...declare.scene import STRENGTH, Scene
-from ...declare.wanted_names import SENSITIVITY, among, by_parameters, without_fitted
-from ...equations.derive import compile_scene
+from ...engine.derive import compile_scene
 from ...errors import AssemblyError, DeclarationError, MobilityError, ParameterError, SizeError
+from ...model.description import Description, beams_of, fitted_of, shape_of
+from ...model.even_points import checked_ratios
+from ...model.scene import STRENGTH, Scene
+from ...model.wanted_names import SENSITIVITY, among, by_parameters, without_fitted
 from ..designs.spot_check import wanted_whole
 from ..request import Request
 from .axes import Designs, check_designs, counted

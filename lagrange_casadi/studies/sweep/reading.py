@@ -17,11 +17,11 @@ import h5py
 import numpy as np
 import numpy.typing as npt
 
-from ...arguments import LATER, Count, Index, Outputs, public, texts
+from ...base.arguments import LATER, Count, Index, Outputs, public, texts
 from ...base.arrays import Array
 from ...base.brief import listed
+from ...base.methods import method
 from ...base.seal import VerifiedFile, kind_of, verify
-from ...declare.description import Description
 from ...errors import (
     DeclarationError,
     LagrangeCasadiError,
@@ -31,8 +31,8 @@ from ...errors import (
     one_line,
     shown,
 )
-from ...methods import method
-from ...store.opening import opened_file
+from ...model.description import Description
+from ...results.store.opening import opened_file
 from .axes import DESIGN, counted
 from .blocks import chunk_of, slabs
 from .contents import KeptColumn, contents
@@ -44,7 +44,7 @@ from .selection import Selected, matches
 if TYPE_CHECKING:
     import xarray
 
-    from ...declare.scene import Scene
+    from ...model.scene import Scene
 
 _BLOCK = 1 << 15
 Values = npt.NDArray[Any]

@@ -11,7 +11,7 @@ from typing import Annotated, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ...arguments import LATER
+from ...base.arguments import LATER
 from ...base.arrays import Array
 from ...base.units import Number, typed
 from ...base.units import number as read_number

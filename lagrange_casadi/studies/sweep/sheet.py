@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.arrays import Array, Operand
-from ...declare.wanted_names import SENSITIVITY
+from ...model.wanted_names import SENSITIVITY
 from .meanings import KINDS, Kind
 from .reading import Sweep
 from .scale import Scale, tick

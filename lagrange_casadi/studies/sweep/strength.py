@@ -1,7 +1,7 @@
 """Strength results of a sweep: least factors of safety, lives, and masses.
 
 Utilisation against yielding and buckling comes from the engine. Fatigue follows from whole
-histories, as of a solution (:mod:`...strength.worst`).
+histories, as of a solution (:mod:`.strength.worst`).
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.arrays import Array
-from ...declare.mass_properties import ALL
-from ...equations.model_data import ModelData
-from ...equations.program import Program
-from ...instants.statistics import counted
-from ...strength.fatigue import Score, damage_score, lacking, use_score
-from ...strength.worst import LinkHistories
+from ...engine.model_data import ModelData
+from ...engine.program import Program
+from ...model.mass_properties import ALL
+from ...results.statistics import counted
+from ...results.strength.fatigue import Score, damage_score, lacking, use_score
+from ...results.strength.worst import LinkHistories
 from .meanings import LEAST, LIFE, MASS, WAYS
 
 _ENDLESS = 0.999

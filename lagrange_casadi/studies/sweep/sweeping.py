@@ -11,16 +11,16 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
-from ...arguments import LATER, Outputs, ThreadCount, public
+from ...base.arguments import LATER, Outputs, ThreadCount, public
+from ...base.methods import method
 from ...base.space import MOST_THREADS
 from ...base.vocabulary import Backend, Keep, PeakSearch, Precision
-from ...case import Case, reference, scene_of
-from ...declare.even_points import EvenPoints
-from ...declare.scene import Scene
-from ...declare.times import Over, Times
+from ...engine.instants.evaluation_method import EvaluationMethod
 from ...errors import DeclarationError
-from ...instants.evaluation_method import EvaluationMethod
-from ...methods import method
+from ...model.even_points import EvenPoints
+from ...model.scene import Scene
+from ...model.times import Over, Times
+from ..case import Case, reference, scene_of
 from ..request import Request
 from .axes import DesignsLike, designs_of
 from .carrying_out import Progress, carry_out

@@ -1,0 +1,66 @@
+"""Table by which methods of data and keywords of functions reach packages that lie above them.
+
+`Solution`, `Scene` and `Sweep` are data, and so know no report, no animation and no factor of
+safety. Their methods look these up here when they are called. No other module may name a module in
+a string: ``tests/structure/test_layering.py`` reads this table.
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable
+from typing import Any
+
+from ..errors import MissingPackageError
+
+_ROOT = __package__.partition(".")[0]
+
+METHODS: dict[str, str] = {
+    "PostureError.drawn": "views.figures.postures:draw_postures",
+    "Scene._repr_html_": "views.report:scene_summary",
+    "Scene.report": "views.report:scene_report",
+    "Solution._repr_html_": "views.report:summary",
+    "Solution.animate": "animation:write_animation",
+    "Solution.deflection": "results.elastic.deflection:deflection",
+    "Solution.life": "strength:life",
+    "Solution.notes": "results.elastic.vibration:swinging",
+    "Solution.report": "views.report:write_report",
+    "Solution.report_beside": "views.report:write_comparison",
+    "Solution.safety": "results.strength.parts:part_safety",
+    "Solution.stress": "strength:stress",
+    "Solution.view": "views.report:view",
+    "Spec.draw": "views.figures.figures:drawn",
+    "Sweep._repr_html_": "views.report.sweep_summary:summary",
+    "Sweep.report": "views.report.of_sweep:write_sweep_report",
+    "figures.default_figures": "figures:default_figures",
+    "figures.draw": "figures:draw",
+    "figures.parse": "views.shapes.kept:parse_specs",
+    "optimise.dask": "studies.cluster.dask_workers:Cluster",
+    "sweep.dask": "studies.cluster.dask_workers:Cluster",
+}
+"""Module and function of each method, by its name."""
+
+
+def method(name: str) -> Callable[..., Any]:
+    """The function that answers a method of :data:`METHODS`.
+
+    Raises :class:`.MissingPackageError` without its package.
+    """
+    module, _, function = METHODS[name].partition(":")
+    try:
+        found: Callable[..., Any] = getattr(importlib.import_module(f"{_ROOT}.{module}"), function)
+    except ModuleNotFoundError as error:
+        raise missing(error, name) from None
+    return found
+
+
+def missing(error: ModuleNotFoundError, name: str) -> ImportError:
+    """An error of ours where what is missing is a package of ours, which ``name`` needs; else the
+    same error.
+    """
+    lacking = error.name or ""
+    if lacking.partition(".")[0] != _ROOT:
+        return error
+    return MissingPackageError(
+        f"{name} needs {lacking}, which this installation lacks; install all of lagrange_casadi"
+    )

@@ -1,0 +1,78 @@
+"""Sums, differences and products of numbers and expressions, columns of them, and functions.
+
+CasADi's operators first ask of each operand which of all kinds it is. That takes ten times as long
+as to write the operation down. Here there are two kinds alone: numbers, and expressions of scalars
+(``casadi.SX``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+import casadi as ca
+
+from .arrays import Expression
+
+_SX, _binary = ca.SX, ca.SX.binary
+_ADD, _SUB, _MUL = ca.OP_ADD, ca.OP_SUB, ca.OP_MUL
+
+
+def added(a: Expression, b: Expression) -> Expression:
+    """Return a + b."""
+    return _binary(_ADD, a, b) if isinstance(a, _SX) or isinstance(b, _SX) else a + b
+
+
+def less(a: Expression, b: Expression) -> Expression:
+    """Return a - b."""
+    return _binary(_SUB, a, b) if isinstance(a, _SX) or isinstance(b, _SX) else a - b
+
+
+def product(a: Expression, b: Expression) -> Expression:
+    """Return a b."""
+    return _binary(_MUL, a, b) if isinstance(a, _SX) or isinstance(b, _SX) else a * b
+
+
+def products_added(a: Expression, b: Expression, c: Expression, d: Expression) -> Expression:
+    """Return a b + c d."""
+    return added(product(a, b), product(c, d))
+
+
+def products_less(a: Expression, b: Expression, c: Expression, d: Expression) -> Expression:
+    """Return a b - c d."""
+    return less(product(a, b), product(c, d))
+
+
+def applied(operation: int, *operands: Expression) -> ca.SX:
+    """An operation, by CasADi's ``OP_`` code, of one or two expressions."""
+    return (
+        ca.SX.unary(operation, *operands) if len(operands) == 1 else _binary(operation, *operands)
+    )
+
+
+def as_expression(value: Expression) -> ca.SX:
+    """A number as an expression, an expression as it is."""
+    return value if isinstance(value, _SX) else _SX(value)
+
+
+def column(parts: Iterable[Expression]) -> ca.SX:
+    """Parts one below the other; an empty column where there are none."""
+    return ca.vertcat(_SX(0, 1), *parts)
+
+
+def graph(name: str, given: Mapping[str, ca.SX], **found: Expression) -> ca.Function:
+    """A function of symbols that are ``given``, with what is ``found`` of them as dense results,
+    both by name. What stands in it twice is computed once.
+    """
+    results = [ca.densify(as_expression(value)) for value in found.values()]
+    return ca.Function(name, [*given.values()], results, [*given], [*found], {"cse": True})
+
+
+def inputs_of(function: ca.Function) -> dict[str, ca.SX]:
+    """Symbols for the inputs of a function, by its names for them."""
+    return dict(zip(function.name_in(), function.sx_in(), strict=True))
+
+
+def entries(whole: Expression) -> list[ca.SX]:
+    """The entries of a column, of which there may be none."""
+    found = as_expression(whole)
+    return ca.vertsplit(found) if found.numel() else []

@@ -1,0 +1,405 @@
+"""The search for peaks in C: one library for every scene, which is handed its curves as tables, and
+what evaluates them.
+
+It does what :mod:`.peak_search.search` does, which is the reference. The compiled code of many
+designs calls it with a pointer to its own function of times; :meth:`Search.peaks` calls it with a
+function of Python's.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+import itertools
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ...base.arrays import Array
+from ...base.compensated import DTYPES
+from ...base.vocabulary import Precision
+from ..peak_search import between, intervals
+from ..peak_search import search as reference
+from ..peak_search.between import Flags
+from ..peak_search.intervals import TOPS, Curves, CurveSource, Listed, Peaks, Samples
+from ..peak_search.sharpness import Kind, Watch
+from .calls import Call
+from .compiler import Compiler, entry_of, loaded, packed, start, written
+from .printer import defined
+
+FUNCTION = "lagrange_casadi_search"
+_CAPACITY = "lagrange_casadi_search_room"
+
+CURVES = Call(
+    "lagrange_casadi_curves",
+    {
+        **dict.fromkeys(
+            ("quantities", "curves", "places", "watches", "knots", "units"), "long long"
+        ),
+        "quantity": "const int*",
+        "first": "const int*",
+        "unit": "const int*",
+        "link": "const int*",
+        "placed": "const int*",
+        "watch": "const int*",
+        "watch_first": "const int*",
+        "watch_at": "const real*",
+        "knot": "const double*",
+        "depends": "const signed char*",
+    },
+)
+"""Curves of a search. For each curve its ``quantity``, its ``link`` or -1, and where along that it
+is ``placed``: a row of places, or :data:`BASE`, :data:`TIP`, :data:`OFF`; for each quantity its
+``first`` curve, and the number of its ``unit``; for each watched function its kind and the
+``watch_first`` of the numbers ``watch_at``. ``depends`` says for each watched function, one after
+another, which quantities depend on it.
+"""
+
+BASE, TIP, OFF = -1, -2, -3
+
+AT = """\
+typedef int lagrange_casadi_at(void* of, long long count, const double* t, unsigned long long need,
+                               real* out, long long apart);
+"""
+"""Function that evaluates curves: at given times, for the links whose bits ``need`` sets, into rows
+that lie ``apart``: of curves, of their places, of watched functions. It returns 0, or another
+number to end the search.
+"""
+
+CALL = Call(
+    "lagrange_casadi_search_call",
+    {
+        "curves": "const lagrange_casadi_curves*",
+        "n": "long long",
+        "stride": "long long",
+        "t": "const double*",
+        "rows": "real*",
+        "watched": "real*",
+        "most": "real*",
+        "scales": "const real*",
+        "open": "const signed char*",
+        "rests": "int",
+        "together": "int",
+        "way": "int",
+        "share": "double",
+        "tops": "double*",
+        "error": "double*",
+        "hiding": "signed char*",
+        "at": "lagrange_casadi_at*",
+        "of": "void*",
+        "room": "char*",
+        "size": "long long",
+        "value": "double*",
+        "peak_t": "double*",
+        "xi": "double*",
+        "located": "signed char*",
+    },
+)
+"""Arguments of the search; the C says which members it reads and writes."""
+
+_ROUNDING: dict[Precision, float] = {"double": reference.ROUNDING, "single": 1e-6}
+"""Relative error of a peak that is worth no further refinement."""
+
+_NOISE: dict[Precision, float] = {"double": between.NOISE, "single": 1e-2}
+"""Largest relative error of a quantity by rounding."""
+
+_DEEPEST: dict[Precision, int] = {"double": reference.DEEPEST, "single": 8}
+"""Panels within each other."""
+
+_FINEST: dict[Precision, int] = {"double": reference.FINEST, "single": 5}
+"""Finest level, in whose steps nothing hides but beside a pole."""
+
+_SIDE: dict[Precision, float] = {"double": intervals.SIDE, "single": 1e-5}
+"""Distance of the sides of a kink or a jump, in steps between instants."""
+
+_STRETCH: dict[Precision, float] = {"double": reference.STRETCH, "single": 1e-2}
+_LAST: dict[Precision, float] = {"double": reference.LAST, "single": 1e-5}
+_FILES = ("intervals.c", "between.c", "fits.c", "samples.c", "within.c", "search.c")
+_LINE = 16
+"""Values of a cache line of either precision."""
+
+_TOGETHER = 64
+"""Times at which Python evaluates at once."""
+
+
+def interface(precision: Precision) -> str:
+    """The C of what crosses to the search and back."""
+    real = "double" if precision == "double" else "float"
+    at, curves, call = AT.replace("real*", f"{real}*"), CURVES.text(real), CALL.text(real)
+    return f"{at}{curves}{call}typedef void lagrange_casadi_find({CALL.name}* call);\n"
+
+
+def source(precision: Precision) -> str:
+    """The C of the search."""
+    text = start(precision) + _PRELUDE + interface(precision)
+    text += defined("SEARCH", _macros(precision))
+    return f"{text}\n{written(*_FILES)}"
+
+
+_PRELUDE = """\
+typedef lanes_real search_real;
+#ifdef LANES_SINGLE
+#define SEARCH_FABS fabsf
+#else
+#define SEARCH_FABS fabs
+#endif
+LANES_INLINE lanes_pack search_size(lanes_pack x) { return SEARCH_FABS(x); }
+LANES_INLINE lanes_pack search_larger(lanes_pack x, lanes_pack y) { return lanes_larger(x, y); }
+"""
+
+
+def _macros(precision: Precision) -> dict[str, object]:
+    """Macros for small and large numbers in the search."""
+    numbers = np.finfo(DTYPES[precision])
+    reals = {
+        "ROUNDING": _ROUNDING[precision],
+        "NOISE": _NOISE[precision],
+        "LAST": _LAST[precision],
+        "STRETCH": _STRETCH[precision],
+        "CLOSE": 8 * float(numbers.eps),
+        "LARGEST": float(numbers.max),
+        "LEAST": float(numbers.tiny),
+        "HALF": 0.5,
+        "BESIDE": reference.BESIDE,
+        "NOTHING": reference.NOTHING,
+        "ENDLESS": reference.ENDLESS,
+        "RAGGED": reference.RAGGED,
+        "TURN": math.tau,
+        "DIP": between.DIP,
+        "CHANGE": between.CHANGE,
+        "RISE": between.RISE,
+        "STRAIGHT": between.STRAIGHT,
+        "EVEN": between.EVEN,
+        "NEGLIGIBLE": between.NEGLIGIBLE,
+    }
+    return {
+        **{name: f"((search_real) {value:.17g})" for name, value in reals.items()},
+        "SPACING": f"{intervals.SPACING:.17g}",
+        "SIDE": f"{_SIDE[precision]:.17g}",
+        "RATE": f"{between.RATE:.17g}",
+        "INNER": intervals.INNER,
+        "DEEPEST": _DEEPEST[precision],
+        "FINEST": _FINEST[precision],
+        "BESIDE_REST": reference.BESIDE_REST,
+        "TOPS": TOPS,
+        "PANELS": reference.INTERVALS,
+        **{f"IS_{kind.name}": int(kind) for kind in Kind},
+    }
+
+
+@dataclass(frozen=True, eq=False)
+class Tables:
+    """Curves as the search takes them: the struct, and the arrays that it points to."""
+
+    struct: ctypes.Structure
+    arrays: Mapping[str, npt.NDArray[Any]]
+
+    @classmethod
+    def of(
+        cls,
+        curves: Sequence[tuple[int, int, int]],
+        units: Sequence[int],
+        watches: Sequence[Watch],
+        knots: Sequence[float],
+        depends: Flags,
+        precision: Precision = "double",
+    ) -> Tables:
+        """Make it from curves, each with its quantity, in order, its link and its place."""
+        quantity, link, placed = zip(*curves, strict=True)
+        arrays: dict[str, npt.NDArray[Any]] = {
+            name: np.array([*values], np.intc)
+            for name, values in {
+                "quantity": quantity,
+                "first": [*(quantity.index(q) for q in range(len(units))), len(quantity)],
+                "unit": units,
+                "link": link,
+                "placed": placed,
+                "watch": [watch.kind for watch in watches],
+                "watch_first": itertools.accumulate(
+                    (len(watch.at) for watch in watches), initial=0
+                ),
+            }.items()
+        }
+        arrays["watch_at"] = np.array([x for watch in watches for x in watch.at], DTYPES[precision])
+        arrays["knot"] = np.array(knots, float)
+        arrays["depends"] = np.ascontiguousarray(depends, np.int8)
+        struct = CURVES.made(
+            quantities=len(units),
+            curves=len(quantity),
+            places=1 + max(-1, *placed),
+            watches=len(watches),
+            knots=len(knots),
+            units=max(units) + 1,
+            **{name: array.ctypes.data for name, array in arrays.items()},
+        )
+        return cls(struct, arrays)
+
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """The loaded search."""
+
+    entry: Any
+    room: Any
+    precision: Precision
+
+    @property
+    def address(self) -> int | None:
+        """Address for compiled code."""
+        return ctypes.cast(self.entry, ctypes.c_void_p).value
+
+    def call(
+        self, tables: Tables, together: int, **members: float | None
+    ) -> tuple[ctypes.Structure, npt.NDArray[np.int8]]:
+        """A call for some curves, of which ``together`` times are evaluated at once, and its room;
+        other members are left out.
+        """
+        given = (
+            dict.fromkeys(CALL.members, 0)
+            | {"curves": ctypes.addressof(tables.struct), "together": together}
+            | members
+        )
+        made = CALL.made(
+            **{
+                name: value or (None if CALL.members[name].endswith("*") else 0)
+                for name, value in given.items()
+            }
+        )
+        self.room(made)
+        room = np.empty(made.size + 4 * _LINE, np.int8)
+        made.room = room.ctypes.data + -room.ctypes.data % (4 * _LINE)
+        return made, room
+
+    def peaks(
+        self,
+        source: CurveSource,
+        curves: Curves,
+        t: Array,
+        samples: Samples,
+        hiding: Flags,
+        listed: Listed | None = None,
+        sampled: bool = False,
+    ) -> Peaks:
+        """Find peaks as :func:`.peak_search.search.peaks` does; exceptions of ``source`` are
+        raised.
+        """
+        values, places, watched = samples
+        t = np.ascontiguousarray(t, float)
+        n, count, quantities = t.size, len(values), len(curves.units)
+        along = np.flatnonzero(np.isfinite(places).any(axis=1))
+        placed = np.full(count, OFF)
+        placed[along] = np.arange(along.size)
+        tables = Tables.of(
+            [(q, -1, k) for q, k in zip(curves.quantities, placed.tolist(), strict=True)],
+            curves.units,
+            curves.watches,
+            curves.knots,
+            curves.depending,
+        )
+        # What is before the first value and beyond the last is the search's to write; packs go on
+        # beyond the last.
+        rows = np.zeros((count + along.size + len(watched), n + 4 * _LINE))
+        lines = rows[:, _LINE : -2 * _LINE]
+        lines[:] = np.pad(
+            np.concatenate([values, places[along], watched]), ((0, 0), (0, _LINE)), mode="edge"
+        )
+        scales = np.zeros(max(curves.units) + 1)
+        scales[: len(curves.scales)] = curves.scales
+        hidden = np.zeros((2, rows.shape[1]), np.int8)
+        hidden[0, : n - 1] = hiding
+        asked = _Asked(source, along)
+        found = np.empty((3, quantities))
+        located = np.zeros(quantities, np.int8)
+        begin = rows.ctypes.data + _LINE * rows.itemsize
+        tops = np.empty((quantities, TOPS, 4)) if listed else None
+        error = np.empty(quantities) if sampled else None
+        most = np.fmax.reduce(np.abs(values), axis=1, initial=0.0)
+        call, room = self.call(
+            tables,
+            _TOGETHER,
+            n=n,
+            stride=rows.shape[1],
+            t=t.ctypes.data,
+            rows=begin,
+            watched=begin + (count + along.size) * rows.strides[0],
+            most=most.ctypes.data,
+            scales=scales.ctypes.data,
+            rests=int(np.isnan(values).any()),
+            way=listed.sign if listed else 0,
+            share=listed.share if listed else 0.0,
+            tops=None if tops is None else tops.ctypes.data,
+            error=None if error is None else error.ctypes.data,
+            hiding=hidden.ctypes.data,
+            at=ctypes.cast(asked.entry, ctypes.c_void_p).value,
+            value=found[0].ctypes.data,
+            peak_t=found[1].ctypes.data,
+            xi=found[2].ctypes.data,
+            located=located.ctypes.data,
+        )
+        self.entry(call)
+        del room  # until here the call has used it
+        if asked.error is not None:
+            raise asked.error
+        return Peaks(found[0], found[1], found[2], located.astype(bool), tops, error)
+
+
+_FUNCTION_OF_TIMES = ctypes.CFUNCTYPE(
+    ctypes.c_int,
+    ctypes.c_void_p,
+    ctypes.c_longlong,
+    ctypes.POINTER(ctypes.c_double),
+    ctypes.c_ulonglong,
+    ctypes.POINTER(ctypes.c_double),
+    ctypes.c_longlong,
+)
+
+
+class _Asked:
+    """A function of times for the search, which keeps what it raises."""
+
+    def __init__(self, source: CurveSource, along: npt.NDArray[np.intp]) -> None:
+        self.source, self.along = source, along
+        self.error: BaseException | None = None
+        self.entry = _FUNCTION_OF_TIMES(self)
+
+    def __call__(
+        self,
+        _: None,
+        count: int,
+        t: ctypes._Pointer[ctypes.c_double],
+        need: int,
+        out: ctypes._Pointer[ctypes.c_double],
+        apart: int,
+    ) -> int:
+        try:
+            values, places, watched = self.source.at(np.ctypeslib.as_array(t, (count,)).copy())
+            rows = np.concatenate([values, places[self.along], watched])
+            np.ctypeslib.as_array(out, (len(rows), apart))[:, :count] = rows
+        except BaseException as error:  # it must not go through C
+            self.error = error
+            return 1
+        return 0
+
+
+_LEVEL = "-O2"
+"""Optimization of the search: -O3 takes half as long again to compile, and searches no faster."""
+
+
+@functools.lru_cache(maxsize=8)
+def load_search(
+    compiler: Compiler, extra: tuple[str, ...] = (), precision: Precision = "double"
+) -> Search:
+    """Build the search, or take it from the cache, and load it; ``extra`` flags come after the
+    package's own.
+
+    Raises :class:`CompilerError`.
+    """
+    library = loaded(packed(source(precision), compiler), compiler, extra, _LEVEL)
+    entry, room = (
+        CALL.declare(entry_of(library, name, compiler)) for name in (FUNCTION, _CAPACITY)
+    )
+    return Search(entry, room, precision)

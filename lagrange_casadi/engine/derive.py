@@ -1,0 +1,433 @@
+"""Derivation of a scene's graphs: kinematics, Lagrange terms and internal forces together, and
+nothing that is not wanted.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from typing import Any
+
+import casadi as ca
+
+from ..base import cache
+from ..base.arguments import Outputs, public, texts
+from ..base.arrays import Expression
+from ..base.quantities import Output
+from ..base.scalars import column, graph
+from ..base.symbolic import symbolic
+from ..base.tables import Table, table_of
+from ..errors import AssemblyError, DeclarationError, MobilityError, PostureError
+from ..model.density import Density
+from ..model.description import describe
+from ..model.end_conditions import effective_lengths, ends_of
+from ..model.limits import END, parameters_note
+from ..model.parts import Link
+from ..model.results import Asked
+from ..model.scene import STRENGTH, Scene, Wanted
+from ..model.wanted_names import among
+from .checks import Check, Column
+from .deflections import deflections
+from .drives import closure
+from .fingerprint import fingerprint
+from .indeterminate import Forces
+from .kinematics import Kinematics
+from .least_energy import Completion, LeastEnergy, feeling, least_energy
+from .load_points import gathered
+from .mobility import internal_forces
+from .model_data import ModelData
+from .moving import Moving
+from .multibody import Multibody
+from .program import Program
+from .reciprocals import share_reciprocals
+from .rounding import nearest
+from .section_function import Place, Section
+from .strength import stresses, utilisation
+from .two_force_links import find_two_force_links, unaimed
+
+_FITS = 2e-14
+"""Largest residual of redundant equations that count as consistent, relative to the links'
+length.
+"""
+
+_SERVES = 1e-10
+"""Largest residual of redundant equations at the start for other parameters, for which the graphs
+are still valid: a tenth of the certificates' tolerance.
+"""
+
+_STEPS = 50
+
+
+@public
+@symbolic
+def compile_scene(
+    scene: Scene,
+    wanted: Outputs | None = None,
+    *,
+    parameters: Mapping[str, float] | None = None,
+) -> Program:
+    """Compile a scene to CasADi functions of an instant and tables of plain data.
+
+    The result does not need the scene any more. It can be pickled, and read in another process that
+    has no file of the case. A scene is compiled once: the result is kept in the process, and in the
+    cache folder by the content of the declaration.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    wanted
+        Output names, as in :class:`.Scene`; by default the scene's own.
+    parameters
+        Values with which loops are assembled where they cannot be with the scene's own.
+
+    Returns
+    -------
+    Program
+        The functions and tables.
+
+    Raises
+    ------
+    MobilityError, DeclarationError, AssemblyError
+        If the loops cannot be solved.
+    """
+    return compiled_for(scene, wanted, None if parameters is None else scene.values(parameters))
+
+
+@symbolic
+def compiled_for(
+    scene: Scene, wanted: Outputs | None, values: Mapping[str, float] | None
+) -> Program:
+    """Compile a scene as :func:`compile_scene` does, for ``values`` of all parameters, checked."""
+    names = scene.wanted if wanted is None else wanted
+    if values is not None:
+        scene = assembled(scene, values, names)
+    listed = texts(names)
+    want = Wanted.of(scene.mechanism, names) if listed is None else _wanted(scene, tuple(listed))
+    try:
+        found = _kept(scene, want)
+    except PostureError as error:
+        error.scene = scene
+        raise
+    if isinstance(found, _Derived):
+        return found.program
+    raise type(found)(str(found))
+
+
+derive = compile_scene
+"""An earlier name of the same function."""
+
+
+@symbolic
+def as_derived(scene: Scene, wanted: Outputs, parameters: Mapping[str, float]) -> Scene:
+    """Return the scene that :func:`compile_scene` makes a graph of, as it is assembled, its rounded
+    axes corrected.
+    """
+    scene = assembled(scene, scene.values(parameters), wanted)
+    compile_scene(scene, wanted)
+    found = _kept(scene, Wanted.of(scene.mechanism, wanted))
+    assert isinstance(found, _Derived)
+    return found.scene
+
+
+@symbolic
+def assembled(
+    scene: Scene, values: Mapping[str, float], wanted: Sequence[str] | None = None
+) -> Scene:
+    """The scene; or where its loops cannot be assembled with its own parameters, the same assembled
+    with ``values`` of all.
+
+    So it is too where loops close with its own parameters but not with ``values``, and axes are
+    corrected for one or the other.
+
+    Raises what :func:`compile_scene` does, where they can be assembled with neither.
+    """
+    try:
+        program = compile_scene(scene, wanted)
+    except (AssemblyError, MobilityError):
+        if values == scene.mechanism.values(scene.assembly):
+            raise
+        there = _at(scene, tuple(values.items()))
+        compile_scene(there, wanted)
+        return there
+    if (
+        scene.mechanism.space
+        and scene.rounding
+        and _misses(program, values, iterated=False) > _SERVES
+    ):
+        with suppress(AssemblyError, MobilityError):
+            there = _at(scene, tuple(values.items()))
+            if compile_scene(there, wanted).data.rounding or program.data.rounding:
+                return there
+    return scene
+
+
+@functools.lru_cache(maxsize=32)
+def _at(scene: Scene, values: tuple[tuple[str, float], ...]) -> Scene:
+    return replace(scene, assembly=dict(values))
+
+
+@functools.lru_cache(maxsize=64)
+def _wanted(scene: Scene, names: tuple[str, ...]) -> Wanted:
+    want = Wanted.of(scene.mechanism, names)
+    _check_aimed(scene, names)
+    return want
+
+
+@functools.lru_cache(maxsize=32)
+def _nearest(scene: Scene) -> Scene | None:
+    return None if scene.mechanism.rounded else nearest(scene)
+
+
+@dataclass(frozen=True, eq=False)
+class _Derived:
+    """A graph, and the scene of which it is: one whose rounded axes are corrected, where loops do
+    not close as declared.
+    """
+
+    program: Program
+    scene: Scene
+
+
+@functools.lru_cache(maxsize=32)
+def _kept(scene: Scene, want: Wanted) -> _Derived | AssemblyError | MobilityError:
+    """The graph from the cache, or derived and kept there; or why there is none."""
+    identity = fingerprint(scene, want)
+    text = cache.read(f"{identity}.graph") if identity else None
+    if text is not None:
+        program = Program.loads(text)
+        # Scenes of one name may differ in what follows from nothing that is derived.
+        return _Derived(replace(program, data=program.data.asked_by(scene)), scene)
+    try:
+        program = replace(_derive(scene, want), identity=identity)
+    except (AssemblyError, MobilityError) as error:
+        near = _nearest(scene)
+        found = None if near is None else _kept(near, want)
+        if isinstance(found, _Derived):
+            return replace(found, program=replace(found.program, identity=identity))
+        if isinstance(error, AssemblyError):
+            return AssemblyError(f"{error}{parameters_note(scene.mechanism, scene.assembly)}")
+        return MobilityError(str(error))
+    if (
+        _misses(program, scene.mechanism.values(scene.assembly), iterated=True) > _FITS
+        and (near := _nearest(scene)) is not None
+    ):
+        found = _kept(near, want)
+        if isinstance(found, _Derived):
+            return replace(found, program=replace(found.program, identity=identity))
+    if identity:
+        cache.write(f"{identity}.graph", program.dumps())
+    return _Derived(program, scene)
+
+
+def _misses(program: Program, values: Mapping[str, float], *, iterated: bool) -> float:
+    """Residual of loops with redundant equations at the start, relative to the links' length: of
+    all of them, or those ``iterated``.
+    """
+    rows = [
+        row
+        for name, row in program.checks("misfit").items()
+        if program.iterates(name) or not iterated
+    ]
+    if not rows:
+        return 0.0
+    t, p, newton = program.data.span[0], list(values.values()), program.newton
+    motion, z = program.motion(t, p), ca.DM(newton.guess if newton else [])
+    for _ in range(_STEPS):
+        correction, size = newton.step(z, t, motion[0], p) if newton else (0.0, 0.0)
+        z += correction
+        if float(size) < _FITS:
+            break
+    out = program.instant(t, *motion, z, p)
+    return max(float(out[row]) for row in rows)
+
+
+@dataclass(frozen=True, eq=False)
+class _JointForces:
+    """Forces over the inputs; ``free`` are symbols of what equilibrium leaves open in them,
+    ``frictions`` those of frictions.
+    """
+
+    columns: dict[Column, Any]
+    free: Any
+    frictions: Mapping[str, Any]
+
+    @classmethod
+    def of(cls, moving: Moving, columns: Mapping[Column, Expression]) -> _JointForces:
+        """The forces that are wanted, and those of ``columns`` that friction goes into."""
+        want = moving.want
+        links = moving.scene.mechanism.links.values()
+        coordinates = moving.body.coordinates
+        forces = internal_forces(moving.body, moving.solved, want, moving.scene)
+        friction = forces.friction
+        dependent = {
+            key: value
+            for key, value in columns.items()
+            if friction.symbols.numel() and ca.depends_on(ca.SX(value), friction.symbols)
+        }
+        placed = ca.substitute(column(dependent.values()), friction.symbols, friction.values)
+        pressed = dict(zip(dependent, ca.vertsplit(placed) if dependent else (), strict=True))
+        acting = gathered(forces.columns, forces.free, links, coordinates) | pressed
+        # Beside the start of the motion, for a drive through a gear moves little of what it drives,
+        # and holds it all the same.
+        for check in [
+            check for check in acting if isinstance(check, Check) and check.kind == "hold"
+        ]:
+            acting[check] = closure(acting[check], float(moving.begins(acting[check])))
+        return cls(acting, forces.free, friction.forces)
+
+
+def _derive(scene: Scene, asked: Wanted) -> Program:
+    mechanism = scene.mechanism
+    want = feeling(mechanism, asked) if scene.elastic and asked.forces else asked
+    moving = Moving.of(scene, want)
+    columns, loop_angles = moving.columns()
+    joint_forces = (
+        _JointForces.of(moving, columns) if want.forces else _JointForces({}, ca.SX(0, 1), {})
+    )
+    columns = {key: value for key, value in columns.items() if key not in joint_forces.columns}
+    acting = joint_forces.columns | user_outputs(
+        moving.body, moving.solved, columns | joint_forces.columns
+    )
+    least = _least_energy(scene, acting, joint_forces) if scene.elastic else None
+    forces = (
+        Forces.over(acting, joint_forces.free)
+        if least is None
+        else least.completed(acting, joint_forces.free)
+    )
+    forces = forces.with_those_of(lambda found: _strength(scene, asked, {**columns, **found}))
+    columns |= forces.columns
+    columns = (
+        columns
+        if want is asked
+        else {key: value for key, value in columns.items() if not _for_strain_alone(key, asked)}
+    )
+    instant = graph("instant", moving.inputs, out=column(columns.values()))
+    return Program(
+        data=ModelData.of(scene, moving.laws),
+        wanted=asked,
+        instant=share_reciprocals(instant, "p"),
+        newton=moving.solved.newton,
+        columns=tuple(columns),
+        loop_angles=loop_angles,
+        completion=None if least is None else Completion.of(least, forces, columns, moving.inputs),
+    )
+
+
+def _least_energy(
+    scene: Scene, acting: Mapping[Column, Expression], joint_forces: _JointForces
+) -> LeastEnergy | None:
+    """Choose by least strain energy what equilibrium leaves open; None where this is nothing.
+
+    Raises :class:`.DeclarationError` where frictions follow it: what rubs is not linear in what
+    presses on it.
+    """
+    for name, value in joint_forces.frictions.items():
+        if ca.depends_on(ca.SX(value), joint_forces.free):
+            raise DeclarationError(
+                f"elastic: cannot be combined with friction '{name}', whose reaction is statically"
+                " indeterminate; leave one of them out"
+            )
+    indeterminate = any(ca.depends_on(ca.SX(value), joint_forces.free) for value in acting.values())
+    return (
+        least_energy(scene.mechanism, scene.elastic, acting, joint_forces.free)
+        if indeterminate
+        else None
+    )
+
+
+def _check_aimed(scene: Scene, names: Sequence[str]) -> None:
+    """Raise :class:`DeclarationError` for a bar whose strength is asked for by name, and which has
+    no direction for it.
+    """
+    named = [name for name in names if name != "all"]
+    for two_force_link in find_two_force_links(scene.guided, scene.laws) if named else ():
+        asked = any(among(kind, [two_force_link.link.name], named) for kind in STRENGTH)
+        if (
+            asked
+            and not two_force_link.aimed
+            and two_force_link.link.beam is not None
+            and not two_force_link.link.beam.round
+        ):
+            raise DeclarationError(unaimed(two_force_link.link.name))
+
+
+def _strength(
+    scene: Scene, want: Wanted, columns: Mapping[Column, ca.SX]
+) -> dict[Column, Expression]:
+    """Stresses, utilisation and deflections of the links of which they are wanted."""
+    found: dict[Column, Any] = {}
+    for name in want.stressed:
+        found |= stresses(scene.mechanism, name, columns)
+    if want.used or want.bent:
+        description = describe(scene.mechanism, scene.mechanism.values(scene.assembly), scene.laws)
+        for name in want.used:
+            beam = scene.mechanism.links[name].beam
+            assert beam is not None
+            found |= utilisation(
+                scene.mechanism, name, columns, beam.columns or effective_lengths(description, name)
+            )
+        for name in want.bent:
+            found |= deflections(
+                scene.mechanism, name, columns, ends="free" not in ends_of(description, name)
+            )
+    return found
+
+
+def _for_strain_alone(key: Column, asked: Wanted) -> bool:
+    """Return whether a column is there for strain energy alone."""
+    output = key.part if isinstance(key, Check) else key
+    if not isinstance(output, Output):
+        return False
+    return (output.group == "reaction" and output.part not in asked.reactions) or (
+        output.along and output.part not in asked.sections
+    )
+
+
+def user_outputs(
+    body: Multibody, solved: Kinematics, found: Mapping[Column, ca.SX]
+) -> dict[Column, ca.SX]:
+    """The user's outputs as expressions of an instant, where ``found`` are the columns that they
+    may be made of.
+    """
+    mechanism = body.mechanism
+    asked = [
+        asked
+        for asked in mechanism.asked
+        if any(asked in mechanism.outputs[name].made_of for name in body.user_outputs)
+    ]
+    values = column(_value(mechanism.links, one, found, table_of(mechanism.space)) for one in asked)
+    symbols = column(one.symbol for one in asked)
+    placed = solved.evaluate(column(body.user_outputs.values()))
+    return {
+        Output("output", name): value
+        for name, value in zip(
+            body.user_outputs,
+            ca.vertsplit(ca.substitute(placed, symbols, values)) if body.user_outputs else (),
+            strict=True,
+        )
+    }
+
+
+def _value(
+    links: Mapping[str, Link], asked: Asked, found: Mapping[Column, ca.SX], table: Table
+) -> Expression:
+    if asked.output.group == "section":
+        link = links[asked.output.part]
+        assert isinstance(link.mass, Density)
+        section = Section(link.name, table, found, link.length, link.mass)
+        # One graph serves both precisions.
+        return section.at(asked.output.member, Place(asked.ratio), END["single"])
+    if asked.output not in found:
+        if asked.passive:
+            return ca.SX(0)
+        drives = ", ".join(
+            str(key.part) for key in found if isinstance(key, Output) and key.group == "effort"
+        )
+        raise DeclarationError(
+            f"an output is made of {asked.output}, but joint '{asked.output.part}' is not a drive;"
+            f" drives: {drives}"
+        )
+    return found[asked.output]

@@ -1,0 +1,63 @@
+"""Efforts of a scene whose frictions at rest are at their limits, with given signs."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+
+from ..base.quantities import Output
+from ..base.scalars import column, graph
+from ..base.symbolic import Graphs, symbolic
+from ..model.scene import Scene, Wanted
+from .checks import Check, Column
+from .meshes import transmissions_of
+from .mobility import internal_forces
+from .moving import Moving
+from .pressing import frictions_of
+
+
+@dataclass(frozen=True, eq=False)
+class HeldEfforts(Graphs):
+    """``instant(t, d, d_rate, d_acceleration, z, p, signs) -> out``, a row for each of ``columns``.
+
+    ``signs`` are those of ``frictions``; those ``every_way`` may hold their joint in more than one
+    direction.
+    """
+
+    instant: Any
+    columns: tuple[Column, ...]
+    frictions: tuple[str, ...]
+    every_way: tuple[str, ...]
+
+
+@symbolic
+@functools.lru_cache(maxsize=8)
+def held_efforts(scene: Scene) -> HeldEfforts:
+    """The efforts of a scene that can be assembled, with checks of its frictions, and of efforts
+    that are ``open`` besides.
+    """
+    mechanism = scene.mechanism
+    want = Wanted.of(mechanism, ["effort"])
+    moving = Moving.of(scene, want)
+    losses = (t.loss.name for t in transmissions_of(mechanism).values() if t.loss is not None)
+    signs = {name: ca.SX.sym(f"sign_{name}") for name in (*frictions_of(mechanism), *losses)}
+    forces = internal_forces(moving.body, moving.solved, want, scene, signs)
+    efforts = {key: value for key, value in forces.columns.items() if isinstance(key, Output)}
+    slopes = ca.jacobian(column(efforts.values()), forces.free)
+    found: dict[Column, Any] = dict(forces.columns)
+    found |= {
+        Check("open", key): ca.sum2(ca.fabs(slopes[k, :]))
+        for k, key in enumerate(efforts)
+        if slopes[k, :].nnz()
+    }
+    out = ca.substitute(column(found.values()), forces.free, ca.SX.zeros(forces.free.numel()))
+    instant = graph("held", moving.inputs | {"signs": column(signs.values())}, out=out)
+    every_way = (
+        name
+        for name, load in frictions_of(mechanism).items()
+        if load.every_way or load.beside is not None
+    )
+    return HeldEfforts(instant, tuple(found), tuple(signs), tuple(every_way))

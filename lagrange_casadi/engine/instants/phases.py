@@ -1,0 +1,45 @@
+"""The angles of an evaluation without their whole turns, to more digits than they are reported
+with.
+
+An angle of many turns is reported to the digits that its turns leave. What is made of it knows it
+better (:mod:`.stages`), and so must whoever checks that.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from ...base.arrays import Array
+from ...base.interpret import followable, interpret, numpy_arithmetic
+from ...base.quantities import Output
+from ..program import Program
+
+_TURN = np.longdouble("6.283185307179586476925286766559005768")
+
+
+def phases(program: Program, out: Array, t: Array, p: Array) -> dict[Output, Array]:
+    """The angles of drives from their laws of motion, and of loops from the columns ``out``
+    (columns, t).
+    """
+    laws, coordinates = program.laws, program.data.kinds.coordinates
+    rows = {angle: out[program.outputs[angle]] for angle in program.loop_angles}
+    driven = [np.longdouble(row) for row in np.atleast_2d(program.motion(t[None], p)[0].full())]
+    if followable(laws.motion):
+        known = numpy_arithmetic()
+        # A turn is meant, not the double that is nearest to it.
+        exact = replace(
+            known, constant=lambda value: _TURN if value == math.tau else known.constant(value)
+        )
+        driven = list(
+            interpret(laws.motion, [[np.longdouble(t)], [np.longdouble(x) for x in p]], exact)[0]
+        )
+    for name, angle in zip(program.driven, driven, strict=True):
+        if coordinates[name] == "angle" and Output("motion", name) in program.outputs:
+            whole = np.broadcast_to(
+                np.asarray(angle - _TURN * np.rint(angle / _TURN), float), t.shape
+            )
+            rows[Output("motion", name)] = np.asarray(whole)
+    return {angle: np.array(row, float) for angle, row in rows.items()}

@@ -1,0 +1,204 @@
+"""The table of a scene's cycle, with a given number of nodes, or with as
+many as an accuracy takes.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from numbers import Integral, Real
+
+import casadi as ca
+import numpy as np
+import numpy.typing as npt
+
+from ...base.arrays import Array
+from ...base.quantities import Output
+from ...base.tables import LARGEST as LARGEST_ALONG
+from ...errors import DeclarationError
+from ..checks import FRACTIONS, Check, column_of
+from ..program import Program
+from .cycle import Cycle, cycle_of
+from .cycle_table import LEAST, CycleTable, arranged, splines, weights
+
+FEWEST, MOST = 16, 16384
+"""Nodes: the first to try for an accuracy, and the most."""
+
+LARGEST = 256_000_000
+"""Bytes of a table."""
+
+_EPSILON = 2.0**-52
+_HALFWAY = np.array([float(weight) for weight in weights(np.array(0.5))])
+
+
+def tabulate(
+    program: Program, p: Array, table: int | float, rates: tuple[float, float]
+) -> CycleTable:
+    """Tabulate a scene's cycle, for any motion of its one drive.
+
+    Parameters
+    ----------
+    program
+        The compiled scene.
+    p
+        Parameters in the mechanism's order.
+    table
+        Number of nodes, from 8 to 16384. Or an accuracy between 0 and 1: nodes are then doubled,
+        from 16 on, until no column's largest error, halfway between nodes and beyond rounding, is
+        more than that times its peak over the cycle.
+    rates
+        The largest rate [rad/s] and acceleration [rad/s^2] of the motion, of either sign. A faster
+        motion has errors that are larger in proportion.
+
+    Returns
+    -------
+    CycleTable
+        The columns at the nodes.
+
+    Raises
+    ------
+    DeclarationError
+        For a scene whose cycle cannot be tabulated, an accuracy that is not reached, and mistakes
+        in the arguments.
+    """
+    accuracy, nodes = _asked(table)
+    for output in program.outputs:
+        if output.group in LARGEST_ALONG:
+            raise DeclarationError(
+                f"table: {output} is not a polynomial of the rate; want section:{output.part} in"
+                " place of it, and evaluate strength from the solution"
+            )
+    largest = _largest(rates)
+    cycle = cycle_of(program, p, largest)
+    values, best = cycle.values(nodes), None
+    while True:
+        between = cycle.values(nodes, halfway=True)
+        kept = (
+            np.maximum(np.abs(values).max(axis=-1), np.abs(between).max(axis=-1)) > cycle.rounding
+        )
+        if 8 * (nodes + 5) * np.count_nonzero(kept) > LARGEST:
+            if best is None:
+                raise DeclarationError(
+                    f"table: {nodes} nodes take more than {LARGEST // 10**6} MB; expected fewer, or"
+                    " fewer outputs"
+                )
+            break
+        values[~kept] = between[~kept] = 0.0
+        found = _table(cycle, values, between, kept, largest)
+        if accuracy is None or found.error <= accuracy:
+            return found
+        best = found if best is None or found.error < best.error else best
+        if 2 * nodes > MOST:
+            break
+        values = np.stack((values, between), axis=-1).reshape(*values.shape[:2], -1)
+        nodes = 2 * nodes
+    column = column_of(best.columns[int(np.argmax(best.errors))])
+    worst = f"the {column.kind} of '{column.part}'" if isinstance(column, Check) else f"'{column}'"
+    raise DeclarationError(
+        f"table: an accuracy of {accuracy:g} is not possible; the best is {best.error:.2g}, with"
+        f" {best.nodes} nodes, and {worst} is the worst there"
+    )
+
+
+@functools.lru_cache(maxsize=32)
+def still(program: Program, p: tuple[float, ...]) -> dict[Output, float]:
+    """The stations that do not move, as ratios xi/l for parameters ``p``: a spline would round them
+    to either side of a section.
+
+    And where loads along links begin and end.
+    """
+    places = {("station", "station"), ("spread", "width"), ("spread", "end")}
+    rows = {
+        output: k
+        for output, k in program.outputs.items()
+        if (output.group, output.member) in places
+    }
+    if not rows:
+        return {}
+    t, *moving, parameters = program.instant.sx_in()
+    found = program.instant(t, *moving, parameters)[list(rows.values())]
+    depends = ca.jacobian_sparsity(found, ca.vertcat(t, *moving))
+    fixed = [k for k in range(len(rows)) if k not in depends.row()]
+    places = (
+        ca.Function(
+            "still", [parameters], [ca.substitute(found[fixed], ca.vertcat(t, *moving), 0)]
+        )(list(p))
+        .full()
+        .ravel()
+    )
+    return dict(zip((list(rows)[k] for k in fixed), places.tolist(), strict=True))
+
+
+def _table(
+    cycle: Cycle,
+    values: Array,
+    between: Array,
+    kept: npt.NDArray[np.bool_],
+    rates: tuple[float, float],
+) -> CycleTable:
+    """The table through values at the nodes, and its errors by those between them, (factors,
+    columns, nodes).
+    """
+    program = cycle.drive.program
+    rate, acceleration = rates
+    places = arranged(kept).terms
+    coefficients = splines(
+        np.array([values[place] for place in places]).reshape(len(places), values.shape[-1])
+    )
+    gaps = between.copy()
+    for place, spline in zip(places, coefficients.T, strict=True):
+        gaps[place] -= np.convolve(spline, _HALFWAY, "valid")
+    peaks = np.max(
+        [_reach(part, rate, acceleration).max(axis=-1) for part in (values, between)], axis=0
+    )
+    peaks += np.abs(cycle.drift) * cycle.period
+    peaks[[k for kind in FRACTIONS for k in program.checks(kind).values()]] = 1.0
+    # The rate's square and the acceleration have one unit: where there is but one, the other still
+    # rounds.
+    turning = max(rate**2, acceleration)
+    rounding = np.array([1.0, math.sqrt(turning), turning, turning]) @ cycle.rounding
+    beyond = np.maximum(_reach(gaps, rate, acceleration).max(axis=-1) - rounding, _EPSILON * peaks)
+    errors = np.divide(beyond, peaks, out=np.zeros_like(beyond), where=peaks > 0.0)
+    return CycleTable(
+        cycle.turns, program.names, kept, coefficients, cycle.drift, rates, peaks, errors
+    )
+
+
+def _reach(terms: Array, rate: float, acceleration: float) -> Array:
+    """The largest absolute columns (columns, n), of terms (factors, columns, n), over both signs of
+    rate and acceleration.
+    """
+    constant, by_rate, by_square, by_acceleration = terms
+    found: Array = (
+        np.abs(constant + rate**2 * by_square)
+        + rate * np.abs(by_rate)
+        + acceleration * np.abs(by_acceleration)
+    )
+    return found
+
+
+def _asked(table: int | float) -> tuple[float | None, int]:
+    """The accuracy, or None, and the nodes to begin with."""
+    if isinstance(table, Integral) and not isinstance(table, bool) and LEAST <= table <= MOST:
+        return None, int(table)
+    if isinstance(table, Real) and not isinstance(table, Integral) and 0.0 < float(table) < 1.0:
+        return float(table), FEWEST
+    raise DeclarationError(
+        f"table: expected a whole number of nodes from {LEAST} to {MOST}, or an accuracy between 0"
+        f" and 1, got {table!r}"
+    )
+
+
+def _largest(rates: tuple[float, float]) -> tuple[float, float]:
+    try:
+        rate, acceleration = (float(size) for size in rates)
+    except (TypeError, ValueError):
+        rate = acceleration = math.nan
+    if not (
+        math.isfinite(rate) and math.isfinite(acceleration) and rate >= 0.0 and acceleration >= 0.0
+    ):
+        raise DeclarationError(
+            "table: expected the largest rate and acceleration, two numbers of at least 0, got"
+            f" {rates!r}"
+        )
+    return rate, acceleration

@@ -1,0 +1,157 @@
+"""Newton's method for the loops that have no closed form: what is iterated, and a step of it."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from ..base.arrays import Expression
+from ..base.scalars import column
+from .linear import LinearSystem
+from .multibody import Coordinate, Multibody
+from .spherical import SphericalCoordinates, axes_of, quaternion_of, turn
+from .substitution import Numbers
+
+LARGEST_STEP = 0.3
+"""Largest step of an angle [rad], or of a slide over the length of all links: a full step from afar
+may land on another branch.
+"""
+
+
+@dataclass(frozen=True, eq=False)
+class NewtonLoop:
+    """Iteration of a loop: ``step(z, t, d, p) -> (correction, relative size)`` and the guess for
+    the first instant.
+
+    ``names`` are those of its blocks, which are judged by a volume; ``joints`` says what closes
+    them, for messages. ``turning`` marks which unknowns are angles that matter up to whole turns
+    only.
+    """
+
+    step: Any
+    guess: tuple[float, ...]
+    turning: tuple[bool, ...]
+    names: tuple[str, ...]
+    joints: str
+
+
+@dataclass(eq=False)
+class Iterated:
+    """The unknowns, in the order in which they were added: numbers, each on a scale of its own, and
+    balls by their quaternions.
+
+    Gaps are given to it in the axes of the balls, whose slopes are shorter than those of
+    quaternions.
+    """
+
+    parts: list[Any] = field(default_factory=list)
+    scales: list[Any] = field(default_factory=list)
+    guess: list[float] = field(default_factory=list)
+    turning: list[bool] = field(default_factory=list)
+    sphericals: dict[int, SphericalCoordinates] = field(default_factory=dict)
+
+    def number(self, name: str, scale: Expression, guess: float, *, turning: bool) -> ca.SX:
+        """The symbol of a number, whose ``scale`` is what a correction is large beside."""
+        return self._add(ca.SX.sym(f"z_{name}"), [scale], [guess], turning=turning)
+
+    def spherical(self, spherical: SphericalCoordinates, guess: Sequence[float]) -> ca.SX:
+        """The axes of a ball, as they follow from its four symbols."""
+        self.sphericals[len(self.parts)] = spherical
+        return axes_of(
+            self._add(ca.SX.sym(f"z_{spherical.joint.name}", 4), [1, 1, 1], guess, turning=False)
+        )
+
+    def _add(
+        self, symbols: ca.SX, scales: Sequence[Expression], guess: Sequence[float], *, turning: bool
+    ) -> ca.SX:
+        self.parts.append(symbols)
+        self.scales += scales
+        self.guess += guess
+        self.turning += [turning] * len(guess)
+        return symbols
+
+    @property
+    def symbols(self) -> Expression:
+        """All symbols, one column."""
+        return column(self.parts)
+
+    def placed(self, expression: ca.SX) -> ca.SX:
+        """An expression in axes of balls as one in the symbols."""
+        if not self.sphericals:
+            return expression
+        axes = column(spherical.axes for spherical in self.sphericals.values())
+        return ca.substitute(
+            ca.SX(expression), axes, column(axes_of(self.parts[k]) for k in self.sphericals)
+        )
+
+    def step(self, residuals: ca.SX) -> tuple[ca.SX, ca.SX]:
+        """Newton correction of the symbols, and its size; a large one is shortened."""
+        slope = ca.jacobian(
+            residuals,
+            column(
+                self.sphericals[k].axes if k in self.sphericals else part
+                for k, part in enumerate(self.parts)
+            ),
+        )
+        if self.sphericals:
+            unit = ca.SX.eye(3)
+            turned = {
+                k: ca.horzcat(*(ca.vertcat(*b.changes(ca.vertsplit(unit[:, i]))) for i in range(3)))
+                for k, b in self.sphericals.items()
+            }
+            slope = self.placed(
+                slope @ ca.diagcat(*(turned.get(k, ca.SX(1)) for k in range(len(self.parts))))
+            )
+        correction = -LinearSystem.of(slope).solve(self.placed(residuals))
+        relative = ca.mmax(ca.fabs(correction / column(self.scales)))
+        # Not fmin(1, limit / relative): where the loops are closed, its derivative would be 0 times
+        # infinity.
+        bounded = correction * (LARGEST_STEP / ca.fmax(relative, LARGEST_STEP))
+        return self._moved(bounded) if self.sphericals else bounded, relative
+
+    def _moved(self, correction: ca.SX) -> ca.SX:
+        """Change of the symbols by a correction of numbers, and by small rotations."""
+        added, start = [], 0
+        for k, part in enumerate(self.parts):
+            size = 3 if k in self.sphericals else 1
+            block_correction = correction[start : start + size]
+            added.append(
+                turn(part, block_correction) - part if k in self.sphericals else block_correction
+            )
+            start += size
+        return column(added)
+
+
+def place_roughly(
+    multibody: Multibody,
+    posture: Mapping[Coordinate, float],
+    numbers: Numbers,
+    but: Collection[Coordinate],
+) -> dict[SphericalCoordinates, list[float]]:
+    """Put the coordinates of a ``posture``, but for some, into ``numbers``; return the quaternions
+    of spherical joints.
+    """
+    found: dict[SphericalCoordinates, list[float]] = {}
+    for coordinate in multibody.coordinates:
+        spherical = coordinate.spherical
+        if coordinate in but or spherical in found:
+            continue
+        if spherical is None:
+            numbers.note(
+                coordinate.variables,
+                numbers.of(
+                    coordinate.placed(coordinate.value, ca.SX(posture.get(coordinate, 0.0)))
+                ),
+            )
+            continue
+        angles = [posture.get(c, 0.0) for c in multibody.coordinates if c.spherical is spherical]
+        axes = np.array(
+            numbers.of(spherical.turned_by(angles, multibody.frames[spherical.near].rotation))
+        )
+        numbers.note(spherical.axes, axes.tolist())
+        found[spherical] = quaternion_of(axes.reshape(3, 3))
+    return found

@@ -1,0 +1,255 @@
+"""Data of a compiled mechanism: its tables as plain data, and its numbers as functions of the
+parameters.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import casadi as ca
+import numpy as np
+
+from ..base.arrays import Array, Expression
+from ..base.brief import Brief
+from ..base.quantities import Kinds
+from ..base.scalars import column, graph
+from ..base.symbolic import Graphs, symbolic
+from ..base.tables import table_of
+from ..base.vocabulary import PRECISIONS, Precision
+from ..errors import UnknownNameError
+from ..model.beams.beam import Beam, beam_of
+from ..model.beams.material import Material
+from ..model.corners import Corners
+from ..model.declared import Declared
+from ..model.density import Density
+from ..model.description import (
+    Description,
+    Template,
+    beams_of,
+    in_space,
+    kinds_of_described,
+    template_of,
+)
+from ..model.laws import Laws
+from ..model.mass_properties import ALL, masses_of
+from ..model.parts import LineLoad, Link, Parameter
+from ..model.scene import Scene
+from ..model.stated import Stated
+from ..model.times import Timing
+from ..model.validity import Margins
+from .checks import Column
+from .residuals import extent
+from .section_function import Section
+from .tree import span
+
+
+def materials_of(description: Description) -> dict[str, Material]:
+    """Return what links with a beam are made of."""
+    return {
+        name: Material(**description["bodies"][name]["beam"]["material"])
+        for name in beams_of(description)
+    }
+
+
+@symbolic
+def beam_at(described: Template, link: str, p: Expression) -> Beam:
+    """Return the beam of a link, its numbers as expressions of parameters ``p``, or as numbers
+    where these are numbers.
+    """
+    return beam_of(described.placed(described.content["bodies"][link]["beam"], p))
+
+
+@symbolic
+@functools.lru_cache(maxsize=32)
+def template(scene: Scene) -> Template:
+    """The description of a scene's mechanism but for its numbers.
+
+    In space it names the ``two_force_links``, links whose spin about their own axis is idle and
+    taken to be none, and the coordinates that are ``unmeasured``.
+    """
+    mechanism = scene.mechanism
+    found = template_of(
+        mechanism, tuple(scene.laws), None if scene.weights is None else tuple(scene.weights)
+    )
+    if not mechanism.space:
+        return found
+    tree = span(scene.guided, scene.laws)
+    unmeasured = [
+        name
+        for name, (joint, axis) in mechanism.coordinates.items()
+        if not tree.measures(joint, axis)
+    ]
+    return replace(
+        found,
+        content=found.content
+        | {
+            "bars": [one.link.name for one in tree.two_force_links],
+            "unmeasured": unmeasured,
+        },
+    )
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ModelData(Graphs, Brief):
+    """A mechanism and its motion as plain data, beside the functions of a :class:`.Program`.
+
+    ``laws`` are the motions of the driven coordinates. ``timing`` is how the scene's own instants
+    are asked for, and ``span`` [s] their first and last. ``rounding`` is how far axes were
+    corrected for loops to close, or zero.
+
+    ``extent(p)`` is its size [m], and ``masses(p)`` are those of its bodies, and last of all
+    together [kg]. ``margins`` are what a precision demands of the parameters; motions and
+    constraints may have kinks at ``corners``. The loads ``partial`` act along a part of their link;
+    ``jumps`` are the ratios at which the mass along a link jumps. ``stated`` are the constraints,
+    rows, motions and laws of loads as they were declared, for certificates, and ``template`` is the
+    description but for the numbers.
+    """
+
+    rounding: float
+    parameters: Mapping[str, Parameter]
+    laws: Laws
+    timing: Timing
+    span: tuple[float, float]
+    extent: ca.Function
+    margins: Mapping[Precision, Margins]
+    corners: Corners
+    masses: ca.Function
+    partial: tuple[str, ...]
+    jumps: Mapping[str, tuple[float, ...]]
+    stated: Stated
+    template: Template
+
+    @classmethod
+    def of(cls, scene: Scene, laws: Laws) -> ModelData:
+        """Return the data of a scene whose motions are ``laws``."""
+        mechanism, given = scene.mechanism, {"p": scene.mechanism.symbols}
+        return cls(
+            rounding=_rounding(scene),
+            parameters=mechanism.parameters,
+            laws=laws,
+            timing=scene.timing(),
+            span=scene.span,
+            extent=graph("extent", given, extent=extent(mechanism)),
+            margins={
+                precision: scene.parameter_constraints(precision).margins()
+                for precision in PRECISIONS
+            },
+            corners=Corners.of(scene),
+            masses=graph("masses", given, masses=masses_of(mechanism)),
+            partial=tuple(
+                name
+                for name, load in mechanism.loads.items()
+                if isinstance(load, LineLoad) and not load.whole
+            ),
+            jumps={
+                name: _jumps(link.mass)
+                for name, link in mechanism.links.items()
+                if isinstance(link.mass, Density)
+            },
+            stated=Stated.of(mechanism, scene.laws),
+            template=template(scene),
+        )
+
+    def asked_by(self, scene: Scene) -> ModelData:
+        """The same, with how a scene of the same name asks for instants
+        and lets axes be rounded.
+        """
+        return replace(self, timing=scene.timing(), rounding=_rounding(scene))
+
+    @property
+    def name(self) -> str:
+        """The mechanism's name."""
+        return str(self.template.content["name"])
+
+    @property
+    def space(self) -> bool:
+        """True if it lies in space."""
+        return in_space(self.template.content)
+
+    @cached_property
+    def kinds(self) -> Kinds:
+        """The kinds of coordinates, those of guides too, and of frictions, and the units of the
+        user's outputs.
+        """
+        return kinds_of_described(self.template.content)
+
+    @cached_property
+    def defaults(self) -> Array:
+        """The default values of all parameters."""
+        return np.array([parameter.default for parameter in self.parameters.values()])
+
+    def values(self, p: Sequence[float] | Array) -> dict[str, float]:
+        """Name the values of all parameters."""
+        return dict(zip(self.parameters, map(float, p), strict=True))
+
+    def at(self, p: Sequence[float] | Array) -> Description:
+        """Describe the mechanism in plain numbers, for parameters ``p``."""
+        return self.template.filled(self.values(p))
+
+    def declared(self, p: Sequence[float] | Array) -> Declared:
+        """Return what certificates read of the mechanism, for parameters ``p``: nothing of it is
+        derived.
+        """
+        return Declared.of(self.at(p), self.stated, p)
+
+    @property
+    @symbolic
+    def symbols(self) -> ca.SX:
+        """The parameters' symbols, in a column."""
+        return column(parameter.symbol for parameter in self.parameters.values())
+
+    @symbolic
+    def mass(self, part: str, p: ca.SX) -> ca.SX:
+        """Express the mass of a body, or of ``all`` of them [kg].
+
+        Raises :class:`.UnknownNameError` for anything else.
+        """
+        parts = [*self.template.content["bodies"], ALL]
+        if part not in parts:
+            raise UnknownNameError("part with a mass", part, parts)
+        mass: ca.SX = self.masses(p)[parts.index(part)]
+        return mass
+
+    @cached_property
+    def materials(self) -> dict[str, Material]:
+        """Materials of links with a beam."""
+        return materials_of(self.template.content)
+
+    @symbolic
+    def mass_properties(self, link: str, p: ca.SX) -> tuple[ca.SX, Density]:
+        """The length of a link [m] and its density, per unit of xi/l, as expressions of parameters
+        ``p``.
+        """
+        body = self.template.placed(self.template.content["bodies"][link], p)
+        cells = tuple(map(tuple, body["density"]["cells"]))
+        return body["length"], Density(tuple(body["density"]["breaks"]), cells, per_length=False)
+
+    @symbolic
+    def link(self, name: str, p: Expression) -> Link:
+        """A link that has sections and a beam, its numbers as expressions of parameters ``p``."""
+        return Link(name, *self.mass_properties(name, p), beam_at(self.template, name, p))
+
+    def section(self, link: str, columns: Mapping[Column, Expression], p: Expression) -> Section:
+        """The section forces of a link, of columns and parameters ``p`` that are expressions."""
+        return Section(link, table_of(self.space), columns, *self.mass_properties(link, p))
+
+    def closing(self, part: str) -> str:
+        """Describe the part that closes a loop."""
+        content = self.template.content
+        kinds = (
+            ("joint", content["joints"]),
+            ("path", content.get("paths", ())),
+            ("two-force link", content["bodies"]),
+        )
+        return f"{next((kind for kind, parts in kinds if part in parts), 'constraint')} '{part}'"
+
+
+def _rounding(scene: Scene) -> float:
+    return scene.rounding if scene.mechanism.rounded else 0.0
+
+
+def _jumps(density: Density) -> tuple[float, ...]:
+    return tuple(sorted({*density.jumps, *(density.slices.breaks[1:-1] if density.slices else ())}))

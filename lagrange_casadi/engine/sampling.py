@@ -1,0 +1,103 @@
+"""Expressions looked at at random points: an identity of smooth functions that holds at some of
+them holds at all.
+
+So a pattern is verified before a rule is applied that needs it, and what rounding leaves of a
+coefficient is distinguished from a coefficient. The points are the same in every process.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import casadi as ca
+import numpy as np
+import numpy.typing as npt
+
+from ..base.arrays import Expression
+from ..base.interpret import Arithmetic, followable, interpret, numpy_arithmetic
+from ..base.scalars import column
+from .multibody import Coordinate
+from .spherical import SphericalCoordinates, axes_of
+
+COUNT = 64
+_FEWEST = 8
+_ZERO = 1e-10
+
+Values = npt.NDArray[Any]
+"""Array of doubles, or of complex numbers."""
+
+
+def drawn(expression: ca.SX, coordinates: Iterable[Coordinate]) -> Values:
+    """An expression's entries at random values of all its symbols, (entries, :data:`COUNT`); NaN
+    where it has no value.
+
+    Cosine and sine of a coordinate are those of one angle, and axes of a body are at right angles;
+    every other symbol is a number from a half to one and a half, as lengths, masses and factors
+    are; a slide is so many of its ``size``. The root of a negative number is imaginary, so an
+    identity also holds where links do not reach.
+    """
+    symbols = ca.symvar(ca.SX(expression))
+    generator = np.random.default_rng(0)
+    values = {symbol.element_hash(): generator.uniform(0.5, 1.5, COUNT) for symbol in symbols}
+    turned: dict[SphericalCoordinates, list[Any]] = {}
+    for coordinate in coordinates:
+        if coordinate.kind == "angle" and not values.keys().isdisjoint(coordinate.keys):
+            angle = generator.uniform(-np.pi, np.pi, COUNT)
+            values |= dict(
+                zip(coordinate.keys, (np.cos(angle), np.sin(angle), angle), strict=False)
+            )
+        elif coordinate.kind == "slide" and coordinate.keys[0] in values:
+            values[coordinate.keys[0]] *= coordinate.size
+        elif coordinate.spherical is not None and not values.keys().isdisjoint(coordinate.keys):
+            if coordinate.spherical not in turned:
+                turned[coordinate.spherical] = [
+                    np.asarray(row) for row in _turned(generator.normal(size=(4, COUNT)))
+                ]
+            number = int(np.argmax(coordinate.resting))
+            values |= dict(
+                zip(
+                    coordinate.keys,
+                    turned[coordinate.spherical][3 * number : 3 * number + 3],
+                    strict=False,
+                )
+            )
+    rows = [values[symbol.element_hash()] for symbol in symbols]
+    function = ca.Function("drawn", [column(symbols)], [ca.densify(ca.vec(ca.SX(expression)))])
+    with np.errstate(all="ignore"):
+        try:
+            found = (
+                interpret(function, [rows], _ARITHMETIC)[0]
+                if followable(function)
+                else function(np.array(rows)).full()
+            )
+        except TypeError:  # no order of imaginary numbers
+            found = [np.nan] * function.numel_out(0)
+    return np.array([np.broadcast_to(row, COUNT) for row in found]).reshape(-1, COUNT)
+
+
+def _turned(quaternions: Values) -> Values:
+    """The axes that quaternions (4, n) turn to, (9, n)."""
+    symbols = ca.SX.sym("quaternion", 4)
+    return np.asarray(ca.Function("axes", [symbols], [axes_of(symbols)])(quaternions).full())
+
+
+def vanish(
+    expressions: Expression, coordinates: Iterable[Coordinate], beside: Expression = 1.0
+) -> bool:
+    """Return whether expressions are zero for all values of their symbols, within rounding relative
+    to the largest of others.
+    """
+    expressions = ca.SX(expressions)
+    if expressions.is_zero():
+        return True
+    found = drawn(ca.vertcat(ca.vec(expressions), ca.vec(ca.SX(beside))), coordinates)
+    found = np.abs(found[:, np.isfinite(found).all(axis=0)])
+    residuals, sizes = found[: expressions.numel()], found[expressions.numel() :]
+    return bool(
+        found.shape[1] >= _FEWEST and (residuals.max(axis=0) <= _ZERO * sizes.max(axis=0)).all()
+    )
+
+
+_KNOWN = numpy_arithmetic()
+_ARITHMETIC = Arithmetic(_KNOWN.constant, {**_KNOWN.operations, ca.OP_SQRT: np.emath.sqrt})

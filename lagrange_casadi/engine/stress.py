@@ -1,0 +1,235 @@
+"""Stresses in a beam's cross-sections, of its section forces: in numbers, arrays or expressions.
+
+s = N/A + a y + b z with a Iz + b Iyz = -Mz and a Iyz + b Iy = My, for any axes; shear stresses are
+those of :mod:`..beams`. In a planar mechanism bending is about z. All are linear in section forces.
+"""
+
+from __future__ import annotations
+
+import functools
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from ..base.arrays import Array, Expression, Operand
+from ..base.symbolic import Graphs, symbolic
+from ..model.beams.beam import Beam, Notch
+from ..model.beams.properties import Properties, smaller
+from ..model.beams.shape import Shape, between
+
+FORCES = {
+    False: ("axial", "shear", "bending"),
+    True: ("axial", "shear_y", "shear_z", "torsion", "bending_y", "bending_z"),
+}
+"""The section forces that stresses are linear in: in the plane, and in space."""
+
+_PLACES = {False: (0, 1, 5), True: (0, 1, 2, 3, 4, 5)}
+"""Places of the forces in :meth:`.Properties.rows`."""
+
+KINDS = {"normal": (1.0, 0.0), "shear": (0.0, 1.0), "von_mises": (1.0, 3.0), "tresca": (1.0, 4.0)}
+"""Weights of s^2 and t^2 in the square of each kind of stress."""
+
+_SAMPLED = 65
+"""Places at which the thinnest cross-section is sought where it changes."""
+
+_Row = tuple[list[Any], list[Any]]
+
+_DEEP = 4
+"""Depth to which expressions of two fibres are compared."""
+
+
+@dataclass(frozen=True, eq=False)
+class Thinnest:
+    """The least area of a beam, second moments and elastic moduli, each where it bends along y and
+    along z.
+    """
+
+    area: float
+    second: tuple[float, float]
+    modulus: tuple[float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Fibres(Graphs):
+    """The fibres of cross-sections of one kind, by their ``names``.
+
+    ``factors(dimensions) -> (3 fibres, forces)`` is a function of the dimensions alone: what normal
+    stresses, and then shear stresses along y and along z, take of section forces. ``alone`` are the
+    fibres but those that are like another one; ``needed`` those of them that have not the normal
+    stress of another one, and no shear.
+    """
+
+    names: tuple[str, ...]
+    factors: Any
+    alone: tuple[int, ...]
+    needed: tuple[int, ...]
+
+    @classmethod
+    def of(cls, shape: Shape, space: bool) -> Fibres:
+        """Make the fibres of the kind of a shape, once."""
+        return _fibres(shape.kind, tuple(shape.dimensions), space)
+
+
+@functools.cache
+@symbolic
+def _fibres(kind: str, dimensions: tuple[str, ...], space: bool) -> Fibres:
+    symbols = ca.SX.sym("dimensions", len(dimensions))
+    shape = Shape(kind, dict(zip(dimensions, ca.vertsplit(symbols), strict=True)))
+    p = shape.properties(space=space)
+    every = [p.rows(fibre) for fibre in p.fibres]
+    rows = [
+        ca.horzcat(*(ca.SX(part[place]) for place in _PLACES[space]))
+        for part in itertools.chain.from_iterable(zip(*every, strict=True))
+    ]
+    factors = ca.Function(
+        "factors", [symbols], [ca.sparsify(ca.vertcat(*rows))], ["dimensions"], ["factors"]
+    )
+    names = tuple(fibre.name for fibre in p.fibres)
+    plain = [_plain(row, space) for row in every]
+    return Fibres(names, factors, _differing(plain, lower=False), _differing(plain, lower=True))
+
+
+@dataclass(frozen=True, eq=False)
+class CrossSections:
+    """The cross-sections of a beam along a link, and the stresses at their fibres."""
+
+    beam: Beam
+    space: bool
+
+    @property
+    def forces(self) -> tuple[str, ...]:
+        """The names of the section forces that stresses are made of."""
+        return FORCES[self.space]
+
+    def shape(self, cell: int, u: Expression) -> Shape:
+        """The shape between two breaks, at ratios ``u``."""
+        course = self.beam.course
+        first, last = course.cells[cell]
+        share = (u - course.breaks[cell]) / (course.breaks[cell + 1] - course.breaks[cell])
+        return between(first, last, share)
+
+    def properties(self, cell: int, u: Expression) -> Properties:
+        """The properties between two breaks, at ratios ``u``."""
+        return self.shape(cell, u).properties(space=self.space)
+
+    def fibres(self, cell: int) -> Fibres:
+        """The fibres between two breaks."""
+        return Fibres.of(self.beam.course.cells[cell][0], self.space)
+
+    def stresses(
+        self, cell: int, u: Expression, fibres: Sequence[int], forces: Sequence[Expression]
+    ) -> tuple[Expression, Expression, Expression]:
+        """Normal stresses, and shear stresses along y and along z, at some fibres between two
+        breaks, at a ratio ``u``, of section forces: as expressions, (fibres,).
+        """
+        known = self.fibres(cell)
+        factors = known.factors(ca.vertcat(*self.shape(cell, u).dimensions.values()))
+        rows = [part * len(known.names) + k for part in range(3) for k in fibres]
+        found = ca.mtimes(ca.sparsify(factors[rows, :]), ca.vertcat(*forces))
+        normal, along_y, along_z = ca.vertsplit(found, len(fibres))
+        return normal, along_y, along_z
+
+    def factors(self, cell: int, u: Array) -> Array:
+        """Factors of stresses by section forces between two breaks, at ratios ``u``: (3, fibres,
+        forces, u...).
+        """
+        known, many = self.fibres(cell), len(self.forces)
+        dimensions = [
+            np.broadcast_to(x, np.shape(u)).ravel() for x in self.shape(cell, u).dimensions.values()
+        ]
+        found = known.factors(np.array(dimensions)).full()
+        found = found.reshape(3, len(known.names), np.size(u), many)
+        found = np.ascontiguousarray(np.moveaxis(found, 2, 3))
+        return found.reshape(3, len(known.names), many, *np.shape(u))
+
+    @cached_property
+    def thinnest(self) -> Thinnest:
+        """The thinnest that the beam is; second moments are principal ones where y and z are no
+        principal axes.
+        """
+        every = []
+        for cell, ((first, last), (low, high)) in enumerate(
+            zip(self.beam.course.cells, itertools.pairwise(self.beam.course.breaks), strict=True)
+        ):
+            for u in [low] if first is last else np.linspace(low, high, _SAMPLED).tolist():
+                p = self.properties(cell, u)
+                straight = p.iyz.is_zero() if isinstance(p.iyz, ca.SX) else not p.iyz
+                half = (p.iz + p.iy) / 2
+                least = half - (((p.iz - p.iy) / 2) ** 2 + p.iyz**2) ** 0.5
+                every.append((p.area, *((p.iz, p.iy) if straight else (least, least)), p.wz, p.wy))
+        area, *others = (_least(values) for values in zip(*every, strict=True))
+        return Thinnest(area, (others[0], others[1]), (others[2], others[3]))
+
+
+def _differing(rows: Sequence[_Row], *, lower: bool) -> tuple[int, ...]:
+    """Return the numbers of the rows of fibres that equal none before; with ``lower`` also without
+    those below another one.
+    """
+    kept = list[int]()
+    for k, row in enumerate(rows):
+        below = lower and any(_below(row, other) for other in rows if other is not row)
+        if not below and not any(_same(row, rows[other]) for other in kept):
+            kept.append(k)
+    return tuple(kept)
+
+
+def _plain(row: tuple[tuple[Expression, ...], ...], space: bool) -> _Row:
+    """Return factors of a fibre's normal stress and shear stress: in the plane only the square of
+    the latter matters.
+    """
+    if space:
+        return [ca.SX(x) for x in row[0]], [ca.SX(x) for each in row[1:] for x in each]
+    return [ca.SX(row[0][k]) for k in (0, 5)], [ca.SX(row[1][1] ** 2 + row[2][1] ** 2)]
+
+
+def squared(stresses: Operand, weights: tuple[float, float]) -> Operand:
+    """The square of a kind of stress by its ``weights``, of normal stress and shear stresses along
+    y and along z.
+    """
+    (normal, *shears), (of_normal, of_shear) = stresses, weights
+    return of_normal * normal**2 + of_shear * sum(shear**2 for shear in shears)
+
+
+def concentration(notch: Notch | None, force: str) -> float:
+    """The factor of a notch on the nominal stress of a section force; 1 where there is none."""
+    if notch is None:
+        return 1.0
+    return (
+        notch.axial
+        if force == "axial"
+        else notch.bending
+        if force.startswith("bending")
+        else notch.shear
+    )
+
+
+def notch_factor(notch: Notch) -> Notch:
+    """Fatigue stress concentration factor of a notch: K_f = 1 + q (K_t - 1) (Shigley, eq. 6-32)."""
+    q = notch.sensitivity
+    return Notch(
+        notch.at, *(1.0 + q * (k - 1.0) for k in (notch.axial, notch.bending, notch.shear))
+    )
+
+
+def _least(values: Sequence[float]) -> float:
+    found = values[0]
+    for value in values[1:]:
+        found = smaller(found, value)
+    return found
+
+
+def _same(a: _Row, b: _Row) -> bool:
+    return all(
+        ca.is_equal(x, y, _DEEP) for x, y in zip([*a[0], *a[1]], [*b[0], *b[1]], strict=True)
+    )
+
+
+def _below(a: _Row, b: _Row) -> bool:
+    """Compare two fibres: the first has the normal stress of the second, which alone has shear."""
+    same = all(ca.is_equal(x, y, _DEEP) for x, y in zip(a[0], b[0], strict=True))
+    return same and all(x.is_zero() for x in a[1]) and not all(x.is_zero() for x in b[1])

@@ -1,0 +1,82 @@
+"""Substitution of symbols: by expressions or numbers.
+
+Only what an expression holds is looked at.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import casadi as ca
+
+from ..base.arrays import Expression
+from ..base.scalars import as_expression, column, entries
+
+
+class Expressions:
+    """Expressions by the symbols that they stand for."""
+
+    def __init__(self) -> None:
+        self._known: dict[int, tuple[Any, Any]] = {}
+
+    def note(self, symbols: Expression, values: Expression) -> None:
+        """Let expressions stand for symbols, entry by entry."""
+        for symbol, value in zip(entries(symbols), entries(values), strict=True):
+            self._known[symbol.element_hash()] = symbol, value
+
+    def and_of(self, symbols: ca.SX, values: ca.SX) -> Expressions:
+        """Substitution with more symbols."""
+        more = Expressions()
+        more._known = dict(self._known)
+        more.note(symbols, values)
+        return more
+
+    def with_values(self, of: Callable[[ca.SX], ca.SX]) -> Expressions:
+        """Substitution with another expression made of each."""
+        more = Expressions()
+        if self._known:
+            symbols, values = (
+                ca.vertcat(*parts) for parts in zip(*self._known.values(), strict=True)
+            )
+            more.note(symbols, of(values))
+        return more
+
+    def put_into(self, expression: ca.SX) -> ca.SX:
+        """An expression with what is known in the place of its symbols."""
+        expression = as_expression(expression)
+        there = [
+            self._known[key]
+            for symbol in ca.symvar(expression)
+            if (key := symbol.element_hash()) in self._known
+        ]
+        if not there:
+            return expression
+        symbols, values = zip(*there, strict=True)
+        return ca.substitute(expression, ca.vertcat(*symbols), ca.vertcat(*values))
+
+
+class Numbers:
+    """Numbers by the symbols that they stand for."""
+
+    def __init__(self) -> None:
+        self._known: dict[int, float] = {}
+
+    def note(self, symbols: Expression, values: Sequence[float]) -> None:
+        """Let numbers stand for symbols, entry by entry."""
+        self._known |= {
+            symbol.element_hash(): value
+            for symbol, value in zip(entries(symbols), values, strict=True)
+        }
+
+    def of(self, expression: Expression) -> list[float]:
+        """The entries of an expression all of whose symbols are known."""
+        expression = as_expression(expression)
+        symbols = ca.symvar(expression)
+        function = ca.Function("number", [column(symbols)], [ca.densify(ca.vec(expression))])
+        return [
+            float(x)
+            for x in function([self._known[symbol.element_hash()] for symbol in symbols])
+            .full()
+            .ravel()
+        ]

@@ -1,1 +1,0 @@
-"""Frames, rotations, and what joints look like in them."""

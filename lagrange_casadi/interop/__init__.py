@@ -1,0 +1,1 @@
+"""Models of other programs in; C, units of simulation and controllers out."""

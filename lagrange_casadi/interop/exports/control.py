@@ -1,0 +1,126 @@
+"""A header of C++ for controllers, as those of ros2_control: efforts and reflected inertia of a
+scene's drives, with a self-test.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from ...errors import DeclarationError
+from ...model.description import Description
+from ..portable.contract import Contract
+from ..portable.source import Source
+from ..portable.text import number_rows, numbers, quoted, template
+
+
+def control(source: Source) -> dict[str, str]:
+    """Return the files ``<prefix>_control.hpp`` and ``<prefix>_control_test.cpp``.
+
+    Raises :class:`.DeclarationError` for a program without efforts.
+    """
+    c, golden = source.contract, source.golden
+    efforts = [(k, m) for k, m in enumerate(c.outputs) if m.source.startswith("effort:")]
+    if not efforts:
+        raise DeclarationError(f"a header for controllers needs efforts; '{c.name}' exports none")
+    settings = bool(c.settings)
+    content: Description = source.exported.program.data.template.content
+    friction = any("friction" in load for load in content["loads"].values())
+    columns = [k for k, _ in efforts]
+    words = source.words | {
+        "n_coordinates": len(c.drives),
+        "n_drives": len(efforts),
+        "coordinates": _strings(c.drives),
+        "drives": _strings([m.source.partition(":")[2] for _, m in efforts]),
+        "time": ", double time" if c.timed else "",
+        "time_given": ", time" if c.timed else "",
+        "time_pair": ", ".join(_parts(source, "time")),
+        "parameters": f"const {c.prefix}_parameters* parameters = nullptr" if settings else "",
+        "prepare": "&model_, parameters" if settings else "&model_",
+        **_between(source),
+        "from_inputs": "\n".join(_from_inputs(source)),
+        "to_inputs": "\n".join(_to_inputs(source)),
+        "to_efforts": "\n".join(
+            f"    tau[{k}] = static_cast<double>(outputs.{m.name});"
+            for k, (_, m) in enumerate(efforts)
+        ),
+        "times": numbers(golden.times),
+        "efforts": number_rows(golden.outputs[:, columns]),
+        "off": numbers(golden.outputs_off[columns]),
+        "steps": golden.steps,
+        "t": ", t" if c.timed else "",
+        "t_before": ", before" if c.timed else "",
+        "linear": "false" if friction else "true",
+        "rounding": "1e-4" if c.rests else "1e-12",
+    }
+    return {
+        f"{c.prefix}_control.hpp": template("control.hpp", **words),
+        f"{c.prefix}_control_test.cpp": template("control_test.cpp", **words),
+    }
+
+
+def _between(source: Source) -> dict[str, str]:
+    """Members and statements that look for a dead centre between two calls."""
+    p, P = source.contract.prefix, source.contract.words["P"]
+    time = ", time" if source.contract.timed else ""
+    if not source.closing:
+        names = ("or_between", "anew", "from_before", "members")
+        call = f"    return at(model_, given(q, dq, ddq{time}), tau);"
+        return {**dict.fromkeys(names, ""), "call": call}
+    call = f"""\
+    const {p}_inputs inputs = given(q, dq, ddq{time});
+    const {p}_model before = model_;
+    Efforts found;
+    {p}_status status = at(model_, inputs, found);
+    if (status == {P}_OK && begun_) status = {p}_between(&model_, &last_, &inputs, 0);
+    if (status != {P}_OK) {{
+      model_ = before;
+      return status;
+    }}
+    last_ = inputs;
+    begun_ = true;
+    tau = found;
+    return status;"""
+    return {
+        "or_between": ", or at a dead centre",
+        "anew": "\n    begun_ = false;",
+        "from_before": " A dead centre on the straight way from the last call fails too.",
+        "members": f"  {p}_inputs last_ = {{}};\n  bool begun_ = false;\n",
+        "call": call,
+    }
+
+
+def _strings(names: Sequence[str]) -> str:
+    return ", ".join(f'"{quoted(name)}"' for name in names)
+
+
+def _parts(source: Source, value: str) -> list[str]:
+    """Return a double as numbers of the precision: one, or in single precision two that add up to
+    it.
+    """
+    real = f"{source.contract.prefix}_real"
+    first = f"static_cast<{real}>({value})"
+    rest = f"static_cast<{real}>({value} - static_cast<double>({first}))"
+    return [first, rest] if source.contract.rests else [first]
+
+
+def _moved(c: Contract) -> Iterator[tuple[str, str]]:
+    """Yield positions, rates and accelerations in C++, each with the full name of its input."""
+    for values, names in zip(("q", "dq", "ddq"), c.moved, strict=True):
+        yield from ((f"{values}[{k}]", name) for k, name in enumerate(names))
+
+
+def _to_inputs(source: Source) -> Iterator[str]:
+    """Yield statements that give the inputs of an instant."""
+    c = source.contract
+    for value, name in (*([("time", "time")] if c.timed else []), *_moved(c)):
+        # Rates and accelerations have no rest.
+        for member, part in zip(c.parts_of(name), _parts(source, value), strict=False):
+            yield f"    inputs.{member} = {part};"
+
+
+def _from_inputs(source: Source) -> Iterator[str]:
+    """Yield statements that read the motion of an instant."""
+    c = source.contract
+    for value, name in _moved(c):
+        parts = (f"static_cast<double>(inputs.{member})" for member in c.parts_of(name))
+        yield f"    {value} = {' + '.join(parts)};"

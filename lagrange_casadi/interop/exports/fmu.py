@@ -1,0 +1,140 @@
+"""A unit of FMI 2.0, for simulation tools: an archive with the description, a library, the sources,
+golden vectors and a page to read.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import io
+import zipfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...base.cache import working_folder
+from ...base.packages import check_installed
+from ...base.quantities import motion_names
+from ...engine.codegen import find_compiler
+from ...engine.codegen.compiler import Compiler, broken, built
+from ...errors import CompilerError, DeclarationError, StoreError, UnknownNameError
+from ..portable.golden import motions_at
+from ..portable.header import header
+from ..portable.source import Source
+from .fmu_description import Description, page
+from .fmu_golden import FILE, golden_script, golden_vectors
+from .fmu_wrapper import wrapper
+
+_HEADERS = ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h")
+_EPOCH = (1980, 1, 1, 0, 0, 0)
+
+
+def check_tools() -> None:
+    """Raise :class:`LagrangeCasadiError` where FMPy is missing, :class:`CompilerError` where a C
+    compiler is.
+    """
+    _fmpy()
+    _compiler()
+
+
+def fmu(source: Source, by: str = "") -> dict[str, bytes]:
+    """Return the archive ``<prefix>.fmu`` of a program, and the script that tests it; ``by`` says
+    what moves it, see :class:`.Description`.
+
+    The same program gives the same bytes, as far as the compiler does. Raises
+    :class:`CompilerError` for what it refuses, :class:`StoreError` for what FMPy finds wrong, and
+    :class:`.DeclarationError` for a coordinate that goes back and forth.
+    """
+    fmpy, prefix = _fmpy(), source.contract.prefix
+    if by not in ("", "time"):
+        _check_way(source, by)
+    description = Description(source, (f"{prefix}.c", f"{prefix}_fmi2.c"), by)
+    headers = Path(fmpy.__file__).parent / "c-code"
+    sources = {file: (headers / file).read_text() for file in _HEADERS}
+    sources |= {
+        f"{prefix}.h": header(source),
+        f"{prefix}.c": source.code,
+        f"{prefix}_fmi2.c": wrapper(description),
+    }
+    library, compiler = f"{prefix}{fmpy.sharedLibraryExtension}", _compiler()
+    flags = compiler.flags("".join(sources.values()))
+    command = [*compiler.command, *flags, *description.sources, "-o", library, "-lm"]
+    files = {f"sources/{file}": text.encode() for file, text in sources.items()}
+    files["modelDescription.xml"] = description.xml.encode()
+    files["documentation/index.html"] = page(description).encode()
+    files[FILE] = golden_vectors(description).encode()
+    files[f"binaries/{fmpy.platform}/{library}"] = built(
+        compiler, command, sources, library, lambda path: _check_loads(path, compiler)
+    )
+    archive = _archive(files)
+    with working_folder() as work:
+        path = work / "unit.fmu"
+        path.write_bytes(archive)
+        findings = list(fmpy.validation.validate_fmu(str(path)))
+    if findings:
+        raise StoreError(f"FMPy reports an error in {prefix}.fmu: {' '.join(findings[0].split())}")
+    return {
+        f"{prefix}.fmu": archive,
+        f"{prefix}_fmu_test.py": golden_script(description).encode(),
+    }
+
+
+def _check_way(source: Source, by: str) -> None:
+    """Raise :class:`UnknownNameError` for a coordinate whose motion is not given, and
+    :class:`DeclarationError` for one that does not rise or fall at all instants.
+    """
+    program = source.exported.program
+    if by not in program.driven:
+        raise UnknownNameError("coordinate", by, ["time", *program.driven])
+    times = np.linspace(*program.data.span, max(2, 4 * program.data.timing.count))
+    _, (name,), _ = motion_names([by])
+    rates = motions_at(program, times, source.p)[name]
+    if not (np.all(rates > 0.0) or np.all(rates < 0.0)):
+        raise DeclarationError(
+            f"an FMU by '{by}': this coordinate stops or reverses, so it does not determine the"
+            " time; use 'time'"
+        )
+
+
+def _fmpy() -> Any:
+    check_installed("FMPy", "an FMU", "fmu")
+    import fmpy
+    import fmpy.validation
+
+    return fmpy
+
+
+def _compiler() -> Compiler:
+    found = find_compiler()
+    if found is None:
+        raise CompilerError(
+            "an FMU needs a C compiler: install gcc, clang or the wheel ziglang, or set $CC"
+        )
+    return found
+
+
+def _check_loads(library: Path, compiler: Compiler) -> None:
+    """Raise :class:`CompilerError` unless the library loads here and says that it is a unit of FMI
+    2.0.
+    """
+    try:
+        version = ctypes.CDLL(str(library)).fmi2GetVersion
+        version.restype = ctypes.c_char_p
+        found = version()
+    except (OSError, AttributeError) as error:
+        raise broken(compiler, error) from None
+    if found != b"2.0":
+        raise broken(compiler, ValueError(f"fmi2GetVersion says {found!r}"))
+
+
+def _archive(files: Mapping[str, bytes]) -> bytes:
+    """A zip without a clock, in order."""
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w") as archive:
+        for name in sorted(files):
+            entry = zipfile.ZipInfo(name, _EPOCH)
+            entry.compress_type, entry.create_system = zipfile.ZIP_DEFLATED, 3
+            entry.external_attr = (0o755 if name.startswith("binaries/") else 0o644) << 16
+            archive.writestr(entry, files[name])
+    return out.getvalue()

@@ -1,0 +1,358 @@
+"""A record as the text of a case: what a person would have written, with the public API alone.
+
+All lies in the reference posture: links between two places, joints at a place. A joint whose frames
+are apart there, of a loop that closes elsewhere, is between points of its bodies.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from ...base.arrays import Array
+from .frames import Frame
+from .laws import Motions
+from .places import Places
+from .posture import about_z, opened
+from .python_text import Call, comment, of_pi, safe, signed, text_of, vector
+from .record import GROUND, MOVES, Body, Coupling, Joint, Model, Spring, Tie
+
+_FRAME = '''
+
+def frame(m, body, at, x, y):
+    """Return the place of a frame that a body carries, and its three axes."""
+    ends = ([a + b for a, b in zip(at, along)] for along in ((0.0, 0.0, 0.0), x, y))
+    place, first, second = (ca.vertcat(*m.place(m.at(body, *end))) for end in ends)
+    return place, first - place, second - place, ca.cross(first - place, second - place)
+'''
+_TURNED = '''
+
+def turned(angle, cosine, sine):
+    """Return an angle that joints count, with the forces of what turns against what."""
+    return angle + sine * ca.cos(angle) - cosine * ca.sin(angle)
+'''
+
+_OWN = f"""
+from math import pi
+
+import casadi as ca
+
+from lagrange_casadi import Scene, SpatialMechanism
+from lagrange_casadi.motion import expression, polynomial, samples
+{_FRAME}{_TURNED}
+m, laws, scene, t = None, None, None, None
+p, x, y, z = q, u, v, w = frame()
+turn, first, second = None, None, None
+"""
+NAMES = frozenset(compile(_OWN, "names", "exec").co_names)
+"""The names that a case with all features uses by itself, which no variable of a part may have."""
+
+
+def case_text(model: Model) -> str:
+    """Return the text of a case file for a checked model."""
+    return _Case(model).text()
+
+
+class _Case:
+    """The lines of a case under way."""
+
+    def __init__(self, model: Model) -> None:
+        gaps = opened(model)
+        counted = Motions(model, gaps).counted
+        self.counted = [name for name in model.joints if counted(name)]
+        self.open = dict.fromkeys(self.counted, (0.0, 0.0)) | gaps
+        self.model, self.motions = model, Motions(model, self.open)
+        self.places = Places(model, self.open, NAMES)
+        self.short, self.variables = self.places.short, self.places.variables
+        self.lines: list[str] = []
+        self.loaded: set[str] = set()
+        turned = [*self.open, *(one.joint for one in model.springs if one.stiffness)]
+        ends = (model.joints.get(name) or model.ties[name] for name in turned)
+        self.turned = {name for one in ends for name in (one.parent, one.child)}
+        self.used = {end for one in model.couplings.values() for end in (one.first, one.second)}
+        self.used |= {one.joint for one in model.springs}
+        self.stated = {
+            here: stated
+            for (kind, stated), here in model.named.items()
+            if kind != "mechanism" and stated != here
+        }
+
+    def text(self) -> str:
+        """Return the whole."""
+        model = self.model
+        self.lines += self.places.parameters()
+        if (gravity := model.gravity.tolist()) != [0.0, 0.0, -9.81]:
+            self.call("m.set_gravity", *vector(gravity).arguments)
+        self.lines += self.places.named()
+        for body in model.bodies.values():
+            self.body(body)
+        for joint in model.joints.values():
+            self.joint(joint)
+        for coupling in model.couplings.values():
+            self.coupling(coupling)
+        self.loads()
+        for tie in model.ties.values():
+            self.called(tie.name)
+            self.lines += _tie_lines(self.places, tie)
+        for body in model.bodies.values():
+            for name, place in body.places.items():
+                point = self.places.point(body.name, body.frame.at(place))
+                self.call("m.path", json.dumps(name), point)
+        self.end()
+        return self.imports() + "".join(f"    {line}\n" for line in self.lines)
+
+    def call(self, function: str, *arguments: object) -> None:
+        """Write a call."""
+        self.lines += Call(function, arguments).lines()
+
+    def called(self, name: str) -> None:
+        """Write what a part is called in the file, where that is no name here."""
+        if name in self.stated:
+            self.lines.append(f"# {safe(self.stated[name])} in the file")
+
+    def imports(self) -> str:
+        """Return what stands before the declaration."""
+        body, model = "\n".join(self.lines), self.model
+        parts = [f'"""{safe(f"{model.name}, as {model.file.name} describes it.")}"""\n\n']
+        parts += [f"{line}\n" for note in model.notes for line in comment(note)]
+        parts += ["\n"] if model.notes else []
+        parts += ["from math import pi\n\n"] if re.search(r"\bpi\b", body) else []
+        parts += ["import casadi as ca\n\n"] if "ca." in body else []
+        parts.append("from lagrange_casadi import Scene, SpatialMechanism\n")
+        laws = [name for name in ("expression", "polynomial", "samples") if f"{name}(" in body]
+        parts += [f"from lagrange_casadi.motion import {', '.join(laws)}\n"] if laws else []
+        parts += [_FRAME] if model.ties else []
+        parts += [_TURNED] if " = turned(" in body else []
+        start = f"\n\ndef scene() -> Scene:\n    m = SpatialMechanism({json.dumps(model.name)})\n"
+        return "".join(parts) + start
+
+    def body(self, body: Body) -> None:
+        """Declare a body as a link between two places, all in ground axes."""
+        name = self.variables[body.name] = self.places.variable(body.name)
+        self.called(body.name)
+        mass = self.places.masses.get(body.mass) or text_of(body.mass)
+        if body.point:
+            self.lines.append(f"{name} = m.point_mass({json.dumps(body.name)}, {mass})")
+            return
+        base, tip = self.places.between[body.name]
+        assert body.inertia is not None
+        axes, centre = body.frame.axes, self.short.place(body.frame.at(body.centre))
+        own = Frame(np.array(base), self.places.link_axes(body.name))
+        arguments: list[object] = [json.dumps(body.name)]
+        if body.name in self.places.held:
+            ends = [self.places.written(base), self.places.written(tip)]
+            arguments.append(Call("between=", ends))
+            if body.name in self.turned:
+                arguments.append(self.short.direction(own.axes[:, 1], "beside"))
+        else:  # no joint gives its posture: it is on its own axes
+            axes = own.axes.T @ axes
+            centre = self.short.place(own.relative(Frame(np.array(centre))).place)
+            arguments.append(f"length={text_of(math.dist(base, tip))}")
+        arguments.append(f"mass={mass}")
+        if body.rod is None:
+            arguments.append(vector(centre, "centre"))
+            inertia = self.short.values(axes @ body.inertia @ axes.T)
+            if np.array_equal(inertia, diagonal := np.diag(np.diag(inertia))):
+                arguments.append(vector(np.diag(diagonal).tolist(), "inertia"))
+            else:
+                arguments.append(Call("inertia=", [vector(row) for row in inertia.tolist()]))
+            arguments += ["accept_inertia=True"] if body.strange else []
+        self.call(f"{name} = m.link", *arguments)
+
+    def joint(self, joint: Joint) -> None:
+        """Declare a joint at its place, or between two points where these are apart."""
+        name = self.variables[f"joint {joint.name}"] = self.places.variable(joint.name)
+        near, far = self.model.frames(joint)
+        arguments: list[object] = [json.dumps(joint.name)]
+        if joint.name in self.open:
+            gap, angle = self.open[joint.name]
+            if gap or angle:
+                self.lines.append(
+                    f"# Closes a loop elsewhere: here it is {gap:.3g} m, {angle:.3g} rad open."
+                )
+            parent, child = (self.places.link_axes(one) for one in (joint.parent, joint.child))
+            arguments.append(self.places.point(joint.parent, near.place))
+            arguments.append(self.places.point(joint.child, far.place))
+            arguments += self.axes(joint, parent.T @ near.axes, far)
+            if joint.kind not in ("spherical", "free", "slot") or joint.name in self.counted:
+                turned = self.short.values(parent.T @ near.axes @ far.axes.T @ child, 1.0)
+                columns = [vector(column) for column in turned[:, :2].T.tolist()]
+                arguments.append(Call("turned=", columns))
+        else:
+            arguments += [self.variables[joint.parent], self.variables[joint.child]]
+            arguments += self.axes(joint, near.axes, far)
+            arguments.append(f"at={self.places.written(self.places.at[joint.name])}")
+        self.called(joint.name)
+        used = self.model.ties or joint.name in self.used
+        self.call(f"{name} = m.{joint.kind}" if used else f"m.{joint.kind}", *arguments)
+
+    def axes(self, joint: Joint, axes: Array, far: Frame) -> list[object]:
+        """Return the arguments that say along and about what a joint moves."""
+        x, y, z = axes.T
+        match joint.kind:
+            case "weld":
+                return []
+            case "spherical" | "free":
+                given = {*self.model.motions, *self.model.posture} & {*joint.coordinates}
+                usual = not given or np.array_equal(self.short.values(axes, 1.0), np.eye(3))
+                return [] if usual else self.directions(x, y)
+            case "universal":
+                return self.directions(z, far.axes[:, 2])
+            case "planar":
+                return self.directions(z, x)
+            case "screw":
+                return [*self.directions(z), f"lead={text_of(joint.lead)}"]
+        return self.directions(z)
+
+    def directions(self, *axes: Array) -> list[object]:
+        """Return the arguments for one direction or two."""
+        names = ("axis", "second")[: len(axes)]
+        return [self.short.direction(*one) for one in zip(axes, names, strict=True)]
+
+    def coupling(self, one: Coupling) -> None:
+        """Declare a coupling as a pair of gears."""
+        joints = [self.variables[f"joint {name}"] for name in (one.first, one.second)]
+        arguments = [json.dumps(one.name), *joints, f"ratio={of_pi(one.ratio)}"]
+        first, second = (self.motions.offset(name) for name in (one.first, one.second))
+        offset = one.offset - (second - one.ratio * first)
+        arguments += [f"offset={of_pi(offset)}"] if offset else []
+        self.call("m.gear", *arguments)
+
+    def loads(self) -> None:
+        """Declare springs and dampers of joints, and what bears bodies on which not all of gravity
+        acts.
+        """
+        for one in self.model.springs:
+            joint, rest = self.variables[f"joint {one.joint}"], self.motions.offset(one.joint)
+            if one.damping:
+                name = json.dumps(self.load(f"{one.joint}_damping"))
+                self.call("m.friction", name, joint, f"viscous={text_of(one.damping)}")
+            if one.stiffness and self.model.joints[one.joint].kind == "prismatic":
+                self.pull(one, f"m.coordinate({joint}){signed(rest - one.rest)}")
+            elif one.stiffness:
+                law = f"stiffness={text_of(one.stiffness)}", f"angle={of_pi(one.rest - rest)}"
+                name = json.dumps(self.load(f"{one.joint}_spring"))
+                self.call("m.torsion_spring", name, joint, *law)
+        for body in self.model.bodies.values():
+            lift = (body.weight - 1.0) * self.model.gravity
+            if body.mass and np.any(lift):
+                point = self.places.point(body.name, body.frame.at(body.centre))
+                mass = self.places.masses.get(body.mass) or text_of(body.mass)
+                force = [
+                    f"{key}={text_of(one)} * {mass}"
+                    for key, one in zip("xyz", lift.tolist(), strict=True)
+                    if one
+                ]
+                self.call("m.force", json.dumps(self.load(f"{body.name}_lift")), point, *force)
+
+    def pull(self, one: Spring, stretched: str) -> None:
+        """Declare the spring of a joint that slides, as a force on its child along the axis, and
+        the opposite one on its parent.
+        """
+        joint, pull = self.model.joints[one.joint], self.places.variable(f"{one.joint}_spring")
+        self.lines.append(f"{pull} = {text_of(-one.stiffness)} * ({stretched})")
+        near = self.model.frames(joint)[0]
+        for body, sign in ((joint.child, ""), (joint.parent, "-")):
+            if body != GROUND:
+                along = self.short.values(self.places.link_axes(body).T @ near.axes[:, 2], 1.0)
+                parts = zip("xyz", along.tolist(), strict=True)
+                force = [f"{axis}={text_of(part)} * {sign}{pull}" for axis, part in parts if part]
+                name = json.dumps(self.load(f"{one.joint}_spring_{body}"))
+                point = self.places.point(body, near.place)
+                self.call("m.force", name, point, *force, "turning=True")
+
+    def load(self, wanted: str) -> str:
+        """Return a name for a load, which no part and no other load has."""
+        while wanted in self.loaded or self.model.taken(wanted):
+            wanted = f"{wanted}_"
+        self.loaded.add(wanted)
+        return wanted
+
+    def end(self) -> None:
+        """End with the motion of each drive."""
+        model, order = self.model, [joint.coordinates for joint in self.model.joints.values()]
+        self.lines.append("laws = {")
+        for name in (name for names in order for name in names if name in model.motions):
+            law = self.motions.law(name, model.motions[name])
+            entry = replace(law, function=f"{json.dumps(name)}: {law.function}")
+            self.lines += [f"    {line}" for line in entry.lines(",")]
+        self.lines.append("}")
+        start, stop, count = model.span
+        end = [f"t=({text_of(start)}, {text_of(stop)}, {count})"]
+        if model.posture:
+            shifted = [(name, x - self.motions.offset(name)) for name, x in model.posture.items()]
+            rough = ", ".join(f'"{name}": {text_of(round(x, 6))}' for name, x in shifted)
+            end.append(f"posture={{{rough}}}")
+        if model.drives is not None:
+            end.append(f"drives={json.dumps(model.drives)}")
+        self.call("return Scene", "m", "laws", *end)
+
+
+def _tie_lines(places: Places, tie: Tie) -> Iterator[str]:
+    """Yield the lines that declare a tie."""
+    near, far = places.model.frames(tie)
+    for names, body, frame in (("p, x, y, z", tie.parent, near), ("q, u, v, w", tie.child, far)):
+        x, y, _ = (places.short.direction(axis) for axis in frame.axes.T)
+        at = places.written(places.short.place(frame.place))
+        yield from Call(f"{names} = frame", [f"m, {places.variables[body]}", at, x, y]).lines()
+    counts = any(row.kind in ("slide and turn", "wheels") for row in tie.rows)
+    ends = (tie.parent, tie.child)
+    parent, child = (_turns_about(places, tie, body) if counts else "" for body in ends)
+    for k, row in enumerate(tie.rows, 1):
+        name, value = tie.name if len(tie.rows) == 1 else f"{tie.name}_{k}", row.value
+        if row.kind == "slide and turn":
+            known = near.relative(far)
+            angle = about_z(known)
+            value = _clean(float(known.place[row.i]) + row.factor * angle)
+            yield from _turn("turn", f"{child}{_minus(parent)}", _clean(angle), "x", "y", "u")
+        elif row.kind == "wheels":
+            away = f"(q - p) / {text_of(math.dist(near.place, far.place))}"
+            first, second = (
+                _clean(math.atan2(at[1], at[0]))
+                for at in (near.relative(far).place, far.relative(near).place)
+            )
+            value = second + row.factor * first
+            yield from _turn("first", _minus(parent), first, "x", "y", away)
+            back = away.replace("q - p", "p - q")
+            yield from _turn("second", _minus(child), second, "u", "v", back)
+        yield from Call("m.constraint", [json.dumps(name), row.text + signed(-value)]).lines()
+
+
+def _turn(name: str, counted: str, start: float, x: str, y: str, along: str) -> list[str]:
+    """Return an angle that coordinates of joints count, from what it is at the start."""
+    guess = f"{counted.removeprefix(' + ').replace(' - ', '-', 1)}{signed(start)}"
+    arguments = [guess.removeprefix(" + ") or "0", f"ca.dot({x}, {along})", f"ca.dot({y}, {along})"]
+    return Call(f"{name} = turned", arguments).lines()
+
+
+def _turns_about(places: Places, tie: Tie, body: str) -> str:
+    """Return by how much a body of a tie has turned about z of its first frame, as the coordinate
+    of the joint on which it turns: of both on the same body.
+    """
+    model, ends = places.model, {tie.parent, tie.child}
+    along = model.frames(tie)[0].axes[:, 2]
+    for joint in (model.joints[name] for name in places.on[body]):
+        names = [one for one, _, _ in MOVES[joint.kind] if one in ("", "turn")]
+        mine = not ends <= {joint.parent, joint.child}
+        cosine = float(model.frames(joint)[0].axes[:, 2] @ along)
+        if mine and names and joint.kind != "prismatic" and abs(cosine) > 1.0 - 1e-9:
+            direction = cosine if joint.child == body else -cosine
+            arguments = [places.variables[f"joint {joint.name}"]]
+            arguments += [f'"{names[0]}"'] if names[0] else []
+            return f" {'+' if direction > 0 else '-'} m.coordinate({', '.join(arguments)})"
+    return ""
+
+
+def _minus(terms: str) -> str:
+    """Return the opposite of one signed term."""
+    return terms.replace("+", "*").replace("-", "+").replace("*", "-")
+
+
+def _clean(value: float) -> float:
+    """Return a number, zero where it is a drawing's rounding of it."""
+    return value if abs(value) > 1e-9 else 0.0

@@ -1,0 +1,64 @@
+"""Equations of many unknowns in blocks that have none in common: each is solved on its own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ...base.arrays import Array
+from .record import Model
+
+MOST = 2_000_000
+"""Factors of a block, at most: its rank is found in seconds."""
+
+Rows = dict[str, Array]
+"""Equations: their factors by the names of unknowns, a row for each equation and a column for each
+number that an unknown has; all have as many.
+"""
+
+
+def check_size(model: Model, factors: int) -> None:
+    """Raise :class:`.ModelFileError` for equations with more factors than :data:`MOST`."""
+    if factors > MOST:
+        words = f"its loops have so many joints in common that {factors} factors relate these"
+        raise model.refuse("", f"{words}; expected at most {MOST}")
+
+
+def blocks(
+    model: Model, equations: Sequence[Rows], order: Sequence[str]
+) -> list[tuple[Array, list[str], list[int]]]:
+    """Return blocks of equations: the matrix, the names of its unknowns in an order, and the
+    numbers of the equations in it.
+
+    Raises :class:`.ModelFileError` for a block that is too large.
+    """
+    of = {name: [name] for rows in equations for name in rows}
+    for rows in equations:
+        first, *others = sorted({id(of[name]): of[name] for name in rows}.values(), key=len)[::-1]
+        for other in others:
+            first += other
+            of |= dict.fromkeys(other, first)
+    place = {name: k for k, name in enumerate(order)}
+    groups: dict[int, list[int]] = {}
+    for k, rows in enumerate(equations):
+        groups.setdefault(id(of[next(iter(rows))]), []).append(k)
+    found = []
+    for group in groups.values():
+        names = sorted(of[next(iter(equations[group[0]]))], key=place.__getitem__)
+        found.append((_matrix(model, [equations[k] for k in group], names), names, group))
+    return found
+
+
+def _matrix(model: Model, equations: Sequence[Rows], names: list[str]) -> Array:
+    """Return the factors of equations, a group of columns for each unknown."""
+    shapes = [next(iter(rows.values())).shape for rows in equations]
+    height, width = sum(shape[0] for shape in shapes), shapes[0][1]
+    check_size(model, height * len(names) * width)
+    column, at = {name: k for k, name in enumerate(names)}, 0
+    found = np.zeros((height, len(names), width))
+    for rows, shape in zip(equations, shapes, strict=True):
+        for name, factors in rows.items():
+            found[at : at + shape[0], column[name]] += factors
+        at += shape[0]
+    return found.reshape(height, -1)

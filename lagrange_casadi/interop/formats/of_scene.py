@@ -1,0 +1,149 @@
+"""The record of a scene that was declared here: its description, and where its bodies are at its
+first instant.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from ...base.arrays import Array
+from ...base.interpret import Arithmetic, interpret
+from ...errors import DeclarationError
+from ...model.declared import BodyNumbers, Declared, JointNumbers
+from ...model.description import density_of, slices_of
+from ...model.scene import Scene
+from ...results.solution import Solution
+from ...studies.evaluate import evaluate
+from .frames import Frame, turned
+from .laws import ONE_NUMBER, LawError, parsed
+from .record import Body, Joint, Law, Model
+
+Data = dict[str, Any]
+
+SAMPLES = 1001
+"""Instants of a motion that has no expression, as one from measured points."""
+
+
+def _infix(sign: str) -> Callable[[str, str], str]:
+    return lambda x, y: f"({x} {sign} {y})"
+
+
+def _call(name: str) -> Callable[[str], str]:
+    return lambda x: f"{name}({x})"
+
+
+_TEXT = Arithmetic(
+    repr,
+    {ca.OP_ADD: _infix("+"), ca.OP_SUB: _infix("-"), ca.OP_MUL: _infix("*")}
+    | {ca.OP_DIV: _infix("/"), ca.OP_POW: _infix("^"), ca.OP_CONSTPOW: _infix("^")}
+    | {ca.OP_NEG: lambda x: f"(-{x})", ca.OP_SQ: lambda x: f"({x} ^ 2)"}
+    | {ca.OP_TWICE: lambda x: f"(2 * {x})", ca.OP_INV: lambda x: f"(1 / {x})"}
+    | {getattr(ca, f"OP_{name.upper()}"): _call(name) for name in ONE_NUMBER},
+)
+"""Graphs as texts."""
+
+
+def model_of(scene: Scene, parameters: Mapping[str, float], file: Path) -> Model:
+    """Return the record of a scene for values of parameters; what it has no word for is in its
+    notes.
+
+    Raises :class:`.DeclarationError` where what moves the mechanism has no word: a constraint, or a
+    motion of a path's point.
+    """
+    start, stop = scene.span
+    solution = evaluate(
+        scene, t=(start, start, 1), wanted=["motion"], parameters=parameters, backend="vm"
+    )
+    described = solution.description
+    model = Model(described["name"], file, span=(start, stop, 101 if stop > start else 1))
+    what = f"mechanism '{model.name}'"
+    for name in (*described["constraints"], *described["rows"]):
+        raise DeclarationError(f"{what}: constraint '{name}' cannot be written into a model file")
+    if described["loads"]:
+        model.notes.append(f"Loads are not exported: {', '.join(described['loads'])}.")
+    model.gravity = np.array([*described["gravity"], 0.0][:3])
+    declared = Declared.of(described)
+    for name, body in described["bodies"].items():
+        model.bodies[name] = _body(name, body, declared.bodies[name], _frame(solution, name))
+        if "density" in body and model.bodies[name].rod is None:
+            model.notes.append(
+                f"The mass of '{name}' is exported as a total, without its distribution along"
+                " the link."
+            )
+    for name, joint in declared.joints.items():
+        model.joints[name] = _joint(name, joint)
+    known = [name for joint in model.joints.values() for name in joint.coordinates]
+    values = ca.DM(list(scene.values(parameters).values()))
+    laws = scene.prescribed
+    for k, name in enumerate(laws.joints):
+        if name not in known:
+            raise DeclarationError(
+                f"{what}: the motion of '{name}' cannot be written into a model file"
+            )
+        t = ca.SX.sym("t")
+        motion = ca.densify(laws.motion(t, values)[0][k])
+        if model.joints[name.partition(":")[0]].kind == "universal":
+            # Its turns are counted from the reference posture, which is that at the start.
+            motion = motion - ca.substitute(motion, t, start)
+        law = ca.Function("law", [t], [motion])
+        model.motions[name] = _law(law, model.span)
+    if scene.drives is not None:
+        model.drives = list(scene.drives)
+    return model
+
+
+def _frame(solution: Solution, body: str) -> Frame:
+    """Return where a body is at the first instant."""
+    pose = solution.pose(body)
+    place = np.array([pose.x[0], pose.y[0], 0.0 if pose.z is None else pose.z[0]])
+    if pose.axes is not None:
+        return Frame(place, pose.axes[0].T)
+    angle = 0.0 if pose.angle is None else float(pose.angle[0])
+    return Frame(place, turned(np.array([0.0, 0.0, 1.0]), angle))
+
+
+def _body(name: str, described: Data, numbers: BodyNumbers, frame: Frame) -> Body:
+    mass, zero = numbers.mass, np.zeros(3)
+    if numbers.length is None:
+        return Body(name, mass, zero, None, frame, point=True)
+    if "centre" not in described:
+        density = density_of(described)
+        if len(density.cells) == 1 and len(density.cells[0]) == 1 and not any(slices_of(described)):
+            rod = Body.slender(name, mass, (zero, np.array([numbers.length, 0.0, 0.0])))
+            return Body(name, mass, rod.centre, rod.inertia, frame, rod=rod.rod)
+    inertia = np.array(numbers.inertia)
+    if "centre" in described and not isinstance(described["centre"]["inertia"], list):
+        # In a plane one moment is given; two more that a body may have.
+        inertia[0, 0] = inertia[1, 1] = inertia[2, 2] / 2.0
+    return Body(name, mass, np.array(numbers.centre), inertia, frame)
+
+
+def _joint(name: str, numbers: JointNumbers) -> Joint:
+    """Return a joint, the frames so that its coordinates are those that were declared."""
+    (u, v, w), zero = np.array(numbers.triad), np.array(numbers.turned).T
+    kind, parent, child = numbers.kind, numbers.parent, numbers.child
+    # Slides and turns are about z of a frame; of three of a kind about x, y and z.
+    columns = (u, v, w) if kind in ("spherical", "free") else (v, w, u)
+    near = np.column_stack(columns)
+    far = zero.T @ (np.column_stack([w, u, v]) if kind == "universal" else near)
+    frames = Frame(np.array(parent.at), near), Frame(np.array(child.at), far)
+    return Joint(name, kind, parent.body, child.body, *frames, numbers.pitch * math.tau)
+
+
+def _law(law: ca.Function, span: tuple[float, float, int]) -> Law:
+    """Return a motion as text, or as samples where it has none."""
+    try:
+        ((text,),) = interpret(law, [["t"]], _TEXT)
+        parsed(text)
+        return Law(text)
+    except (DeclarationError, LawError):
+        pass
+    times = np.linspace(span[0], span[1], SAMPLES)
+    values: Array = law(times[None, :]).full()[0]
+    return Law(samples=(tuple(times.tolist()), tuple(values.tolist())))

@@ -1,0 +1,134 @@
+"""Names and places of a case: variables, parameters, and where links and joints lie in the
+reference posture.
+"""
+
+from __future__ import annotations
+
+import keyword
+import math
+import re
+from collections import Counter
+from collections.abc import Collection, Iterator
+
+import numpy as np
+
+from ...base.arrays import Array
+from .frames import Frame
+from .posture import extent
+from .python_text import Call, Place, Short, text_of
+from .record import GROUND, Body, Joint, Model
+
+
+class Places:
+    """Variables and parameters of a case, which has names of its own, and its places by these.
+
+    ``held`` are the bodies that a joint places, ``at`` the places of these joints, ``between`` the
+    two places that each link lies between.
+    """
+
+    def __init__(self, model: Model, opened: Collection[str], own: Collection[str]) -> None:
+        self.model, self.size, self.short = model, extent(model), Short(extent(model))
+        self.variables: dict[str, str] = {GROUND: "m.ground"}
+        self._used = set(own)
+        closed = [one for one in model.joints.values() if one.name not in opened]
+        self.held = {GROUND, *(end for one in closed for end in (one.parent, one.child))}
+        self.at = {one.name: self.short.place(model.frames(one)[1].place) for one in closed}
+        self.on = model.joints_on()
+        self.between = {
+            name: self._ends(body, [model.joints[one] for one in self.on[name]])
+            for name, body in model.bodies.items()
+        }
+        self._named: dict[Place, str] = {}
+        self._lengths: dict[tuple[int, float], str] = {}
+        self.masses: dict[float, str] = {}
+
+    def _ends(self, body: Body, mine: list[Joint]) -> tuple[Place, Place]:
+        """Return two places that a link lies between: a joint, and the place farthest from it."""
+        place = self.short.place
+        if body.rod is not None:
+            return place(body.frame.at(body.rod[0])), place(body.frame.at(body.rod[1]))
+        origins = []
+        for joint in sorted(mine, key=lambda one: one.child != body.name):
+            near, far = self.model.frames(joint)
+            origins.append(place((near if joint.parent == body.name else far).place))
+            if joint.name in self.at:
+                origins[-1] = self.at[joint.name]
+        centre, base = place(body.frame.at(body.centre)), origins[0]
+        tip = max(origins, key=lambda place: math.dist(base, place))
+        if math.dist(base, tip) < 1e-6 * self.size:
+            tip = centre
+        if math.dist(base, tip) < 1e-6 * self.size:
+            tip = place(np.array(base) + body.frame.axes[:, 0] * self.size / 10.0)
+        return base, tip
+
+    def parameters(self) -> Iterator[str]:
+        """Yield lines that declare what repeats: masses of several bodies, and components of
+        several places.
+        """
+        masses = Counter(body.mass for body in self.model.bodies.values() if body.mass > 0.0)
+        first = {body.mass: body.name for body in reversed(self.model.bodies.values())}
+        for mass in (mass for mass, count in masses.items() if count > 1):
+            name = self.masses[mass] = self._parameter(f"mass_{first[mass]}")
+            yield f'{name} = m.parameter("{name}", {text_of(mass)}, "kg", low=0.0)'
+        for joint, place in self.at.items():
+            if place not in self._named and any(place):
+                self._named[place] = self.variable(f"at_{joint}")
+        joint_at = {place: joint for joint, place in reversed(self.at.items())}
+        sizes = Counter((k, abs(x)) for place in self._named for k, x in enumerate(place) if x)
+        named = reversed(self._named)
+        owners = {(k, abs(x)): place for place in named for k, x in enumerate(place)}
+        for k, size in (one for one, count in sizes.items() if count > 1):
+            owner = owners[k, size]
+            name = self._lengths[k, size] = self._parameter(f"{joint_at[owner]}_{'xyz'[k]}")
+            yield f'{name} = m.parameter("{name}", {text_of(size)}, "m")'
+
+    def named(self) -> Iterator[str]:
+        """Yield lines that name the places of joints."""
+        return (f"{name} = {Call('', self.components(at))}" for at, name in self._named.items())
+
+    def _parameter(self, wanted: str) -> str:
+        """Return a name for a parameter, which no part may have."""
+        name = self.variable(wanted)
+        return self._parameter(f"{name}_") if self.model.taken(name) else name
+
+    def variable(self, wanted: str) -> str:
+        """Return a name for a variable that none has yet."""
+        name = re.sub(r"\W", "_", wanted, flags=re.ASCII)
+        while keyword.iskeyword(name) or name in self._used:
+            name = f"{name}_"
+        self._used.add(name)
+        return name
+
+    def link_axes(self, body: str) -> Array:
+        """Return the axes of a link as declared: x from its base to its tip, y across."""
+        if body == GROUND:
+            return np.eye(3)
+        base, tip = (np.array(place) for place in self.between[body])
+        x = (tip - base) / np.linalg.norm(tip - base)
+        y = np.eye(3)[int(np.argmin(np.round(np.abs(x), 6)))]
+        y = y - (y @ x) * x
+        y /= np.linalg.norm(y)
+        return np.column_stack([x, y, np.cross(x, y)])
+
+    def components(self, place: Place) -> list[str]:
+        """Return the components of a place, by parameters where these have them."""
+        names = [self._lengths.get((k, abs(x))) for k, x in enumerate(place)]
+        return [
+            (f"-{name}" if x < 0 else name) if name else text_of(x)
+            for name, x in zip(names, place, strict=True)
+        ]
+
+    def written(self, place: Place) -> object:
+        """Return a place: its name, or its components."""
+        return self._named.get(place) or Call("", self.components(place))
+
+    def point(self, body: str, place: Array) -> Call:
+        """Return a point of a body that is at a place in the reference posture."""
+        if body not in self.held:
+            own = Frame(np.array(self.between[body][0]), self.link_axes(body))
+            local = self.short.place(own.relative(Frame(place)).place)
+            return Call(f"{self.variables[body]}.at", [text_of(one) for one in local])
+        at = self.components(self.short.place(place))
+        if body == GROUND:
+            return Call("m.ground.at", at)
+        return Call("m.at", [self.variables[body], *at])

@@ -1,0 +1,250 @@
+"""Models as SDF: links, frames and joints of Gazebo; loops are joints like others."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from ...base.arrays import Array
+from ...errors import shown
+from .elements import Element, note_unread, parsed, six_moments
+from .frames import Frame
+from .record import GROUND, Body, Coupling, Joint, Model, Spring
+
+KINDS: dict[str, str] = {
+    "revolute": "revolute",
+    "continuous": "revolute",
+    "prismatic": "prismatic",
+    "ball": "spherical",
+    "universal": "universal",
+    "revolute2": "universal",
+    "screw": "screw",
+    "fixed": "weld",
+    "gearbox": "",
+}
+"""Types of joints; a gearbox couples two others."""
+
+_DYNAMICS = ("damping", "spring_stiffness", "spring_reference")
+"""Numbers of the spring and the damper that a revolute or prismatic joint can have."""
+
+_DEEPEST = 200
+
+
+def read(model: Model, text: str) -> None:
+    """Read a file: the first model that moves, of its first world or on its own.
+
+    Raises :class:`.ModelFileError`, which names line and element.
+    """
+    root = parsed(model, text, "sdf")
+    world = root.first("world") or root
+    found = [one for one in world.inside if one.name == "model"]
+    line = next((one for one in found if not one.switch("static", False)), None)
+    if line is None:
+        raise world.refuse("has no model that moves" if found else "lacks <model>")
+    line.seen, model.gravity = True, np.array([0.0, 0.0, -9.8])  # of a world that gives none
+    for one in (world.first("physics"), world):
+        if one is not None and (given := one.first("gravity")) is not None:
+            model.gravity = given.numbers("gravity", 3)
+    model.name = model.name_of("mechanism", line.attribute("name"), line.where)
+    # Axes are on the frame of the model until 1.4, and on that of the joint since.
+    on_model = root.stated("version", "1.7") in ("1.0", "1.2", "1.3", "1.4")
+    named = line.by_name("link", "frame", "joint")
+    for one in line.all("frame"):
+        one.seen = False  # until something lies on it
+    _Reader(model, line, named, on_model).read()
+    note_unread(model, root)
+
+
+class Joints:
+    """Joints of a model under way, by name, with what else has a place.
+
+    ``on`` are the links with their bodies and places, and ``own`` is the frame of the model.
+    """
+
+    def __init__(
+        self, model: Model, named: dict[str, Element], on: dict[str, tuple[str, Frame]]
+    ) -> None:
+        self.model, self.named, self.on, self.valid = model, named, on, {**on, **named}
+        self.own, self.on_model, self.placed = Frame(), False, dict[str, Frame]()
+
+    def read(self) -> None:
+        """Read the joints."""
+        joints = [one for one in self.named.values() if one.name == "joint"]
+        for joint in joints:
+            if kind := joint.choice("type", KINDS):
+                self.joint(joint, kind)
+        on = self.model.joints_on()
+        for joint in joints:
+            self.couplings(joint, on)
+
+    def joint(self, line: Element, kind: str) -> None:
+        """Declare a joint, whose frames coincide as the model stands."""
+        model, data, lead = self.model, line.attribute("name"), 0.0
+        parent, child = self.end(line, "parent"), self.end(line, "child")
+        near = far = frame = self.frame(data, ())
+        if kind in ("revolute", "prismatic", "screw", "universal"):
+            first = self.axis(line, "axis", frame)
+            near = far = Frame.about(first, frame.place)
+            if kind == "universal":
+                second = self.axis(line, "axis2", frame)
+                if abs(first @ second) > 1e-6:
+                    raise line.refuse("its two axes are not at right angles")
+                far = Frame.about(second, frame.place)
+        if kind == "screw":
+            lead = line.inner("screw_thread_pitch", 1.0)
+        near, far = model.frame_of(parent).relative(near), model.frame_of(child).relative(far)
+        name = model.add(Joint, data, line.where, kind, parent, child, near, far, lead)
+        for key in ("axis", "axis2"):
+            if (axis := line.first(key)) is not None:
+                losses = axis.optional("dynamics")
+                resist(model, name, losses, losses.inner, first=key == "axis")
+
+    def couplings(self, line: Element, on: dict[str, list[str]]) -> None:
+        """Declare what ties a joint to another one, a mimic or a gearbox, by the joints on each
+        body.
+        """
+        model, data, axis = self.model, line.attribute("name"), line.first("axis")
+        if axis is not None and (mimic := axis.first("mimic")) is not None:
+            ratio = mimic.inner("multiplier", 1.0)
+            offset, reference = (mimic.inner(key) for key in ("offset", "reference"))
+            leader, offset = mimic.attribute("joint"), offset - ratio * reference
+            model.follow(data, leader, mimic.where, ratio, offset)
+        if line.given["type"] != "gearbox":
+            return
+        ratio = line.inner("gearbox_ratio", 1.0)
+        carrier = line.needed("gearbox_reference_body").text
+        ends = []
+        for side in ("parent", "child"):
+            body = self.end(line, side)
+            bodies = {body, self.on[line.known("link", carrier, self.on)][0]}
+            mine = (model.joints[name] for name in on[body])
+            found = [one.name for one in mine if {one.parent, one.child} == bodies]
+            if len(found) != 1:
+                words = f"its {side} has no joint on the reference body {shown(carrier)}"
+                raise line.refuse(words)
+            ends += found
+        model.add(Coupling, data, line.where, *ends, -ratio)
+
+    def axis(self, line: Element, key: str, frame: Frame) -> Array:
+        """Return the direction of a joint's axis, on the ground's axes."""
+        data = line.optional(key)
+        xyz, given, on = data.optional("xyz"), np.array([0.0, 0.0, 1.0]), frame
+        if xyz.text:
+            given = xyz.numbers("xyz", 3)
+        else:
+            line.usual(key, "0 0 1")
+        if expressed := str(xyz.stated("expressed_in", "")):
+            on = self.known(xyz, expressed, ())
+        elif data.switch("use_parent_model_frame", self.on_model):
+            on = self.own
+        given = self.model.direction(data.where, given)
+        return np.asarray(on.axes @ given / np.linalg.norm(given))
+
+    def end(self, line: Element, key: str) -> str:
+        """Return the body of a joint's parent or child, which may be given by a frame on it."""
+        data = line.needed(key)
+        name = data.text
+        for _ in range(len(self.named) + 1):
+            if name in self.on:
+                return self.on[name][0]
+            frame = self.named.get(name)
+            if frame is None or frame.name != "frame":
+                break
+            frame.seen, name = True, str(frame.stated("attached_to", ""))
+        raise data.refuse(f"unknown link {shown(data.text)}; valid: {', '.join(self.on)}")
+
+    def frame(self, name: str, above: tuple[str, ...]) -> Frame:
+        """Return where a link, frame or joint is; poses may be given relative to each other."""
+        if name in self.on:
+            return self.on[name][1]
+        if name in self.placed:
+            return self.placed[name]
+        line = self.named[name]
+        line.seen = True
+        if name in above or len(above) > _DEEPEST:
+            what = "itself" if name in above else "too many others"
+            raise line.refuse(f"its pose is relative to {what}")
+        pose, on = line.first("pose"), ""
+        if pose is not None:
+            on = str(pose.stated("relative_to", "") or pose.stated("frame", ""))
+        if not on and line.name == "joint":
+            on = line.needed("child").text
+        elif not on and line.name == "frame":
+            on = str(line.stated("attached_to", ""))
+        self.placed[name] = self.known(line, on, (*above, name)).then(_pose(pose))
+        return self.placed[name]
+
+    def known(self, line: Element, name: str, above: tuple[str, ...]) -> Frame:
+        """Return the frame of a name."""
+        if name in ("", "__model__"):
+            return self.own
+        return self.frame(line.known("frame", name, self.valid), above)
+
+
+class _Reader(Joints):
+    """A model under way."""
+
+    def __init__(
+        self, model: Model, line: Element, named: dict[str, Element], on_model: bool
+    ) -> None:
+        super().__init__(model, named, {"world": (GROUND, Frame())})
+        self.line, self.own, self.on_model = line, _pose(line.first("pose")), on_model
+
+    def read(self) -> None:
+        """Read the model."""
+        model = self.model
+        for link in self.line.all("link"):
+            self.body(link)
+        super().read()
+        hung = {name for one in model.joints.values() for name in (one.parent, one.child)}
+        if GROUND not in hung and model.bodies:
+            first = next(iter(model.bodies.values()))
+            model.attach(first.name, GROUND, "weld", first.where)
+            model.notes.append(f"No joint leads to the world: '{first.name}' is fixed.")
+        for one in self.line.all("model", "include"):
+            raise one.refuse("is not supported; put its links into the model itself")
+
+    def body(self, link: Element) -> None:
+        """Declare a link as a body."""
+        inertial, name = link.optional("inertial"), link.attribute("name")
+        if inertial.switch("auto", False):
+            raise inertial.refuse("auto: is not supported; give mass and inertia")
+        mass, centre = inertial.inner("mass", 1.0), _pose(inertial.first("pose"))
+        inertia = centre.tensor(six_moments(inertial.optional("inertia").inner, 1.0))
+        frame, weight = self.frame(name, ()), float(link.switch("gravity", True))
+        here = self.model.add(Body, name, link.where, mass, centre.place, inertia, frame)
+        self.model.bodies[here] = replace(self.model.bodies[here], weight=weight)
+        self.on[name] = here, frame
+
+
+def resist(
+    model: Model, joint: str, line: Element, number: Callable[[str, float], float], *, first: bool
+) -> None:
+    """Read the spring and the damper of a joint's first axis or second one, as far as its kind can
+    have these; what else has a number there is left.
+    """
+    single = first and model.joints[joint].kind in ("revolute", "prismatic")
+    able, found = _DYNAMICS if single else (), [0.0, 0.0, 0.0]
+    for k, key in enumerate((*_DYNAMICS, "friction")):
+        value = number(key, 0.0)
+        if key in able and (value >= 0.0 or key != "damping"):
+            found[k] = value
+        elif value:
+            line.leave(key)
+    if found[2] and not found[1]:
+        line.leave("spring_reference")
+    if found[0] or found[1]:
+        model.springs.append(Spring(joint, *found))
+
+
+def _pose(line: Element | None) -> Frame:
+    """Return the frame of a pose: a place, and roll, pitch and yaw."""
+    if line is None or not line.text:
+        return Frame()
+    if line.stated("rotation_format", "euler_rpy") != "euler_rpy":
+        raise line.refuse("rotation_format: expected euler_rpy")
+    six = line.numbers("pose", 6)
+    angles = np.radians(six[3:]) if line.switch("degrees", False) else six[3:]
+    return Frame.posed(six[:3], angles)

@@ -1,0 +1,113 @@
+"""Tables as constants in C: those of a cycle, and how large all of them are."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from importlib import resources
+
+import numpy as np
+
+from ...base.arrays import Array
+from ...base.lookups import lookup
+from ...base.vocabulary import Precision
+from ...engine.codegen.printer import Format
+from ...errors import SizeError
+from .exported_program import ExportedProgram
+
+LARGEST: dict[Precision, int] = {"double": 16_000_000, "single": 64_000}
+"""Bytes of a table, unless more are allowed: what a large and what a small machine has room for."""
+
+_LINE = 6
+
+
+def table_bytes(exported: ExportedProgram) -> dict[str, int]:
+    """The size of each table of numbers, by what it is."""
+    size = 4 if exported.precision == "single" else 8
+    found = {}
+    called = {
+        inner.name(): lookup(inner)
+        for function in exported.functions.values()
+        for inner in function.find_functions()
+    }
+    if curves := sum(table.numbers.size for table in called.values() if table is not None):
+        found["what curves and motions by samples look up"] = size * curves
+    if exported.cycle is not None:
+        found["the table of the cycle"] = exported.cycle.coefficients.size * size
+    return found
+
+
+def check_size(exported: ExportedProgram, limit: int) -> None:
+    """Raise :class:`SizeError` where a table is larger than ``limit`` bytes."""
+    for what, size in table_bytes(exported).items():
+        if size > limit:
+            raise SizeError(
+                f"{what} takes {size} bytes of constants, and the limit is {limit}: take fewer"
+                " numbers, or raise the limit"
+            )
+
+
+def table_text(exported: ExportedProgram) -> str:
+    """A table of the cycle, and what reads it."""
+    cycle = exported.cycle
+    if cycle is None:
+        return ""
+    text = (resources.files("lagrange_casadi.engine.codegen") / "interpolate.c").read_text()
+    text = re.sub(r"^#.*\n", "", text, flags=re.MULTILINE)
+    text = (
+        text.replace("typedef REAL real;\n", "")
+        .replace("*restrict ", "*")
+        .replace("* restrict ", "* ")
+    )
+    for word, value in (
+        ("BLOCK", "1"),
+        ("PACK", "1"),
+        ("TILE", "32"),
+        ("WEIGHTS", "6"),
+        ("FACTORS", "4"),
+    ):
+        text = re.sub(rf"\b{word}\b", value, text)
+    # A number becomes a long by one instruction of a small machine, a long long by a library's
+    # arithmetic of doubles.
+    text = text.replace("long long", "long")
+    text = re.sub(r"\breal\b", "casadi_real", text)
+    if exported.precision == "single":
+        text = text.replace("floor(", "floorf(")
+    number = exported.number
+    layout = cycle.layout
+    text += _constants("cell", cycle.cell.astype(float), number)
+    text += _constants("slopes", cycle.slopes.astype(float), number)
+    text += _constants("coefficients", cycle.coefficients.astype(float).ravel(), number)
+    text += _integers("order", layout.order.ravel()) + _integers("runs", layout.runs.ravel())
+    return "\n" + text
+
+
+def table_call(exported: ExportedProgram) -> Iterable[str]:
+    """Statements that read the columns ``y`` from the table, for what the
+    drive's own graph gave.
+    """
+    cycle = exported.cycle
+    assert cycle is not None
+    phase = f"drive[{2 + cycle.turns}]"
+    yield (
+        f"interpolate(1, 1, &{phase}, drive + 1, drive + 2, {cycle.nodes}, cell,"
+        f" {cycle.coefficients.shape[1]}, coefficients, {len(cycle.columns)}, order, slopes,"
+        f" {len(cycle.layout.runs)}, runs, y);"
+    )
+    number = exported.number
+    for k in np.flatnonzero(cycle.drift):
+        yield f"y[{k}] = y[{k}] + {number(cycle.drift[k])}*(drive[0] - {phase});"
+
+
+def _constants(name: str, values: Array, number: Format) -> str:
+    return _array("casadi_real", name, [number(value) for value in values])
+
+
+def _integers(name: str, values: Iterable[int]) -> str:
+    return _array("int", name, [str(int(value)) for value in values])
+
+
+def _array(kind: str, name: str, words: list[str]) -> str:
+    rows = (", ".join(words[i : i + _LINE]) for i in range(0, len(words), _LINE))
+    body = ",\n  ".join(rows) if words else "0"
+    return f"static const {kind} {name}[] = {{\n  {body}\n}};\n"

@@ -1,0 +1,151 @@
+"""Golden vectors of an exported program: inputs and outputs at instants of the scene's motion, with
+tolerances.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...base.arrays import Array
+from ...base.compensated import ROUNDING
+from ...base.quantities import Output, motion_names
+from ...base.vocabulary import Precision
+from ...engine.codegen.stages import compensated
+from ...engine.instants.backends import run
+from ...engine.instants.evaluation_method import EvaluationMethod
+from ...engine.program import Program
+from ...results.solution import Solution
+from ...results.verification.accuracy import estimate
+from .contract import FAINT, REST, Contract, Member, largest_of
+
+INSTANTS = 9
+RATIOS = (0.0, 0.5, 1.0)
+ALLOWED = 16.0
+"""Estimates of the error: the same arithmetic by other compilers, libraries
+and machines is within.
+"""
+
+_MOTION = 4096.0
+"""Roundings of a motion's largest value."""
+
+
+@dataclass(frozen=True, eq=False)
+class Golden:
+    """Instants, ``steps`` of the scene's grid apart, and there ``inputs`` (instants, inputs) and
+    ``outputs`` (instants, outputs).
+
+    ``forces`` (instants, links, ratios, forces) are those of sections. What has a tolerance has one
+    a column, ``forces`` one a link and force. ``times`` and, in single precision, ``inputs`` are
+    what two singles hold of a value. ``worst`` is the largest error expected of an output, of its
+    largest value, and which output that is.
+    """
+
+    times: Array
+    steps: int
+    inputs: Array
+    outputs: Array
+    forces: Array
+    inputs_off: Array
+    outputs_off: Array
+    forces_off: Array
+    worst: tuple[float, str]
+
+
+def golden(
+    program: Program, contract: Contract, solution: Solution, exact: Solution, p: Array
+) -> Golden:
+    """The golden vectors of a contract, over the scene's grid and in doubles: by ``exact``, which
+    saves nothing of the graph.
+
+    ``solution`` is what the program's method makes of it: what that misses is allowed, twice.
+    """
+    precision = contract.precision
+    least, errors = ALLOWED * ROUNDING[precision], _errors(program, precision, exact, p)
+    count = solution.t.size
+    stride = max(1, (count - 1) // (INSTANTS - 1))
+    chosen = np.arange(0, count, stride)
+    t = solution.t[chosen]
+    moved = {"time": t} | motions_at(program, t, p)
+    inputs = np.stack([_input(moved, m.source, precision) for m in contract.inputs], axis=1)
+    outputs = np.stack([exact.series[m.source][chosen] for m in contract.outputs], axis=1)
+    rounding = np.array([ALLOWED * errors[m.source] for m in contract.outputs])
+    saved = np.array([_saved(m, solution, exact) for m in contract.outputs])
+    off = rounding + 2.0 * saved + least * np.abs(outputs).max(axis=0)
+    names = contract.table.forces
+    forces = np.zeros((t.size, len(contract.links), len(RATIOS), len(names)))
+    forces_off = np.zeros((len(contract.links), len(names)))
+    for i, link in enumerate(contract.links):
+        laws = [solved.section(link.name).law for solved in (exact, solution)]
+        for k, force in enumerate(names):
+            true, found = (law.at(force, np.tile(RATIOS, (exact.t.size, 1))) for law in laws)
+            forces[:, i, :, k] = true[chosen]
+            forces_off[i, k] = (
+                ALLOWED * errors[str(Output("section", link.name, force))]
+                + least * np.abs(true).max()
+            )
+            forces_off[i, k] += 2.0 * np.abs(found - true).max()
+    inputs_off = _MOTION * ROUNDING[precision] * np.abs(inputs).max(axis=0)
+    steps = stride if program.newton is not None else 1
+    worst = _worst(contract, exact, rounding / ALLOWED + saved)
+    return Golden(t, steps, inputs, outputs, forces, inputs_off, off, forces_off, worst)
+
+
+def _errors(program: Program, precision: Precision, exact: Solution, p: Array) -> dict[str, float]:
+    """Errors of outputs and section forces in a precision, by their names: larger in proportion to
+    its roundings.
+
+    What is a product of roundings grows with their square; so the graph is followed in that
+    precision too.
+    """
+    errors = {
+        name: error * (ROUNDING[precision] / ROUNDING["double"])
+        for name, error in exact.errors.items()
+    }
+    if precision == "single":
+        evaluated, _ = run(program, exact.t, p, EvaluationMethod("vm"))
+        estimated = estimate(
+            program, replace(evaluated, stages=compensated(program, precision)), exact, p
+        )
+        errors |= {
+            str(output): max(errors[str(output)], error) for output, error in estimated.items()
+        }
+    return errors
+
+
+def _worst(contract: Contract, exact: Solution, errors: Array) -> tuple[float, str]:
+    """The largest of some errors, of an output's largest value, where that is more than rounding of
+    others of its unit.
+    """
+    peaks = [float(np.abs(exact.series[m.source]).max()) for m in contract.outputs]
+    largest = largest_of((m.unit for m in contract.outputs), peaks)
+    rows = zip(errors, peaks, contract.outputs, strict=True)
+    return max(
+        ((float(e) / p, m.name) for e, p, m in rows if p > FAINT * largest[m.unit]),
+        default=(0.0, ""),
+    )
+
+
+def _saved(member: Member, solution: Solution, exact: Solution) -> float:
+    """Error of a quantity by a method's steps or table."""
+    gaps = solution.series[member.source] - exact.series[member.source]
+    gaps -= math.tau * np.round(gaps / math.tau) if member.wrapped else 0.0
+    return float(np.abs(gaps).max())
+
+
+def motions_at(program: Program, t: Array, p: Array) -> dict[str, Array]:
+    """The motion of the drives over instants, by full names."""
+    rows = np.vstack([order.full() for order in program.motion(t[None, :], p)])
+    return dict(zip(itertools.chain(*motion_names(program.driven)), rows, strict=True))
+
+
+def _input(moved: Mapping[str, Array], source: str, precision: Precision) -> Array:
+    """The values of an input over instants; of a rest, what rounding its value to single leaves."""
+    values = moved[source.removeprefix(REST)]
+    if source.startswith(REST):
+        return np.asarray(values - values.astype(np.float32))
+    return np.asarray(values.astype(np.float32).astype(float) if precision == "single" else values)

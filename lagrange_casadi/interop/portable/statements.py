@@ -1,0 +1,299 @@
+"""The statements of C around the functions of an exported program: what prepares a model, moves its
+drives, and evaluates an instant.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from ...base.quantities import Output
+from ...base.status import Status
+from ...engine.codegen.emit import newton_rule
+from ...engine.codegen.printer import function_name
+from ...engine.codegen.reduction import centre
+from ...engine.dead_centres import POINTS
+from ...model.ends import BEYOND
+from .calls import INSTANT, MODEL, PREPARE, CalledInC
+from .contract import Contract
+from .data import table_call, table_text
+from .exported_program import ExportedProgram
+from .text import indented, template
+
+
+@dataclass(frozen=True, eq=False)
+class Statements:
+    """Writer of the statements of a program; iterated loops begin at a ``guess``."""
+
+    contract: Contract
+    exported: ExportedProgram
+    guess: Sequence[float]
+
+    @property
+    def _upper(self) -> str:
+        """First part of constants."""
+        return self.contract.words["P"]
+
+    def put(self) -> Iterator[str]:
+        """Yield what fills the outputs from the columns."""
+        for m in self.contract.outputs:
+            still = self.exported.still.get(Output.of(m.source))
+            if still is not None:
+                value = self.exported.number(still)
+            else:
+                value = self.exported.column(m.source)
+                value = f"direction({value})" if m.wrapped else value
+            yield f"outputs->{m.name} = {value};"
+
+    def helpers(self) -> str:
+        """Return what the functions share: a function of angles, one that closes loops, tables."""
+        number, found = self.exported.number, ""
+        if self.exported.program.loop_angles:
+            turn = number(math.tau)
+            found += (
+                "\n/* An angle without its whole turns, in (-pi, pi]. */\nstatic casadi_real"
+                " direction(casadi_real angle) {\n  return angle -"
+                f" {turn}*{function_name('ceil', self.contract.precision)}(angle/{turn} -"
+                f" {number(0.5)});\n}}\n"
+            )
+        if "loops" in self.exported.functions:
+            rule = {key: number(value) for key, value in self.exported.rule.items()}
+            newton = self.exported.program.newton
+            assert newton is not None
+            found += template(
+                "loops.c",
+                **self.contract.words,
+                nz=self.exported.sizes["loops"],
+                turning=", ".join(str(int(turning)) for turning in newton.turning),
+                turn=number(math.tau),
+                inverse=number(1.0 / math.tau),
+                half=number(0.5),
+                floor=function_name("floor", self.contract.precision),
+                rate=rule["rate"],
+                rounding=rule["rounding"],
+                given=indented(CalledInC(self.exported.functions).given("loops")),
+            )
+        if "status" in self.exported.functions:
+            names = ", ".join(f"{self._upper}_{name}" for name in self.exported.answers())
+            kind = f"static const {self.contract.prefix}_status"
+            found += (
+                f"\n/* What a broken rule says, by its number. */\n{kind} broken[] = {{{names}}};\n"
+            )
+        return found + table_text(self.exported)
+
+    def between(self) -> str:
+        """Return the function of what is between two instants, with what it calls; nothing where no
+        loop has a dead centre.
+        """
+        c, sizes, number = self.contract, self.exported.sizes, self.exported.number
+        if "closing" not in self.exported.functions:
+            return ""
+        given, loops, drives = indented(self._between()), sizes["loops"], len(c.drives)
+        return template(
+            "between.c",
+            **c.words,
+            many=sizes["squares"],
+            limits=", ".join(map(number, self.exported.zeros)),
+            moment=max(1, sizes["moment"]),
+            counted=max(1, sizes["counted"]),
+            drives=drives,
+            kept=f"  casadi_real kept[{loops}];\n" if loops else "",
+            given=given,
+            slopes=1 + drives,
+            all=sizes["slopes"],
+            points=POINTS,
+            rule=centre(1 + drives),
+            sum=" + ".join(f"{at}->{m.name}" for at in ("before", "after") for m in c.inputs),
+        )
+
+    def _between(self) -> Iterator[str]:
+        """Yield the statements that evaluate ``closing`` at a fraction x of a step."""
+        c = self.contract
+        model = {name: f"step->model->{name}" for name in MODEL}
+        calls = CalledInC(self.exported.functions, model)
+        half = len(c.moment) // 2 if c.rests else len(c.moment)
+        for k, member in enumerate(c.moment[:half]):
+            rest = c.moment[half + k] if c.rests else ""
+            if k == 0:
+                yield "gone = x*h;"
+            else:
+                coordinate, v, a = (names[k - 1] for names in c.motion)
+                change = " + ".join(f"(after->{m} - before->{m})" for m in (coordinate, rest) if m)
+                ends = f"h*before->{v}, h*after->{v}, h*h*before->{a}, h*h*after->{a}"
+                straight = f"{change}, {change}, 0, 0"
+                into = f"rate + {k - 1}, acceleration + {k - 1}"
+                yield f"gone = h != 0 ? come(x, {change}, {ends}, {into}) :"
+                yield f"                come(x, {change}, {straight}, {into});"
+            yield f"moment[{k}] = {f'before->{member} + gone' if member else '0'};"
+            if c.rests:
+                left = f"(before->{member} - moment[{k}]) + gone + before->{rest}"
+                yield f"moment[{half + k}] = {left if member else '0'};"
+        if "count" in self.exported.functions:
+            yield from calls.call("count")
+        if "loops" in self.exported.functions:
+            rule, number = newton_rule(c.precision, None), self.exported.number
+            nz, P = self.exported.sizes["loops"], self._upper
+            most = f"{int(rule['steps'])}, {number(rule['done'])}, {number(rule['lost'])}"
+            yield f"for (k = 0; k < {nz}; ++k) kept[k] = step->model->loops[k];"
+            yield f"if (close_loops(step->model, counted, {most}) == {P}_NOT_CONVERGED) {{"
+            yield f"  for (k = 0; k < {nz}; ++k) step->model->loops[k] = nothing;"
+            yield "}"
+        yield from calls.call("closing")
+        if "loops" in self.exported.functions:
+            yield f"for (k = 0; k < {nz}; ++k) step->model->loops[k] = kept[k];"
+
+    def defaults(self) -> str:
+        """Return the constant with the default parameters."""
+        c, p = self.contract, self.contract.prefix
+        if not c.settings:
+            return ""
+        rows = ",\n".join(f"  {self.exported.number(m.default)} /* {m.name} */" for m in c.settings)
+        return f"\nconst {p}_parameters {p}_defaults = {{\n{rows}\n}};\n"
+
+    def prepare(self) -> Iterator[str]:
+        """Yield what checks parameters, and computes what they alone set."""
+        c, sizes, number = self.contract, self.exported.sizes, self.exported.number
+        calls = CalledInC(self.exported.functions)
+        if c.settings:
+            yield (
+                f"const {c.prefix}_parameters* values = parameters ? parameters :"
+                f" &{c.prefix}_defaults;"
+            )
+        if sizes["sound_of"]:
+            yield f"casadi_real sound_of[{sizes['sound_of']}];"
+            yield "int k;"
+        if self.exported.called(PREPARE):
+            yield "const casadi_real* arg[1];"
+            yield "casadi_real* res[1];"
+        yield "model->seal = 0;"
+        for k, m in enumerate(c.settings):
+            value = f"values->{m.name}"
+            within = [f"is_finite({value})"]
+            within += [f"{value} >= {number(m.low)}"] if math.isfinite(m.low) else []
+            within += [f"{value} <= {number(m.high)}"] if math.isfinite(m.high) else []
+            yield f"if (!({' && '.join(within)})) return {self._upper}_BAD_PARAMETER;"
+            yield f"model->parameters[{k}] = {value};"
+        for name in self.exported.called(PREPARE):
+            yield from calls.call(name)
+            if name == "sound":
+                yield from self._refused_parts()
+        if self.exported.newton is not None:
+            yield "model->closed = 0;"
+        yield from (f"model->loops[{k}] = {number(value)};" for k, value in enumerate(self.guess))
+
+    def _refused_parts(self) -> Iterator[str]:
+        """Refuse parameters for which a margin is not positive, or a later one negative."""
+        ends = (0, self.exported.positive, self.exported.sizes["sound_of"])
+        for (start, stop), test in zip(itertools.pairwise(ends), (">", ">="), strict=True):
+            if stop > start:
+                yield f"for (k = {start}; k < {stop}; ++k) {{"
+                yield (
+                    f"  if (!(sound_of[k] {test} 0 && is_finite(sound_of[k]))) return"
+                    f" {self.contract.words['P']}_BAD_PARAMETER;"
+                )
+                yield "}"
+
+    def motion(self) -> Iterator[str]:
+        """Yield what fills the inputs with the motion of the drives at a time."""
+        c, drives = self.contract, len(self.contract.drives)
+        calls = CalledInC(self.exported.functions)
+        at = ["time", "time_rest"] if c.rests else ["time"]
+        ends = self.exported.functions.get("beyond")
+        yield (
+            f"casadi_real at[{len(at)}], d[{len(at) * drives}], rate[{drives}],"
+            f" acceleration[{drives}];"
+        )
+        yield "const casadi_real* arg[2];"
+        yield "casadi_real* res[3];"
+        if ends is not None:
+            yield f"casadi_real far[{ends.size1_out(0)}];"
+        yield from self._refused("model->seal != SEAL", "NOT_PREPARED")
+        yield from self._refused(self._untimely(), "BAD_TIME")
+        yield from (f"at[{k}] = {time};" for k, time in enumerate(at))
+        yield from calls.call("law")
+        if ends is not None:
+            limit = self.exported.number(BEYOND[self.contract.precision])
+            yield from calls.call("beyond")
+            yield from self._refused(
+                " || ".join(f"!(far[{k}] <= {limit})" for k in range(ends.size1_out(0))), "BAD_TIME"
+            )
+        moment = (
+            value
+            for i, time in enumerate(at)
+            for value in (time, *(f"d[{i * drives + k}]" for k in range(drives)))
+        )
+        values = dict(zip(c.moment, moment, strict=True))
+        for vector, members in zip(("rate", "acceleration"), c.motion[1:], strict=True):
+            values |= {member: f"{vector}[{k}]" for k, member in enumerate(members)}
+        yield from (f"inputs->{m.name} = {values[m.name]};" for m in c.inputs)
+        yield f"return {self.contract.words['P']}_OK;"
+
+    def _refused(self, condition: str, status: str) -> Iterator[str]:
+        """Give nothing but a status, where a condition holds."""
+        yield f"if ({condition}) {{"
+        yield from (f"  inputs->{m.name} = nothing;" for m in self.contract.inputs)
+        yield f"  return {self.contract.words['P']}_{status};"
+        yield "}"
+
+    def _untimely(self) -> str:
+        """Test that a time is outside the motion."""
+        moment = "time + time_rest" if self.contract.rests else "time"
+        low, high = self.exported.program.laws.span
+        bad = [f"!is_finite({moment})"]
+        bad += [f"{moment} < {self.exported.number(low)}"] if math.isfinite(low) else []
+        bad += [f"{moment} > {self.exported.number(high)}"] if math.isfinite(high) else []
+        return " || ".join(bad)
+
+    def instant(self) -> Iterator[str]:
+        """Yield what computes the columns of an instant, and refuses those that break a rule."""
+        c, P = self.contract, self._upper
+        sizes, table = self.exported.sizes, self.exported.cycle
+        drives, called = len(c.drives), self.exported.called(INSTANT)
+        evaluated = "y" if table is None else "drive"
+        calls = CalledInC(self.exported.functions, {"evaluated": evaluated})
+        if "count" in called:
+            yield f"casadi_real moment[{sizes['moment']}], counted[{sizes['counted']}];"
+        yield f"casadi_real rate[{drives}], acceleration[{drives}];"
+        if table is not None:
+            yield f"casadi_real drive[{sizes['evaluated']}];"
+        yield "const casadi_real* arg[5];"
+        yield "casadi_real* res[1];"
+        if "status" in called:
+            yield "casadi_real iterated = 0, rule;"
+        if "loops" in called:
+            yield f"{c.prefix}_status closed;"
+        yield f"if (model->seal != SEAL) return {P}_NOT_PREPARED;"
+        for k, member in enumerate(c.moment if "count" in called else ()):
+            yield f"moment[{k}] = {f'inputs->{member}' if member else '0'};"
+        for k, (_, rate, acceleration) in enumerate(zip(*c.motion, strict=True)):
+            yield f"rate[{k}] = inputs->{rate};"
+            yield f"acceleration[{k}] = inputs->{acceleration};"
+        given = " + ".join(f"inputs->{m.name}" for m in c.inputs)
+        yield f"if (!is_finite({given})) return {P}_BAD_INPUT;"
+        for name in called:
+            yield from self._close() if name == "loops" else calls.call(name)
+            if name == "instant" and table is not None:
+                yield from table_call(self.exported)
+            if name == "status":
+                yield "if (rule > 0) return broken[(int) rule];"
+        yield f"if (!all_finite(y, {len(self.exported.columns)})) return {P}_NOT_FINITE;"
+
+    def _close(self) -> Iterator[str]:
+        P, rule, number = self._upper, self.exported.rule, self.exported.number
+        done, lost, most = number(rule["done"]), number(rule["lost"]), int(rule["steps"])
+        if self.exported.newton is not None:
+            full = newton_rule(self.contract.precision, None)
+            limits = f"{int(full['steps'])}, {number(full['done'])}, {number(full['lost'])}"
+            yield (
+                f"if (!model->closed && close_loops(model, counted, {limits}) =="
+                f" {P}_NOT_CONVERGED) {{"
+            )
+            yield f"  return {P}_NOT_CONVERGED;"
+            yield "}"
+            yield "model->closed = 1;"
+        yield f"closed = close_loops(model, counted, {most}, {done}, {lost});"
+        yield f"if (closed == {P}_NOT_CONVERGED) return closed;"
+        if self.exported.newton is None:
+            yield f"if (closed == {P}_SLOW) iterated = {number(float(Status.SLOW))};"

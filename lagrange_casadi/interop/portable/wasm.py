@@ -1,0 +1,229 @@
+"""An exported program as WebAssembly, for web pages: the module, a wrapper in JavaScript, its
+types, and what to read first.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from importlib import resources
+
+from ...base.packages import check_installed
+from ...engine.codegen.compiler import Compiler, built
+from .contract import Contract, Member
+from .header import header
+from .sections import about
+from .source import Source
+from .stack import deepest
+from .text import comment, markdown, template
+
+_FLAGS = ("-std=c99", "-Oz", "-ffp-contract=off", "-fno-math-errno")
+_ALONE = ("-target", "wasm32-wasi", "-mexec-model=reactor")
+_WITH_BROWSER = ("-target", "wasm32-freestanding", "-nostdlib", "-mcpu=generic+bulk_memory", "-I.")
+_ERF = re.compile(r"\berf\(")
+"""The one function that a browser lacks."""
+_STACK = 1 << 16
+"""Bytes beside those that the program states: for the C library's mathematics."""
+
+_CALLS = ("prepare", "motion", "batch", "message")
+
+
+def check_zig(what: str) -> None:
+    """Raise :class:`LagrangeCasadiError` where the package that compiles is missing, which ``what``
+    needs.
+    """
+    check_installed("ziglang", what, "live")
+
+
+def module(source: Source) -> bytes:
+    """The module of a program, which imports nothing.
+
+    The same program gives the same bytes, as far as the compiler does. Raises
+    :class:`LagrangeCasadiError` where ziglang is missing, :class:`CompilerError` for what it
+    refuses.
+    """
+    return _build(source, {}, _ALONE)()
+
+
+def page_build(
+    source: Source, more: Mapping[str, str], calls: Sequence[str]
+) -> Callable[[], bytes]:
+    """Prepare the module of a page, which imports the browser's ``Math``; returns what compiles it.
+
+    ziglang then need not build a C library, which takes it a minute where its cache is empty.
+    ``more`` are other files of C with functions ``calls`` that are seen too. Raises as
+    :func:`module` does.
+    """
+    if any(map(_ERF.search, (source.code, *more.values()))):
+        return _build(source, more, _ALONE, calls)
+    files = {**more, "math.h": template("browser_math.h")}
+    return _build(source, files, _WITH_BROWSER, calls)
+
+
+def _build(
+    source: Source, more: Mapping[str, str], target: Sequence[str], calls: Sequence[str] = ()
+) -> Callable[[], bytes]:
+    """Prepare a module; what is returned compiles it, in any thread."""
+    check_zig("WebAssembly")
+    c = source.contract
+    exported = [f"{c.prefix}_{call}" for call in (*_CALLS, *(["section"] if c.links else []))]
+    stack = -(-(deepest(source.code) + _STACK) // 16) * 16
+    linked = [f"-Wl,--export={name}" for name in (*exported, *calls, "__heap_base")]
+    linked += ["-Wl,--no-entry", "-Wl,--strip-all", f"-Wl,-z,stack-size={stack}"]
+    files = {
+        f"{c.prefix}.h": header(source),
+        f"{c.prefix}.c": source.code,
+        "layout.c": _size_check(source),
+        **more,
+    }
+    code = [file for file in files if file.endswith(".c")]
+    compiler = Compiler("c", (sys.executable, "-m", "ziglang", "cc"), "")
+    command = [*compiler.command, *_FLAGS, *target, *linked, *code, "-o", "module.wasm"]
+    return partial(built, compiler, command, files, "module.wasm")
+
+
+def _size_check(source: Source) -> str:
+    """C that compiles only where a model takes as many bytes as the wrapper declares."""
+    p = source.contract.prefix
+    return (
+        f'#include "{p}.h"\ntypedef char as_known[sizeof({p}_model) == {places(source)["end"]}'
+        " ? 1 : -1];\n"
+    )
+
+
+def engine() -> str:
+    """The JavaScript by which a module is called."""
+    return (resources.files(__package__) / "templates" / "engine.js").read_text()
+
+
+def layout(source: Source) -> dict[str, int | str]:
+    """Layout of the C's structs for the wrapper: the number of numbers in each, and the bytes of a
+    model.
+    """
+    c = source.contract
+    return {
+        "prefix": c.prefix,
+        "precision": c.precision,
+        "model": places(source)["end"],
+        "parameters": len(c.settings),
+        "inputs": len(c.inputs),
+        "outputs": len(c.outputs),
+        "forces": len(_forces(c)),
+    }
+
+
+def places(source: Source) -> dict[str, int]:
+    """Places of a model's members [bytes], and at ``end`` their sum."""
+    sizes = {"real": 8 if source.contract.precision == "double" else 4, "int": 4, "unsigned": 4}
+    found, at = {}, 0
+    for name, kind, count in source.model:
+        at = -(-at // sizes[kind]) * sizes[kind]
+        found[name] = at
+        at += sizes[kind] * count
+    return found | {"end": -(-at // 8) * 8}
+
+
+def wasm(source: Source) -> dict[str, bytes]:
+    """The files for web pages, by name."""
+    c, content = source.contract, module(source)
+    texts = {
+        f"{c.prefix}.js": template(
+            "wasm.js", **_words(source), contract=_contract(source), engine=engine()
+        ),
+        f"{c.prefix}.d.ts": _types(source),
+        "README.wasm.md": _page(source, len(content)),
+    }
+    return {f"{c.prefix}.wasm": content} | {file: text.encode() for file, text in texts.items()}
+
+
+def _words(source: Source) -> dict[str, str]:
+    """Words of a comment's line."""
+    return source.words | {"name": " ".join(comment(source.contract.name).split())}
+
+
+def _forces(c: Contract) -> tuple[str, ...]:
+    return c.table.forces if c.links else ()
+
+
+def _contract(source: Source) -> str:
+    c = source.contract
+
+    def described(m: Member) -> dict[str, str]:
+        return {"name": m.name, "path": m.path, "unit": m.unit, "meaning": m.comment}
+
+    def end(value: float) -> float | None:
+        return value if math.isfinite(value) else None
+
+    rows = {name: c.table.row("section", name) for name in _forces(c)}
+    content = {
+        "name": c.name,
+        "prefix": c.prefix,
+        "precision": c.precision,
+        "model": places(source)["end"],
+        "parameters": [
+            described(m) | {"default": m.default, "low": end(m.low), "high": end(m.high)}
+            for m in c.settings
+        ],
+        "inputs": [described(m) for m in c.inputs],
+        "outputs": [described(m) for m in c.outputs],
+        "links": [link.name for link in c.links],
+        "forces": [
+            {"name": name, "unit": row.unit, "meaning": about(c.table, name)}
+            for name, row in rows.items()
+        ],
+    }
+    return json.dumps(content, indent=1)
+
+
+def _types(source: Source) -> str:
+    c = source.contract
+
+    def members(rows: Sequence[tuple[str, str]]) -> str:
+        return "\n".join(
+            f"  /** {comment(described)} */\n  {name}: number;" for name, described in rows
+        )
+
+    return template(
+        "wasm.d.ts",
+        **_words(source),
+        parameters=members([(m.name, m.comment) for m in c.settings]),
+        inputs=members([(m.name, m.comment) for m in c.inputs]),
+        outputs=members([(m.name, m.comment) for m in c.outputs]),
+        forces=members([(name, about(c.table, name)) for name in _forces(c)]),
+        links=" | ".join(json.dumps(link.name) for link in c.links) or "never",
+    )
+
+
+def _page(source: Source, size: int) -> str:
+    c, t = source.contract, source.golden.times
+    setting, link = next(iter(c.settings), None), next(iter(c.links), None)
+    first = f"mechanism.evaluate(mechanism.motion({t[0]:.6g}))"
+    followed = (
+        "\n- Iterated loops are followed from the instant before: times must be near each other,"
+        " and begin where the scene's\n  motion does."
+        if source.iterated
+        else ""
+    )
+    return template(
+        "wasm.md",
+        **_words(source) | {"name": markdown(c.name)},
+        size=size,
+        prepare=(
+            f"mechanism.prepare({{ {setting.name}: {setting.default:.6g} }});"
+            if setting
+            else "mechanism.prepare();"
+        ),
+        times=", ".join(f"{time:.6g}" for time in t[:3]),
+        output=c.shown[1].name,
+        section=(
+            f"console.log(mechanism.section({first}, {json.dumps(link.name)}, 0.5));\n"
+            if link
+            else ""
+        ),
+        followed=followed,
+        story=source.story,
+    )

@@ -1,0 +1,1 @@
+"""Cross-sections, materials and notches of links."""

@@ -1,0 +1,133 @@
+"""Tables of profiles, as standards and dealers have them: names and dimensions, a line each."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from ...base.arguments import public
+from ...base.csv_rows import Row, headings, read_rows
+from ...errors import DeclarationError
+from .shape import Shape, dimensions_of
+
+_UNITS = {"": 1, "m": 1, "cm": 100, "mm": 1000}
+"""Number of each unit in a metre."""
+_TABLES = Path(__file__).parent / "tables"
+STANDARD = tuple(sorted(path.stem for path in _TABLES.glob("*.csv")))
+"""Names of the tables of standard profiles."""
+
+
+@public
+@dataclass(frozen=True)
+class Profile:
+    """A profile: its name, and dimensions [m] by name.
+
+    ``table`` is the standard table that it is of, if any: its dimensions are all of its shape's.
+    """
+
+    name: str
+    dimensions: dict[str, float]
+    table: str = field(default="", repr=False, compare=False)
+
+    def shape(self, kind: str) -> Shape:
+        """Return the cross-section of a kind that has these dimensions.
+
+        Parameters
+        ----------
+        kind : str
+            Kind of shape, as ``"i_section"``.
+
+        Returns
+        -------
+        Shape
+            The cross-section.
+
+        Raises
+        ------
+        DeclarationError
+            If the kind has other dimensions.
+        """
+        names = dimensions_of(kind)
+        if names is None or set(names) != set(self.dimensions):
+            valid = ", ".join(names or ("none by name",))
+            raise DeclarationError(
+                f"profile '{self.name}': a {kind} has the dimensions {valid}, got"
+                f" {', '.join(self.dimensions)}"
+            )
+        return Shape(kind, {name: self.dimensions[name] for name in names})
+
+
+@public
+def read_profiles(path: str | os.PathLike[str]) -> tuple[Profile, ...]:
+    """Read a table of profiles.
+
+    Parameters
+    ----------
+    path
+        CSV file with a column ``name``, and one for each dimension, in metres or with a unit as
+        ``height [mm]``; lines that begin with ``#`` are skipped. If there is no such file, the
+        name of a standard table: IPE, HEA and HEB of EN 10365, CHS for round tubes, SHS and RHS
+        for square and rectangular ones (SHS_cold and RHS_cold if cold formed), flat and round.
+        Each table says in its first lines where its sizes are from.
+
+    Returns
+    -------
+    tuple of Profile
+        The profiles, in the order of the table.
+
+    Raises
+    ------
+    PathError
+        For a file that cannot be read.
+    DeclarationError
+        For a wrong line, which it names.
+    """
+    table = str(path) if str(path) in STANDARD and not Path(path).exists() else ""
+    if table:
+        path = _TABLES / f"{table}.csv"
+    tables = f"tables: {', '.join(STANDARD)}"
+    rows = read_rows(path, "a head and a line for every profile", names=tables)
+    head = next(rows)
+    sizes = {name: _size_of(head.where, name, unit) for name, unit in headings(head.cells)}
+    names = [name for name, _ in headings(head.cells)]
+    if names.count("name") != 1 or len(set(names)) < len(names) or len(names) < 2:
+        raise DeclarationError(
+            f"{head.where}: expected a column 'name' and one for each dimension, got"
+            f" {', '.join(names)}"
+        )
+    found: dict[str, Profile] = {}
+    for row in rows:
+        cells = dict(zip(names, row.cells, strict=True))
+        name = cells.pop("name")
+        if not name.isprintable() or not name or name in found:
+            raise DeclarationError(
+                f"{row.where}: "
+                + (f"profile '{name}' is listed twice" if name in found else "it has no name")
+            )
+        found[name] = Profile(
+            name,
+            {key: _size(row, key, text, sizes[key]) for key, text in cells.items()},
+            table,
+        )
+    if not found:
+        raise DeclarationError(f"{head.where}: expected a line for every profile below this head")
+    return tuple(found.values())
+
+
+def _size_of(place: str, name: str, unit: str) -> int:
+    """Return how many of a column's unit are a metre."""
+    if not name.isidentifier() or unit not in _UNITS:
+        text = f"{name} [{unit}]" if unit else name
+        raise DeclarationError(
+            f"{place}: column '{text}': expected a name, and m, cm or mm as its unit, as in height"
+            " [mm]"
+        )
+    return _UNITS[unit]
+
+
+def _size(row: Row, key: str, text: str, unit: int) -> float:
+    value = row.number(text, unit)
+    if not value > 0.0:
+        raise DeclarationError(f"{row.where}: {key}: expected a positive number, got '{text}'")
+    return value

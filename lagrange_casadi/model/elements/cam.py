@@ -1,0 +1,428 @@
+"""Disc cams with the real forces of their contact: translating and swinging followers with a
+roller, a knife edge or a flat face.
+
+A follower's motion is given as a law of the cam's angle. Where the contact is, and along which
+normal it acts, follows from that: a point A of the follower is at a(theta), and the contact acts
+along n(theta) through it, with a moment tau(theta) about it where it acts beside it. The equation
+of contact is n . (A - C - a) + tau sin(turn), C the cam's centre and turn how far the follower is
+from where it should be turned. Its multiplier is the force of the contact, on both bodies along its
+true line of action.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, cast
+
+import casadi as ca
+
+from ...base.arguments import Count, Elastic, public
+from ...base.brief import Brief
+from ...base.rotation import Rotation
+from ...base.vectors import Vector, cross, dot, minus, plus, times
+from ...errors import DeclarationError
+from ..expressions import sound
+from ..joints import Joint
+from ..mechanism import Mechanism
+from ..parts import Constraint, Expression, Link, Outline, Point, Roller
+from .cam_profile import CamProfile, profile_of
+from .follower import STEEL, held_by, largest_pressure, rise_of, stiffness_of
+
+_CORNERS = 240
+"""Corners by which pictures show a profile."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Design(Brief):
+    """Position of the contact, by the symbol ``angle`` of the cam [rad], from the cam's centre in
+    ground axes.
+
+    ``place`` is the follower's point, ``normal`` of length one from the cam to the follower,
+    ``moment`` the arm of the contact about that point, ``contact`` where it touches, ``travel`` the
+    direction in which the follower moves there. ``turned`` is the direction of the follower's own
+    axis, None where nothing depends on it; ``roller`` is the radius of its roller.
+    """
+
+    angle: Any
+    place: Vector
+    normal: Vector
+    moment: Any
+    contact: Vector
+    travel: Vector
+    turned: Vector | None
+    roller: Expression
+
+
+@public
+@dataclass(frozen=True, eq=False, repr=False)
+class Cam(Brief):
+    """A disc cam: its ``constraint``, whose multiplier is the force of its contact, and its
+    ``design``.
+
+    Outputs are NAME_force [N], positive where the cam pushes, NAME_pressure_angle [rad] between the
+    force and the way of the follower's point, NAME_radius [m] of the cam's profile, positive where
+    that is convex, and with a width NAME_hertz [Pa].
+    """
+
+    name: str
+    mechanism: Mechanism
+    constraint: Constraint
+    design: Design
+
+    def profile(
+        self, parameters: dict[str, float] | None = None, *, count: Count = 720
+    ) -> CamProfile:
+        """Return the cam's profile at angles of one turn.
+
+        Parameters
+        ----------
+        parameters : dict, optional
+            Values by name; by default the parameters' defaults.
+        count : int
+            Number of angles, 16 to a million.
+
+        Returns
+        -------
+        CamProfile
+            The profile, in the cam's own axes.
+
+        Raises
+        ------
+        UnknownNameError
+            For a name that is not a parameter.
+        ParameterError
+            For values that are out of range, or make a part impossible.
+        DeclarationError
+            For another count, and if the follower cannot touch the cam.
+        """
+        design, x, values = self.design, self.design.angle, self.mechanism.values(parameters)
+        back = Rotation.by(-x)
+        rows = [
+            *back.apply(design.contact)[:2],
+            *back.apply(design.place)[:2],
+            pressure_angle(design),
+            curvature(design),
+            progress(design),
+        ]
+        function = ca.Function(
+            "profile",
+            [x, self.mechanism.symbols],
+            [ca.densify(ca.vertcat(*map(ca.SX, rows)))],
+            {"cse": True},
+        )
+        return profile_of(self.name, function, list(values.values()), count)
+
+
+@public
+def disc_cam(
+    mechanism: Mechanism,
+    name: str,
+    cam: Joint,
+    follower: Joint,
+    lift: Callable[[Expression], Expression],
+    *,
+    base_radius: Expression,
+    point: Point | None = None,
+    roller: Expression | None = None,
+    flat: bool = False,
+    side: int = 1,
+    width: Expression | None = None,
+    elastic: Elastic = STEEL,
+) -> Cam:
+    """Declare the contact of a disc cam with its follower in a plane, from the follower's motion.
+
+    Parameters
+    ----------
+    mechanism, name
+        The mechanism, and the name of the new part.
+    cam, follower
+        The revolute joint of the cam on the ground, and the joint of the follower on the ground:
+        prismatic for a translating one, whose line leads away from the cam, or revolute for a
+        swinging one.
+    lift
+        The follower's rise [m], or its swing [rad] away from the cam, as a function of the cam's
+        angle: a motion of ``moves``, a ``curve``, or any function that takes and returns CasADi's
+        expressions. It must be periodic by a turn and zero at its least.
+    base_radius
+        The radius of the cam's base circle [m].
+    point
+        The centre of the follower's roller, or its knife edge; by default the point at which the
+        joint holds it.
+    roller, flat
+        The radius of the roller [m]; a ``flat`` face instead, at right angles to the way of a
+        translating follower, or along the axis of a swinging one, through its pin; a knife edge
+        without both.
+    side
+        1 for a swinging follower that swings counter-clockwise away from the cam, -1 for one that
+        swings clockwise.
+    width, elastic
+        The width of the contact [m], for the pressure of Hertz, and Young's modulus [Pa] and
+        Poisson's ratio of both bodies.
+
+    Returns
+    -------
+    Cam
+        The contact, with its constraint and the numbers of its profile.
+
+    Raises
+    ------
+    DeclarationError
+        For joints of other kinds, a lift that is no function, and a profile that is undercut with
+        the default parameters.
+    """
+    what, ownership = f"cam '{name}'", mechanism.ownership
+    ownership.free("constraint", name, mechanism.constraints)
+    stiffness = stiffness_of(what, elastic)
+    layout = layout_of(what, mechanism, cam, follower, point, roller, flat, side)
+    base = ownership.expression(f"{what}: base_radius", base_radius, "m")
+    base = _positive(f"{what}: base_radius", base)
+    x = ca.SX.sym("angle")
+    rise = rise_of(what, mechanism, lift, x)
+    make = (
+        (_translating_flat if flat else _translating)
+        if follower.kind == "prismatic"
+        else (_swinging_flat if flat else _swinging)
+    )
+    design = make(base, x, rise, layout)
+    touched = follower.child if flat and follower.kind == "revolute" else layout.held
+    constraint = _contact(mechanism, name, cam, touched, design, rise)
+    made = Cam(name, mechanism, constraint, design)
+    _outputs(made, cam, width, stiffness)
+    mechanism.outlines.setdefault(cam.child.body.name, []).append(_outline(made, cam.child))
+    if roller is not None:
+        mechanism.rollers[name] = Roller(layout.held, layout.roller)
+    profile = made.profile()
+    if not profile.closes:
+        raise DeclarationError(
+            f"{what}: its lift must be the same after a turn of the cam; expected a period of 2 pi"
+        )
+    if profile.undercut.any():
+        raise DeclarationError(
+            f"{what}: {profile.undercut_summary}; expected a larger base radius, a smaller roller"
+            " or a slower lift"
+        )
+    return made
+
+
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """Positions of a cam and its follower."""
+
+    cam: Joint
+    follower: Joint
+    held: Point
+    roller: Expression
+    side: int
+
+    @property
+    def away(self) -> Vector:
+        """Vector from the cam's centre to the place on the ground at which the follower is
+        guided.
+        """
+        return minus(self.follower.parent.place, self.cam.parent.place)
+
+    @property
+    def arm(self) -> Vector:
+        """Vector from the point at which the follower is guided to the one that touches, in the
+        follower's axes.
+        """
+        return minus(self.held.place, self.follower.child.place)
+
+    @property
+    def offset(self) -> tuple[Expression, Vector, Vector]:
+        """Distance of a translating follower's line from the cam's centre, the direction across
+        the line in which it is, and the direction of the line.
+        """
+        x, y = self.follower.axis
+        aside = y, -x, 0.0
+        seat = plus(self.away, Rotation.by(self.follower.angle).apply(self.arm))
+        return dot(seat, aside), aside, (x, y, 0.0)
+
+
+def layout_of(
+    what: str,
+    mechanism: Mechanism,
+    cam: Joint,
+    follower: Joint,
+    point: Point | None,
+    roller: Expression | None,
+    flat: bool,
+    side: int,
+) -> Layout:
+    """Check the arguments of :func:`disc_cam` on a cam and its follower.
+
+    Raises :class:`.DeclarationError` as that does.
+    """
+    held = held_by(what, mechanism, cam, follower, point, space=False)
+    if flat and (roller is not None or point is not None):
+        raise DeclarationError(f"{what}: a flat face has neither a roller nor a point")
+    if side not in (1, -1):
+        raise DeclarationError(f"{what}: side must be 1 or -1, got {side!r}")
+    radius: Expression = 0.0
+    if roller is not None:
+        wide = mechanism.ownership.expression(f"{what}: roller", roller, "m")
+        radius = _positive(f"{what}: roller", wide)
+    return Layout(cam, follower, held, radius, side)
+
+
+def _positive(what: str, radius: Expression) -> Expression:
+    """A radius; none that parameters make zero or less.
+
+    Raises :class:`.DeclarationError` for a number of no radius.
+    """
+    if isinstance(radius, ca.SX):
+        return radius * sound(radius > 0.0)
+    if not radius > 0.0:
+        raise DeclarationError(f"{what} must be positive, got {radius:g} m")
+    return radius
+
+
+def _pitch_normal(x: Expression, place: Vector) -> Vector:
+    """The normal outward of the curve that a point makes on the cam."""
+    # At right angles to how the point moves on the cam.
+    outward = place[0] - ca.jacobian(place[1], x), place[1] + ca.jacobian(place[0], x), 0.0
+    size = ca.sqrt(dot(outward, outward))
+    return outward[0] / size, outward[1] / size, 0.0
+
+
+def _translating(base: Expression, x: Expression, rise: Expression, layout: Layout) -> Design:
+    (offset, aside, up), roller = layout.offset, layout.roller
+    height = ca.sqrt((base + roller) ** 2 - offset * offset) + rise
+    place = plus(times(offset, aside), times(height, up))
+    normal = _pitch_normal(x, place)
+    return Design(x, place, normal, 0.0, plus(place, times(-roller, normal)), up, None, roller)
+
+
+def _translating_flat(base: Expression, x: Expression, rise: Expression, layout: Layout) -> Design:
+    offset, aside, up = layout.offset
+    height = times(base + rise, up)
+    place = plus(times(offset, aside), height)
+    # It touches beside the line through the cam's centre by the slope of the lift.
+    contact = plus(times(ca.jacobian(rise, x), aside), height)
+    moment = cross(minus(contact, place), up)[2]
+    turned = Rotation.by(layout.follower.angle).x
+    return Design(x, place, up, moment, contact, up, turned, 0.0)
+
+
+def _swinging(base: Expression, x: Expression, rise: Expression, layout: Layout) -> Design:
+    away, arm, roller = layout.away, layout.arm, layout.roller
+    length = ca.sqrt(ca.SX(dot(arm, arm)))
+    distance = ca.sqrt(ca.SX(dot(away, away)))
+    prime = base + roller
+    along, across = _swung(
+        layout, rise, (length**2 + distance**2 - prime**2) / (2.0 * length * distance), distance
+    )
+    place = plus(away, times(length, along))
+    normal = _pitch_normal(x, place)
+    return Design(x, place, normal, 0.0, plus(place, times(-roller, normal)), across, None, roller)
+
+
+def _swinging_flat(base: Expression, x: Expression, rise: Expression, layout: Layout) -> Design:
+    away = layout.away
+    distance = ca.sqrt(ca.SX(dot(away, away)))
+    sine = base / distance
+    along, normal = _swung(layout, rise, ca.sqrt(1.0 - sine * sine), distance)
+    # The normal passes through the point at which both turn alike.
+    arm = times(-dot(away, along) / (1.0 - layout.side * ca.jacobian(rise, x)), along)
+    return Design(x, away, normal, cross(arm, normal)[2], plus(away, arm), normal, along, 0.0)
+
+
+def _swung(
+    layout: Layout, rise: Expression, cosine: Expression, distance: Expression
+) -> tuple[Vector, Vector]:
+    """The direction of the arm of a swinging follower, and that in which it swings away from the
+    cam.
+
+    On the base circle the arm is at an angle of this ``cosine`` to the line from its pin to the
+    cam's centre.
+    """
+    x, y = -layout.away[0] / distance, -layout.away[1] / distance
+    sine = layout.side * ca.sqrt(1.0 - cosine * cosine)
+    least = cosine * x - sine * y, sine * x + cosine * y, 0.0
+    along = Rotation.by(layout.side * rise).apply(least)
+    return along, (-layout.side * along[1], layout.side * along[0], 0.0)
+
+
+def _contact(
+    mechanism: Mechanism, name: str, cam: Joint, touched: Point, design: Design, rise: Expression
+) -> Constraint:
+    """The equation of the contact, in places, so that its force acts where it is."""
+    (x, y), (x0, y0) = mechanism.place(cam.child), mechanism.place(touched)
+    turn = mechanism.coordinate(cam)
+    here = _at(design, turn)
+    gap = dot(here.normal, plus((x0 - x, y0 - y, 0.0), times(-1.0, here.place)))
+    if here.turned is not None:
+        lean = mechanism.direction(cast(Link, touched.body))
+        gap = gap + here.moment * cross(here.turned, (ca.cos(lean), ca.sin(lean), 0.0))[2]
+    phi = mechanism.ownership.expression(f"cam '{name}'", gap, moving=True)
+    return mechanism.constraints.setdefault(
+        name, Constraint(name, phi, lift=ca.substitute(rise, design.angle, turn))
+    )
+
+
+def _outline(made: Cam, shaft: Point) -> Outline:
+    """Corners of the profile in the axes of the cam's link, whose point is on the ``shaft`` [m]."""
+    design, symbols = made.design, made.mechanism.symbols
+    x, y, _ = plus(shaft.place, Rotation.by(-design.angle).apply(design.contact))
+    corner = ca.Function("corner", [design.angle, symbols], [ca.SX(x), ca.SX(y)])
+    return [corner(ca.SX(math.tau * k / _CORNERS), symbols) for k in range(_CORNERS)]
+
+
+def _at(design: Design, angle: Expression) -> Design:
+    """A design at an expression of the cam's angle."""
+
+    def put(value: Expression) -> Expression:
+        return ca.substitute(value, design.angle, angle) if isinstance(value, ca.SX) else value
+
+    def each(vector: Vector) -> Vector:
+        x, y, z = map(put, vector)
+        return x, y, z
+
+    turned = None if design.turned is None else each(design.turned)
+    place, normal, contact, travel = map(
+        each, (design.place, design.normal, design.contact, design.travel)
+    )
+    return Design(angle, place, normal, put(design.moment), contact, travel, turned, design.roller)
+
+
+def pressure_angle(design: Design) -> Expression:
+    """The angle between the contact's force and the way of the follower [rad]."""
+    across = ca.fabs(cross(design.normal, design.travel)[2])
+    return ca.atan2(across, dot(design.normal, design.travel))
+
+
+def curvature(design: Design) -> Expression:
+    """The radius of curvature of the profile [m]: positive where it is convex; infinite where it is
+    straight.
+    """
+    x = design.angle
+    lean = -ca.atan2(design.normal[0], design.normal[1]) - x
+    return progress(design) / ca.jacobian(lean, x)
+
+
+def progress(design: Design) -> Expression:
+    """Speed of the contact along the cam by its angle [m], counter-clockwise round it: undercut if
+    it is not negative.
+    """
+    x, contact = design.angle, design.contact
+    moved = ca.jacobian(contact[0], x) + contact[1], ca.jacobian(contact[1], x) - contact[0], 0.0
+    return cross(design.normal, moved)[2]
+
+
+def _outputs(made: Cam, cam: Joint, width: Expression | None, stiffness: float) -> None:
+    mechanism, name = made.mechanism, made.name
+    force = mechanism.results.multiplier(made.constraint)
+    here, radius = _at(made.design, mechanism.coordinate(cam)), curvature(made.design)
+    radius = ca.substitute(radius, made.design.angle, mechanism.coordinate(cam))
+    mechanism.output(f"{name}_force", force, unit="N")
+    mechanism.output(f"{name}_pressure_angle", pressure_angle(here), unit="rad")
+    mechanism.output(f"{name}_radius", radius, unit="m")
+    if width is not None:
+        roller = made.design.roller
+        rolled = 0.0 if isinstance(roller, float) and roller == 0.0 else 1.0 / roller
+        pressure = largest_pressure(
+            f"cam '{name}'", mechanism, ca.fmax(force, 0.0), 1.0 / radius + rolled, width, stiffness
+        )
+        mechanism.output(f"{name}_hertz", pressure, unit="Pa")

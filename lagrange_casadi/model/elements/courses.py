@@ -1,0 +1,182 @@
+"""Motion of a body relative to another one: its axis of rotation or sliding, and coordinates of
+joints.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import casadi as ca
+
+from ...base.rotation import Rotation
+from ...base.vectors import cross, dot, minus, plus
+from ...errors import DeclarationError
+from ..joints import Joint
+from ..mechanism import Mechanism
+from ..meshes import FITTING, Fit
+from ..parts import Body, Expression, Point, Vector
+from ..validity import Evaluator
+
+_KINDS = ("revolute", "prismatic", "weld")
+_AS_IT_IS = Rotation()
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """Motion of a point of a body relative to a carrier: the point stays on an ``axis``, or
+    ``slides`` along it.
+
+    ``place`` and ``axis``, of length one, are in the carrier's axes where all coordinates are zero;
+    ``rotations`` are the joints whose coordinates, each with its sign, add up to the angle about
+    the axis, or the way along it. ``joints`` are all joints between, and ``shifted`` how far the
+    point is from their axes. ``seen`` turns the carrier's axes from those of the body.
+    """
+
+    carrier: Body
+    place: Vector
+    axis: Vector | None
+    rotations: tuple[tuple[int, Joint], ...]
+    slides: bool
+    joints: tuple[Joint, ...]
+    shifted: tuple[Expression, ...] = ()
+    seen: Rotation = _AS_IT_IS
+
+    def displacement(self, mechanism: Mechanism) -> ca.SX:
+        """The angle about its axis, or the way along it, as an expression of coordinates."""
+        return sum((sign * mechanism.coordinate(joint) for sign, joint in self.rotations), ca.SX(0))
+
+
+def length(vector: Vector) -> Expression:
+    """The length of a vector: a number where it lies along an axis of numbers."""
+    found = dot(vector, vector)
+    return ca.sqrt(found) if isinstance(found, ca.SX) else float(found) ** 0.5
+
+
+def size(vector: Vector, number: Evaluator) -> float:
+    """The length of a vector as a number."""
+    return math.hypot(*map(number, vector))
+
+
+def along(vector: Vector, by: Expression) -> Vector:
+    """A vector over a number."""
+    return vector[0] / by, vector[1] / by, vector[2] / by
+
+
+def courses_on(
+    mechanism: Mechanism,
+    what: str,
+    first: Point,
+    second: Point,
+    carrier: Body | None,
+    *,
+    rack: bool = True,
+) -> tuple[Course, Course]:
+    """Motions of two points on the one body on which both turn, or the second slides.
+
+    Raises :class:`.DeclarationError` where there is none, or where that is not the ``carrier``.
+    """
+    found = [
+        {course.carrier.name: course for course in _courses(mechanism, point)}
+        for point in (first, second)
+    ]
+    both = [
+        name
+        for name in found[0]
+        if name in found[1] and not found[0][name].slides and (rack or not found[1][name].slides)
+    ]
+    if carrier is not None:
+        both = [name for name in both if name == carrier.name]
+    if not both:
+        where = f"'{carrier.name}'" if carrier is not None else "one body"
+        names = [", ".join(f"'{name}'" for name in one) or "nothing" for one in found]
+        axes = "; ".join(
+            f"'{point.body.name}' turns on {on}"
+            for point, on in zip((first, second), names, strict=True)
+        )
+        raise DeclarationError(
+            f"{what}: expected the centres of two bodies that turn on {where} by revolute joints"
+            f" through these; {axes}"
+        )
+    nearest = min(both, key=lambda name: sum(len(one[name].joints) for one in found))
+    return found[0][nearest], found[1][nearest]
+
+
+def fits_of(what: str, course: Course) -> list[Fit]:
+    """Condition that the axes of all joints of a course are one, for other parameters too."""
+    words = (
+        f"{what} and joints {', '.join(joint.name for joint in course.joints)} must be on one axis,"
+        " {got} m off"
+    )
+    return [
+        Fit(words, off, 0.0, 1.0)
+        for off in course.shifted
+        if isinstance(off, ca.SX) and not off.is_constant()
+    ]
+
+
+def _courses(mechanism: Mechanism, point: Point) -> list[Course]:
+    """All courses of a point: to every body on which it turns about one axis, or slides."""
+    start = Course(point.body, point.place, None, (), False, ())
+    reached, found = {point.body.name}, [start]
+    for course in found:
+        for joint in mechanism.joints.values():
+            if joint.kind not in _KINDS or course.carrier not in joint.bodies:
+                continue
+            other = joint.child.body if joint.parent.body is course.carrier else joint.parent.body
+            if (
+                other.name not in reached
+                and (further := _through(mechanism, course, joint, other)) is not None
+            ):
+                reached.add(other.name)
+                found.append(further)
+    return [course for course in found if course.axis is not None]
+
+
+def _through(mechanism: Mechanism, course: Course, joint: Joint, other: Body) -> Course | None:
+    """A course seen from beyond a joint of its carrier; None where it does not stay on one axis."""
+    outward, zero = joint.child.body is other, _zero(joint)
+    number = mechanism.ownership.at_defaults
+    if joint.kind != "weld" and (
+        not joint.axes or course.slides or (joint.kind == "prismatic" and course.axis is not None)
+    ):
+        return None
+
+    def seen(place: Vector) -> Vector:
+        if outward:
+            return plus(joint.child.place, zero.resolve(minus(place, joint.parent.place)))
+        return plus(joint.parent.place, zero.apply(minus(place, joint.child.place)))
+
+    turn = zero.resolve if outward else zero.apply
+    whole = (zero.inverse if outward else zero).then(course.seen)
+    axis, place, shifted = course.axis, course.place, course.shifted
+    if joint.kind == "weld":
+        axis, joints = axis and turn(axis), (*course.joints, joint)
+        moved = course.rotations, course.slides
+        return Course(other, seen(place), axis, *moved, joints, shifted, whole)
+    # The joint's axis is in its parent's axes, and the same in its child's, turned.
+    direction = joint.axes[0].direction
+    here = direction if outward else zero.resolve(direction)
+    sign = -1 if outward else 1
+    if axis is None:
+        axis = here
+    elif size(cross(axis, here), number) > FITTING:
+        return None
+    elif number(dot(axis, here)) < 0.0:
+        sign = -sign
+    if joint.kind == "revolute":
+        off = cross(minus(place, (joint.parent if outward else joint.child).place), here)
+        if size(off, number) > FITTING * max(1.0, size(place, number)):
+            return None
+        shifted = (*shifted, *off)
+    rotations, joints = (*course.rotations, (sign, joint)), (*course.joints, joint)
+    return Course(
+        other, seen(place), turn(axis), rotations, joint.kind == "prismatic", joints, shifted, whole
+    )
+
+
+def _zero(joint: Joint) -> Rotation:
+    """Rotation of a joint's child in its parent's axes if its coordinates are zero."""
+    if joint.turned is not None:
+        return Rotation.of(*joint.turned)
+    return Rotation.by(joint.angle) if joint.kind != "revolute" else Rotation()

@@ -1,0 +1,178 @@
+"""Plates: rigid bodies of any polygon, whose mass, centre and moment of inertia follow from their
+corners.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import casadi as ca
+
+from ...base.arguments import public
+from ...base.brief import Brief
+from ...errors import DeclarationError
+from ..expressions import plain
+from ..mechanism import Mechanism
+from ..parts import Expression, Link, Point
+
+
+@public
+@dataclass(frozen=True, eq=False, repr=False)
+class Plate(Brief):
+    """A plate: its ``link``, and its ``corners`` as points of it."""
+
+    link: Link
+    corners: tuple[Point, ...]
+
+    def corner(self, number: int) -> Point:
+        """Return a corner.
+
+        Parameters
+        ----------
+        number : int
+            Number of the corner, from 0.
+
+        Returns
+        -------
+        Point
+            The corner.
+
+        Raises
+        ------
+        DeclarationError
+            If there is no such corner.
+        """
+        if not 0 <= number < len(self.corners):
+            raise DeclarationError(
+                f"'{self.link.name}': there is no corner {number!r}, expected 0 to"
+                f" {len(self.corners) - 1}"
+            )
+        return self.corners[number]
+
+    def at(self, x: Expression, y: Expression) -> Point:
+        """Return a point of the plate.
+
+        Parameters
+        ----------
+        x, y : float or casadi.SX
+            Its place on the axes of the corners [m].
+
+        Returns
+        -------
+        Point
+            The point.
+        """
+        return self.link.at(x, y)
+
+
+@public
+def plate(
+    mechanism: Mechanism,
+    name: str,
+    corners: Sequence[Sequence[Expression]],
+    *,
+    mass: Expression | None = None,
+    per_area: Expression | None = None,
+) -> Plate:
+    """Declare a rigid plate in a plane, a polygon of uniform thickness without sections.
+
+    Parameters
+    ----------
+    mechanism, name
+        The mechanism, and the name of the new part.
+    corners
+        At least three corners (x, y) [m] in order around the plate, on its own axes, numbers or
+        expressions of parameters. The direction of the link ``name`` in a posture is that of
+        these axes.
+    mass, per_area
+        Either the mass [kg], or the mass per area [kg/m^2], thickness times density.
+
+    Returns
+    -------
+    Plate
+        The plate, with its corners as points. For sections use :func:`.bent_bar`.
+
+    Raises
+    ------
+    DeclarationError
+        For fewer than three corners, edges that cross, a polygon without area, and in space.
+    """
+    what, checked = f"plate '{name}'", mechanism.ownership.expression
+    if mechanism.space:
+        raise DeclarationError(
+            f"{what}: only a mechanism in a plane has plates; in space declare a link with mass,"
+            " centre and inertia"
+        )
+    if not isinstance(corners, Sequence) or len(corners) < 3:
+        raise DeclarationError(f"{what}: expected three corners or more")
+    places = []
+    for k, corner in enumerate(corners):
+        if not isinstance(corner, Sequence) or isinstance(corner, str) or len(corner) != 2:
+            raise DeclarationError(f"{what}: corner {k}: expected (x, y), got {corner!r}")
+        x, y = (checked(f"{what}: corner {k}", number, "m") for number in corner)
+        places.append((x, y))
+    if (mass is None) == (per_area is None):
+        raise DeclarationError(f"{what}: expected mass= or per_area=")
+    _refuse_crossing(what, places)
+    area, x, y, second = area_of(places)
+    if isinstance(area, float) and area == 0.0:
+        raise DeclarationError(f"{what}: its corners lie on a line")
+    if per_area is None:
+        whole = checked(what, mass, "kg")
+    else:
+        whole = ca.fabs(ca.SX(area)) * checked(what, per_area)
+    farthest = ca.SX(0)
+    for corner in places:
+        farthest = ca.fmax(farthest, ca.sqrt(ca.SX(corner[0]) ** 2 + ca.SX(corner[1]) ** 2))
+    link = mechanism.link(
+        name,
+        length=plain(farthest),
+        mass=plain(whole),
+        centre=(x, y),
+        inertia=plain(whole * second),
+    )
+    mechanism.outlines[name] = [places]
+    return Plate(link, tuple(link.at(*corner) for corner in places))
+
+
+def area_of(places: Sequence[Expression]) -> tuple[Expression, Expression, Expression, Expression]:
+    """The area of a polygon, with its sign, the place of its centre, and its second moment about
+    that over its area [m^2].
+
+    Seen from the first corner, so that a plate far from its axes loses no digits.
+    """
+    x0, y0 = places[0]
+    ring = [(x - x0, y - y0) for x, y in places]
+    area, first_x, first_y, second = 0.0, 0.0, 0.0, 0.0
+    for (ax, ay), (bx, by) in zip(ring, [*ring[1:], ring[0]], strict=True):
+        cross = ax * by - bx * ay
+        area = area + cross / 2.0
+        first_x, first_y = first_x + cross * (ax + bx) / 6.0, first_y + cross * (ay + by) / 6.0
+        second = second + cross * (ax * ax + ax * bx + bx * bx + ay * ay + ay * by + by * by) / 12.0
+    if isinstance(area, float) and area == 0.0:
+        return 0.0, x0, y0, 0.0
+    x, y = first_x / area, first_y / area
+    return area, x0 + x, y0 + y, second / area - x * x - y * y
+
+
+def _refuse_crossing(what: str, places: Sequence[Expression]) -> None:
+    """Raise for a polygon of numbers of which two edges cross."""
+    if any(isinstance(number, ca.SX) for corner in places for number in corner):
+        return
+    count = len(places)
+    edges = [(places[k], places[(k + 1) % count]) for k in range(count)]
+    for (i, first), (j, second) in itertools.combinations(enumerate(edges), 2):
+        if j - i not in (1, count - 1) and _cross(*first, *second):
+            raise DeclarationError(
+                f"{what}: the edges from corners {i} and {j} cross; expected the corners in order"
+                " around the plate"
+            )
+
+
+def _cross(a: Expression, b: Expression, c: Expression, d: Expression) -> bool:
+    def side(p: Expression, q: Expression, r: Expression) -> float:
+        return float((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]))
+
+    return side(a, b, c) * side(a, b, d) < 0.0 and side(c, d, a) * side(c, d, b) < 0.0

@@ -1,0 +1,212 @@
+"""Values that may stand for a name or a number in a declaration."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+
+import casadi as ca
+
+from ..base.arrays import Operand
+from ..base.interpret import written_out
+from ..base.scalars import column
+from ..base.units import number, typed
+from ..errors import DeclarationError, NumberError, one_line, shown
+from .parts import Expression
+
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+
+
+def check_name(kind: str, name: str) -> None:
+    """Raise :class:`DeclarationError` for what cannot be a name in a file, on the command line, and
+    in C.
+    """
+    if not isinstance(name, str) or not _NAME.fullmatch(name):
+        raise DeclarationError(
+            f"{kind} name {name!r} must be a letter followed by letters, digits or underscores"
+        )
+
+
+def check_line(what: str, text: object) -> None:
+    """Raise :class:`DeclarationError` for what is no line of printable characters: it may stand in
+    files, figures and C.
+    """
+    if not isinstance(text, str) or not text.isprintable():
+        raise DeclarationError(f"{what} must be a line of printable characters, got {text!r}")
+
+
+def scalar(
+    what: str, value: object, symbols: Iterable[ca.SX], allowed: str, unit: str = "1"
+) -> Expression:
+    """A finite float, or an SX scalar in the given symbols; a number in a ``unit`` may be a text,
+    as ``"100 mm"``.
+
+    Raises :class:`DeclarationError`, saying what is ``allowed``.
+    """
+    if isinstance(value, ca.SX):
+        if value.numel() != 1:
+            raise DeclarationError(f"{what} must be a scalar, got one of shape {value.shape}")
+        known = {symbol.element_hash() for symbol in symbols}
+        foreign = [
+            f"'{symbol}'" for symbol in ca.symvar(value) if symbol.element_hash() not in known
+        ]
+        if foreign:
+            raise DeclarationError(f"{what} depends on {', '.join(foreign)}, not a {allowed}")
+        if not (value.is_constant() or value.is_symbolic()):
+            called = ca.Function("expression", ca.symvar(value), [value]).find_functions()
+            if any(function.class_name().endswith("Interpolant") for function in called):
+                raise DeclarationError(
+                    f"{what} calls casadi.interpolant, which works in double precision only, one"
+                    " instant at a time; expected lagrange_casadi.curve(x, y)(ARGUMENT), or"
+                    " table(ARGUMENT, x, y) if corners are allowed"
+                )
+            return written_out(value)
+        return value
+    try:
+        found = number(value, unit, finite=isinstance(value, str))
+    except NumberError as error:
+        if isinstance(value, str) and unit != "1":
+            raise DeclarationError(f"{what}: {error}") from None
+        raise DeclarationError(
+            f"{what} must be a number or an expression in parameters, got {shown(value)}"
+        ) from None
+    if not math.isfinite(found):
+        nan = (
+            "; the functions of math and float() cannot take a symbol: use casadi.sin, casadi.fmax"
+            " and the like"
+            if math.isnan(found)
+            else ""
+        )
+        raise DeclarationError(f"{what} must be finite, got {found}{nan}")
+    return found
+
+
+def coordinates(
+    what: str, terms: Iterable[tuple[Expression | str, str]]
+) -> tuple[list[Expression], str]:
+    """Numbers or expressions of a joint's coordinate, each with what it is per, as ``"/s"``; and in
+    which unit texts give them.
+
+    That is rad or m, or nothing without a text. Raises :class:`DeclarationError` for what is none
+    of these, or in both units.
+    """
+    found: list[Expression] = []
+    units: set[str] = set()
+    for value, per in terms:
+        read, unit = typed(value)
+        base = unit.removesuffix(per)
+        if isinstance(value, str) and unit not in (f"rad{per}", f"m{per}"):
+            examples = f"'350 deg{per}' or '100 mm{per}'"
+            raise DeclarationError(
+                f"{what}: expected a number, an expression, or a text such as {examples}, got"
+                f" {shown(value)}"
+            )
+        units |= {base} if unit else set()
+        found.append(scalar(what, read, symbols_of(read), "parameter"))
+    if len(units) > 1:
+        raise DeclarationError(
+            f"{what}: mixes angles and lengths; expected the unit of one coordinate"
+        )
+    return found, next(iter(units), "")
+
+
+def symbols_of(value: Expression) -> list[ca.SX]:
+    """The symbols of an expression; of anything else none."""
+    return list(ca.symvar(value)) if isinstance(value, ca.SX) else []
+
+
+def sound(condition: ca.SX) -> ca.SX:
+    """One where a condition on parameters holds; elsewhere not a number, which every backend and
+    compiler has as a root.
+    """
+    return ca.sqrt(2.0 * condition - 1.0)
+
+
+def expressed(
+    what: str, graph: Callable[..., Expression], arguments: Sequence[ca.SX], names: str
+) -> Expression:
+    """Return a user's function of symbols, which messages call by their ``names``.
+
+    Raises :class:`.DeclarationError`, saying ``what`` it is, for whatever the function raises.
+    """
+    try:
+        return graph(*arguments)
+    except Exception as error:
+        raise DeclarationError(
+            f"{what} cannot be made as an expression of {names} (CasADi's functions, numbers"
+            f" without units): {error_text(error)[:240]}"
+        ) from None
+
+
+def error_text(error: BaseException) -> str:
+    """Message of an error in a line; for a choice that Python cannot make for a symbol, the
+    function that makes it.
+    """
+    text = one_line(error)
+    if "truth value of a CasADi" in text:
+        return (
+            "a symbol has no truth value: use casadi.if_else(condition, a, b) for 'if',"
+            " casadi.logic_and and logic_or for 'and' and 'or', casadi.fmin and fmax for 'min' and"
+            " 'max'"
+        )
+    return f"{type(error).__name__}{text and ': '}{text}"
+
+
+def bound(what: str, value: Operand, unit: str) -> float:
+    """A number in a unit, not always finite. Raises :class:`DeclarationError` for anything else."""
+    try:
+        return number(value, unit, finite=False)
+    except NumberError as error:
+        raise DeclarationError(f"{what}: {error}") from None
+
+
+def unit_vector(
+    what: str, axis: object, component: Callable[[Expression], Expression]
+) -> tuple[Expression, Expression]:
+    """A direction of length one.
+
+    Raises :class:`DeclarationError` for (0, 0), or for what has not two components.
+    """
+    if not isinstance(axis, (tuple, list)) or len(axis) != 2:
+        raise DeclarationError(f"{what}: axis must be two components, got {axis!r}")
+    x, y = (component(a) for a in axis)
+    if isinstance(x, ca.SX) or isinstance(y, ca.SX):
+        norm = ca.sqrt(x * x + y * y)
+        return x / norm, y / norm
+    norm = math.hypot(x, y)
+    if norm == 0.0:
+        raise DeclarationError(f"{what}: axis must not be (0, 0)")
+    return x / norm, y / norm
+
+
+def plain(value: Expression) -> Expression:
+    """A number where an expression is one."""
+    return float(value) if isinstance(value, ca.SX) and value.is_constant() else value
+
+
+def value_of(
+    expression: Expression, symbols: Mapping[str, ca.SX], values: Mapping[str, float]
+) -> float:
+    """The value of an expression in parameters.
+
+    Raises :class:`.DeclarationError` for what is none, or lacks values.
+    """
+    if not isinstance(expression, ca.SX):
+        try:
+            return float(expression)
+        except (TypeError, ValueError, OverflowError, RuntimeError):
+            raise DeclarationError(
+                f"number: expected an expression in parameters, got {shown(expression)}"
+            ) from None
+    if missing := [name for name in symbols if name not in values]:
+        raise DeclarationError(
+            f"number: expected values of all parameters, and {', '.join(missing)} have none"
+        )
+    try:
+        numbers = column(values[name] for name in symbols)
+        return float(ca.evalf(ca.substitute(expression, column(symbols.values()), numbers)))
+    except (RuntimeError, NotImplementedError):
+        raise DeclarationError(
+            f"number: expected an expression of parameters only, got {shown(expression)}"
+        ) from None

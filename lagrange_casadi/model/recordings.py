@@ -1,0 +1,414 @@
+"""Motions that a controller has recorded or will play: columns of a CSV file, in its units,
+smoothed, as one smooth curve.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from ..base.arguments import public
+from ..base.arrays import Array
+from ..base.recorded_table import RecordedTable, count_sizes, for_each
+from ..base.units import UNITS, count, number
+from ..errors import DeclarationError, NumberError, PathError, UnknownNameError, one_line
+from .curves import Curve, curve
+from .expressions import coordinates, scalar, symbols_of
+from .motion import Motion
+from .parts import Expression
+
+_UNITS = UNITS["rad"] | UNITS["m"]
+_TIMES = UNITS["s"]
+_LEAST = 5
+"""So many rows are needed at least for four pieces."""
+
+_CLOSES = 6.0
+"""Largest difference of the ends of a cycle, as a multiple of the noise."""
+
+_SAME = 1e-9
+"""Largest relative difference of the ends if nothing is smoothed."""
+
+_LONGEST = 200
+"""Lines of a header of OpenSim's, at most."""
+
+_SLIDES = ("_tx", "_ty", "_tz")
+"""Ends of the names of OpenSim's coordinates that are lengths; all others are angles."""
+
+_FOURTH = 70.0
+"""The variance of the fourth difference of noise, over that of the noise: 1 + 16 + 36 + 16 + 1."""
+
+
+@dataclass(frozen=True, eq=False)
+class Recording:
+    """Values over time as a file has them, times in s, values in their ``unit``, and how they are
+    called. ``size`` is the unit in rad or m.
+    """
+
+    name: str
+    unit: str
+    t: Array
+    values: Array
+    size: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Fit:
+    """Options that make a law of a recording; see :func:`read_samples`."""
+
+    smoothing: float | str
+    points: int | None
+    periodic: bool
+    period: float | None
+    advance: float
+    ratio: Expression
+    offset: Expression
+    stretch: Expression
+
+
+@public
+def read_samples(
+    path: str | Path,
+    *,
+    value: str | int = 2,
+    time: str | int = 1,
+    unit: str | None = None,
+    time_unit: str | None = None,
+    counts_per_turn: float | None = None,
+    smoothing: float | str = 0.0,
+    points: int | None = None,
+    periodic: bool = False,
+    period: float | None = None,
+    advance: float = 0.0,
+    ratio: Expression = 1.0,
+    offset: Expression = 0.0,
+    stretch: Expression = 1.0,
+) -> Motion:
+    """A motion through the values that a controller has recorded, or is to play, from a CSV file.
+
+    Parameters
+    ----------
+    path
+        The file. Columns are parted by semicolons, tabs or commas; where they are not parted by
+        commas, a comma may be the decimal mark, in all numbers or in none. Lines that begin with
+        ``#`` are passed over.
+    value, time
+        The columns of the values and of the times: by their name in the first line, or by their
+        number, from 1.
+    unit, time_unit
+        The units in the file: ``rad``, ``deg``, ``turn``, or ``m``, ``cm``, ``mm``, ``um``, or
+        ``counts``; ``s``, ``ms`` or ``us``. By default those that the file states, as
+        :func:`read_motion` reads them; without these, rad and s.
+    counts_per_turn
+        Counts of an encoder for a turn, for a column in ``counts``.
+    smoothing
+        The noise of the values, in their unit: the law is the least bent curve whose distance from
+        them, in the root mean square, is so much. Zero passes through all of them; ``"estimated"``
+        takes the noise from their fourth differences, which is right where times are even and noise
+        is all that changes from one value to the next.
+    points
+        The curve is taken at so many even times, first and last included, and the law goes smoothly
+        through these.
+    periodic, period, advance
+        Whether it goes on over and over. The last row then says again what the first says, or is
+        ``advance`` beyond it [unit]. A file that leaves out that row needs the ``period`` [time
+        unit].
+    ratio, offset, stretch
+        Numbers or expressions of parameters: the law is offset [rad or m] + ratio times the values,
+        and takes ``stretch`` times as long.
+
+    Returns
+    -------
+    Motion
+        The law, in rad or m.
+
+    Raises
+    ------
+    PathError
+        For a file that cannot be read.
+    DeclarationError
+        For a line that is no row of numbers, times that do not increase, and ends of a cycle that
+        differ.
+    UnknownNameError
+        For unknown columns and units.
+    """
+    path = Path(path)
+    (recording,), second = _recordings(
+        _table(path), {"value": value}, time, unit, time_unit, counts_per_turn
+    )
+    law = _Fit(smoothing, points, periodic, period, advance, ratio, offset, stretch)
+    return _motion(replace(recording, name=path.name), law, second)
+
+
+@public
+def read_motion(
+    path: str | Path,
+    columns: Mapping[str, str | int] | Sequence[str] | None = None,
+    *,
+    time: str | int = 1,
+    unit: str | Mapping[str, str] | None = None,
+    time_unit: str | None = None,
+    counts_per_turn: float | Mapping[str, float] | None = None,
+    smoothing: float | str | Mapping[str, float | str] = 0.0,
+    points: int | None = None,
+    periodic: bool = False,
+    period: float | None = None,
+    advance: float | Mapping[str, float] = 0.0,
+    ratio: Expression | Mapping[str, Expression] = 1.0,
+    offset: Expression | Mapping[str, Expression] = 0.0,
+    stretch: Expression = 1.0,
+) -> dict[str, Motion]:
+    """Motions of several joints from one table of recorded values: what ``Scene(m, motion)`` takes.
+
+    Parameters
+    ----------
+    path
+        A CSV file as :func:`read_samples` reads it, whose heads may have units: ``knee [deg]`` or
+        ``knee (deg)``, or a row of units below the heads; or a motion of OpenSim (``.mot``,
+        ``.sto``), whose header says if angles are in degrees.
+    columns
+        For each coordinate its column, by head without unit, or by number from 1. A sequence names
+        coordinates that are called as their columns; None takes all columns but the time.
+    unit
+        Units of values, for all or by coordinate, in place of those of the file: those of
+        :func:`read_samples`, and ``counts``. Without either, rad.
+    time_unit
+        ``s``, ``ms`` or ``us``, in place of that of the file; without either, s.
+    counts_per_turn
+        Counts of an encoder for a turn, for columns in ``counts``.
+    smoothing, advance, ratio, offset
+        As of :func:`read_samples`, for all coordinates or by coordinate; noise and advance in the
+        unit of the column. The counts of an encoder are rounded: their noise is 0.29 counts.
+    time, points, periodic, period, stretch
+        As of :func:`read_samples`, the same for all coordinates; the period in the unit of time.
+
+    Returns
+    -------
+    dict
+        A :class:`Motion` for each coordinate, in the order of ``columns``.
+
+    Raises
+    ------
+    PathError
+        For a file that cannot be read.
+    UnknownNameError
+        For columns, units and coordinates that are not there, with those that are.
+    DeclarationError
+        As :func:`read_samples`; and for counts without a number for a turn.
+    """
+    path = Path(path)
+    table = _table(path)
+    if columns is None:
+        at = table.place(time)
+        columns = [name for k, name in enumerate(table.names) if name and k != at]
+        if not columns:
+            raise DeclarationError(
+                f"{path.name}: the file has no column heads; name the columns with columns="
+            )
+    named = dict(columns) if isinstance(columns, Mapping) else {name: name for name in columns}
+    if not named:
+        raise DeclarationError(f"{path.name}: columns= expected at least one coordinate")
+    recordings, second = _recordings(table, named, time, unit, time_unit, counts_per_turn)
+    place = path.name
+    noises: dict[str, float | str] = for_each(
+        place, named, "coordinate of smoothing=", smoothing, 0.0
+    )
+    advances = for_each(place, named, "coordinate of advance=", advance, 0.0)
+    ratios = for_each(place, named, "coordinate of ratio=", ratio, 1.0)
+    offsets = for_each(place, named, "coordinate of offset=", offset, 0.0)
+    found = {}
+    for name, recording in zip(named, recordings, strict=True):
+        law = _Fit(
+            noises[name],
+            points,
+            periodic,
+            period,
+            advances[name],
+            ratios[name],
+            offsets[name],
+            stretch,
+        )
+        found[name] = _motion(recording, law, second)
+    return found
+
+
+def _table(path: Path) -> RecordedTable:
+    """Read a table's heads, and its units: those that it states, or those of OpenSim."""
+    skip, described = _header(path)
+    table = RecordedTable.read(path, "columns of times and values", skip)
+    if not skip:
+        return table
+    angle = "deg" if described.get("indegrees", "no").lower() == "yes" else "rad"
+    units = ("s" if n == "time" else "m" if n.endswith(_SLIDES) else angle for n in table.names)
+    return replace(table, units=tuple(units))
+
+
+def _recordings(
+    table: RecordedTable,
+    named: Mapping[str, str | int],
+    time: str | int,
+    unit: str | Mapping[str, str] | None,
+    time_unit: str | None,
+    counts_per_turn: float | Mapping[str, float] | None,
+) -> tuple[list[Recording], float]:
+    """Read columns by name, and the unit of the times in s."""
+    path, at = table.path, table.place(time)
+    places = {name: table.place(column) for name, column in named.items()}
+    second = _known(path, time_unit or table.units[at] or "s", _TIMES, "time unit")
+    stated = for_each(path.name, named, "coordinate of unit=", unit, None)
+    units = {name: stated[name] or table.units[k] or "rad" for name, k in places.items()}
+    turns = count_sizes(path.name, named, units, counts_per_turn)
+    t, *series = table.columns(at, list(places.values()))
+    if t.size < _LEAST:
+        raise DeclarationError(
+            f"{path.name}: expected at least {_LEAST} rows of numbers, got {t.size}"
+        )
+    found = []
+    for (name, word), values in zip(units.items(), series, strict=True):
+        size = turns.get(name) or _known(path, word, {**_UNITS, "counts": 0.0}, "unit")
+        called = f"{path.name}, column {named[name]}"
+        found.append(Recording(called, word, t * second, values, size))
+    return found, second
+
+
+def _known(path: Path, word: str, valid: Mapping[str, float], what: str) -> float:
+    """The size of a unit."""
+    if word not in valid:
+        raise UnknownNameError(what, str(word), valid, place=path.name)
+    return valid[word]
+
+
+def _motion(recording: Recording, law: _Fit, second: float) -> Motion:
+    """The motion through a recording; ``second`` is the unit of the file's time in s."""
+    name, cyclic = recording.name, law.periodic or law.period is not None
+    for what, setting in (("period", law.period), ("advance", law.advance)):
+        try:
+            number(0.0 if setting is None else setting)
+        except NumberError as error:
+            raise DeclarationError(f"{name}: {what}: {error}") from None
+    (ahead,), unit_in = coordinates(f"{name}: offset", [(law.offset, "")])
+    each = zip(("ratio", "offset", "stretch"), (law.ratio, ahead, law.stretch), strict=True)
+    scales = [scalar(f"{name}: {word}", x, symbols_of(x), "parameter") for word, x in each]
+    if cyclic:
+        period = None if law.period is None else law.period * second
+        recording = _closed(recording, period, law.advance)
+    elif law.advance:
+        raise DeclarationError(f"{name}: advance= needs periodic=True")
+    # A ratio may make turns of lengths, and radians may be a rule's usual unit.
+    if not unit_in and isinstance(law.ratio, float) and law.ratio == 1.0:
+        unit_in = "m" if recording.unit in UNITS["m"] else "" if recording.unit == "rad" else "rad"
+    noise = _noise(recording, law.smoothing)
+    return _law(recording, noise, law.points, cyclic, law.advance, scales, unit_in)
+
+
+def _header(path: Path) -> tuple[int, dict[str, str]]:
+    """The number of lines of a header as OpenSim writes it, and what it states by words in small
+    letters; no lines for another file.
+    """
+    if path.suffix.lower() not in (".mot", ".sto"):
+        return 0, {}
+    described: dict[str, str] = {}
+    try:
+        with open(path, encoding="utf-8-sig") as file:
+            for count_read, line in zip(range(1, _LONGEST), file, strict=False):
+                word, _, value = line.strip().partition("=")
+                described[word.strip().lower()] = value.strip()
+                if word.lower() == "endheader":
+                    return count_read, described
+    except (OSError, UnicodeDecodeError) as error:
+        raise PathError(f"{path}: cannot be read as text: {one_line(error)}") from None
+    raise DeclarationError(f"{path.name}: expected a header that ends in the line 'endheader'")
+
+
+def _closed(recording: Recording, period: float | None, advance: float) -> Recording:
+    """A recording whose last row closes the cycle."""
+    if period is None:
+        return recording
+    t, values = recording.t, recording.values
+    end = t[0] + period
+    if not t[-1] < end:
+        lasts = f"its rows last {t[-1] - t[0]:.6g} s, but the period is {period:.6g} s"
+        raise DeclarationError(f"{recording.name}: {lasts}; expected rows of exactly one period")
+    return replace(recording, t=np.append(t, end), values=np.append(values, values[0] + advance))
+
+
+def _noise(recording: Recording, smoothing: float | str) -> float:
+    """The noise that is to be smoothed away, in the unit of the values."""
+    if smoothing == "estimated":
+        return float(np.sqrt(np.mean(np.diff(recording.values, 4) ** 2) / _FOURTH))
+    if (
+        isinstance(smoothing, bool)
+        or not isinstance(smoothing, (int, float))
+        or not 0.0 <= smoothing < math.inf
+    ):
+        raise DeclarationError(
+            f"{recording.name}: smoothing expected the noise [{recording.unit}], a number of at"
+            f" least 0, or 'estimated', got {smoothing!r}"
+        )
+    return float(smoothing)
+
+
+def _law(
+    recording: Recording,
+    noise: float,
+    points: int | None,
+    periodic: bool,
+    advance: float,
+    scales: Sequence[Expression],
+    unit_in: str,
+) -> Motion:
+    t, values, size = recording.t, recording.values, recording.size
+    whole = float(t[-1] - t[0])
+    climb = advance / whole
+    level = values - climb * (t - t[0])
+    if periodic:
+        gap = float(level[-1] - level[0])
+        if abs(gap) > max(_CLOSES * noise, _SAME * float(np.ptp(values))):
+            beyond = f"{advance:g} {recording.unit} beyond the first" if advance else "the first"
+            raise DeclarationError(
+                f"{recording.name}: the last value of a periodic motion must be {beyond}, but it"
+                f" is off by {gap:.6g} {recording.unit}; set advance=, or set period= if the last"
+                " row of the period is missing"
+            )
+        level[-1] = level[0]
+    found = _curve(recording.name, t, level, periodic, noise)
+    if points is not None:
+        count(f"{recording.name}: points", points, _LEAST)
+        even = np.linspace(t[0], t[-1], points)
+        found = _curve(recording.name, even, np.asarray(found(even)), periodic, 0.0)
+    off = float(np.abs(np.asarray(found(t)) - level).max())
+    ratio, offset, stretch = scales
+    start, rate = float(t[0]), climb * size
+
+    def graph(time: Expression) -> Expression:
+        at = time if isinstance(stretch, float) and stretch == 1.0 else time / stretch
+        value = size * found(at)
+        if rate:
+            value = value + rate * (at - start)
+        value = value if isinstance(ratio, float) and ratio == 1.0 else ratio * value
+        return value if isinstance(offset, float) and offset == 0.0 else offset + value
+
+    every = f", resampled at {points} equally spaced times" if points else ""
+    smoothed = f", smoothed by {noise:.3g} {recording.unit}" if noise else ""
+    described = (
+        f"{t.size} samples of {recording.name} from {t[0]:g} to {t[-1]:g}"
+        f" s{', repeated' if periodic else ''}"
+    )
+    return Motion(
+        graph,
+        description=f"{described}{smoothed}{every}, at most {off:.3g} {recording.unit} from them",
+        unit=unit_in,
+    )
+
+
+def _curve(name: str, t: Array, values: Array, periodic: bool, noise: float) -> Curve:
+    values = values.copy()
+    if periodic:
+        values[-1] = values[0]
+    try:
+        return curve(t.tolist(), values.tolist(), periodic=periodic, smoothing=noise)
+    except DeclarationError as error:
+        raise DeclarationError(f"{name}: {one_line(error)}") from None

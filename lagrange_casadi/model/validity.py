@@ -1,0 +1,446 @@
+"""Conditions for possible parts: one function of the parameters, for :func:`.evaluate`, sweeps and
+exported C.
+"""
+
+from __future__ import annotations
+
+import functools
+import itertools
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import casadi as ca
+import numpy as np
+
+from ..base.numerals import readable
+from ..base.scalars import column
+from ..base.symbolic import Graphs, symbolic, symbolic_property
+from ..base.vectors import dot, nil
+from ..base.vocabulary import Precision
+from ..errors import ParameterError
+from .density import Density, Slices
+from .directions import RIGHT, not_right
+from .ends import BEYOND, beyond_ends, words_beyond
+from .joints import Joint
+from .limits import END
+from .mass_properties import inertias, second_moments
+from .meshes import FITTING, Fit
+from .parts import (
+    POSITIVE,
+    Expression,
+    Friction,
+    LineLoad,
+    Link,
+    Point,
+    PointMass,
+    RigidMass,
+    Vector,
+)
+from .polynomials import lowest, product
+
+if TYPE_CHECKING:
+    from .mechanism import Mechanism
+
+Evaluator = Callable[[Any], float]
+"""Gives the value of an expression."""
+
+
+@dataclass(frozen=True, eq=False)
+class Demand:
+    """A value that must be finite and not negative, nor zero where ``positive``; ``refusal`` says
+    in words what is wrong.
+    """
+
+    value: Expression
+    positive: bool
+    refusal: Callable[[Evaluator], str]
+
+    @classmethod
+    def saying(cls, value: Expression, positive: bool, words: str, **numbers: Expression) -> Demand:
+        """Make one that is refused in ``words``: in braces stand names of ``numbers``, and ``got``
+        for the value.
+        """
+        shown = {"got": value} | numbers
+
+        def refusal(number: Evaluator) -> str:
+            return words.format(**{name: readable(number(one)) for name, one in shown.items()})
+
+        return cls(value, positive, refusal)
+
+
+@dataclass(frozen=True, eq=False)
+class ParameterConstraints:
+    """All demands of a mechanism's parts, in the order in which errors name them."""
+
+    symbols: ca.SX
+    each: tuple[Demand, ...]
+
+    @symbolic_property
+    def function(self) -> ca.Function:
+        """``possible(p)``: the value of each demand."""
+        values = column(ca.SX(demand.value) for demand in self.each)
+        return ca.Function("possible", [self.symbols], [ca.densify(values)], {"cse": True})
+
+    def margins(self) -> Margins:
+        """Return the values alone."""
+        values = self.function(self.symbols)
+        order = sorted(range(len(self.each)), key=lambda k: not self.each[k].positive)
+        ordered = ca.densify(column(values[k] for k in order))
+        function = ca.Function(
+            "margins", [self.symbols], [ordered], ["p"], ["margins"], {"cse": True}
+        )
+        return Margins(function, sum(demand.positive for demand in self.each))
+
+    def check(self, p: Sequence[float], number: Evaluator) -> None:
+        """Raise :class:`ParameterError` for parameters at which a part is impossible, by the first
+        demand that is not met.
+        """
+        values = self.function(np.array(p, float)).full().ravel().tolist()
+        for demand, value in zip(self.each, values, strict=True):
+            if not (value > 0.0 if demand.positive else value >= 0.0) or value == math.inf:
+                raise ParameterError(demand.refusal(number))
+
+
+@dataclass(frozen=True, eq=False)
+class Margins(Graphs):
+    """Expressions that must stay positive, ``positive`` numbers of ``function(p)``, and then those
+    that must not be negative.
+    """
+
+    function: ca.Function
+    positive: int
+
+    def in_order(self, symbols: ca.SX) -> tuple[list[ca.SX], list[ca.SX]]:
+        """Return expressions in the parameters: those that must be positive, and the others."""
+        values = ca.vertsplit(self.function(symbols)) if self.function.numel_out(0) else []
+        return values[: self.positive], values[self.positive :]
+
+
+@symbolic
+def demands(mechanism: Mechanism, precision: Precision = "double") -> ParameterConstraints:
+    """Conditions on a mechanism's parts: lengths, masses, densities, load points; with the
+    tolerance of a precision.
+    """
+    return _of_frozen(mechanism, precision) if mechanism.frozen else _of(mechanism, precision)
+
+
+@functools.lru_cache(maxsize=64)
+def _of_frozen(mechanism: Mechanism, precision: Precision) -> ParameterConstraints:
+    return _of(mechanism, precision)
+
+
+def _of(mechanism: Mechanism, precision: Precision) -> ParameterConstraints:
+    found: list[Demand] = []
+    masses: list[Expression] = []
+    for what, expressions in _numbers(mechanism):
+        found += _of_curves(what, expressions)
+    for body in mechanism.moving:
+        mass, constraints = _of_body(body, precision)
+        masses.append(mass)
+        found += constraints
+    if not any(_surely_positive(mass) for mass in masses):
+        loaded = any(not isinstance(load, Friction) for load in mechanism.loads.values())
+        found.append(_some_mass(mechanism.name, masses, loaded=loaded))
+    for joint in mechanism.joints.values():
+        found += _of_axes(joint, precision)
+        for point in (joint.parent, joint.child):
+            if joint.slides and point is joint.parent:
+                continue  # a place on the line along which the child slides, and loads the parent
+            found += _of_load_point(
+                f"joint '{joint.name}'", point, precision, space=mechanism.space
+            )
+    for load in mechanism.loads.values():
+        if isinstance(load, LineLoad):
+            found += _of_part(load, precision)
+            continue
+        if isinstance(load, Friction):
+            found += _of_friction(load)
+            continue
+        for point in load.points:
+            found += _of_load_point(f"load '{load.name}'", point, precision, space=mechanism.space)
+    for constraint in mechanism.constraints.values():
+        if constraint.transmission is not None:
+            found += [
+                _of_fit(constraint.name, fit, precision) for fit in constraint.transmission.fits
+            ]
+    return ParameterConstraints(mechanism.symbols, tuple(found))
+
+
+def _numbers(mechanism: Mechanism) -> Iterator[tuple[str, list[Expression]]]:
+    """The expressions in parameters of which parts are made, and what they are of."""
+    for body in mechanism.moving:
+        if isinstance(body, PointMass):
+            yield f"point mass '{body.name}'", [body.mass]
+            continue
+        numbers, mass = [body.length], body.mass
+        if isinstance(mass, RigidMass):
+            numbers += [mass.mass, *mass.centre, *inertias(mass)]
+        else:
+            densities = (mass, *(mass.slices.each if mass.slices else ()))
+            numbers += [c for density in densities for cell in density.cells for c in cell]
+        for shape in () if body.beam is None else body.beam.course.shapes():
+            numbers += shape.dimensions.values()
+        yield f"link '{body.name}'", numbers
+    for joint in mechanism.joints.values():
+        places = [number for point in (joint.parent, joint.child) for number in point.place]
+        yield f"joint '{joint.name}'", [*places, *joint.axis, joint.angle]
+    for load in mechanism.loads.values():
+        if isinstance(load, LineLoad):
+            numbers = [*load.between]
+        elif isinstance(load, Friction):
+            numbers = [*load.numbers.values()]
+        else:
+            numbers = [number for point in load.points for number in point.place]
+        yield f"load '{load.name}'", numbers
+    yield "gravity", [*mechanism.gravity]
+
+
+def _of_curves(what: str, expressions: list[Expression]) -> list[Demand]:
+    """Conditions that arguments of curves are between the curves' ends."""
+    symbolic = [expression for expression in expressions if isinstance(expression, ca.SX)]
+    found = beyond_ends(ca.vertcat(*symbolic)) if symbolic else []
+    return [
+        Demand.saying(BEYOND["double"] - far, False, words_beyond(what, argument, ""))
+        for argument, far in found
+    ]
+
+
+def _of_part(load: LineLoad, precision: Precision) -> list[Demand]:
+    """The part on which a load acts is on its link, and has a length."""
+    (start, end), link = load.between, load.link
+    if load.whole:
+        return []
+    words = f"load '{load.name}': it acts between {{start}} and {{end}} m"
+    beyond = f"{words}, but link '{link.name}' is from 0 to {{length}} m"
+    rising = f"{words}; expected an end greater than the start"
+    slack, numbers = END[precision] * link.length, {"start": start, "end": end}
+    return [
+        *(
+            Demand.saying(margin, False, beyond, **numbers, length=link.length)
+            for margin in (start + slack, (link.length - end) + slack)
+        ),
+        Demand.saying(load.reach, True, rising, **numbers),
+    ]
+
+
+def _of_fit(name: str, fit: Fit, precision: Precision) -> Demand:
+    """Condition that two numbers of a transmission are equal."""
+    apart = max(FITTING, END[precision]) * fit.size - ca.fabs(ca.SX(fit.got - fit.meant))
+    return Demand(
+        apart, False, lambda number: f"'{name}': {fit.refusal(number(fit.got), number(fit.meant))}"
+    )
+
+
+def _of_friction(friction: Friction) -> Iterator[Demand]:
+    """The numbers of a friction are not negative, and what it divides by is not zero."""
+    what = f"friction '{friction.name}'"
+    for word, number in friction.numbers.items():
+        if isinstance(number, ca.SX):
+            positive = word in POSITIVE
+            least = "positive" if positive else "at least 0"
+            yield Demand.saying(number, positive, f"{what}: {word} must be {least}, got {{got}}")
+    if friction.joint.kind == "screw" and friction.dry and friction.radius is not None:
+        steep = (
+            f"{what}: mu times the lead per radian must be less than the radius; otherwise no"
+            " torque can drive the screw"
+        )
+        yield Demand.saying(
+            friction.radius - friction.mu * ca.fabs(friction.joint.pitch), True, steep
+        )
+
+
+def _of_body(body: Link | PointMass, precision: Precision) -> tuple[Expression, list[Demand]]:
+    """The mass of a body, and its demands."""
+    what = f"link '{body.name}'" if isinstance(body, Link) else f"point mass '{body.name}'"
+    found: list[Demand] = []
+    if isinstance(body, Link):
+        found += _of_beam(what, body)
+        length = body.length
+        found.append(Demand.saying(length, True, f"{what}: length must be positive, got {{got}} m"))
+        if isinstance(body.mass, Density):
+            base, tip, _ = body.mass.ends(length)
+            slices = _of_slices(what, body.mass.slices, precision) if body.mass.slices else []
+            return base + tip, [*found, *_of_density(what, body.mass, length, precision), *slices]
+    mass_properties = body.mass
+    mass = mass_properties.mass if isinstance(mass_properties, RigidMass) else mass_properties
+    assert not isinstance(mass, Density)
+    found.append(Demand.saying(mass, False, f"{what}: mass must not be negative, got {{got}} kg"))
+    if isinstance(mass_properties, RigidMass):
+        if mass_properties.accepted:
+            return mass, found
+        if isinstance(mass_properties.inertia, tuple):
+            return mass, [*found, *_of_inertia(what, mass_properties)]
+        words = f"{what}: inertia must not be negative, got {{got}} kg m^2"
+        found.append(Demand.saying(mass_properties.inertia, False, words))
+    return mass, found
+
+
+def _of_beam(what: str, link: Link) -> list[Demand]:
+    """Conditions on the dimensions of a cross-section; between two breaks they are linear, and so
+    are the conditions.
+    """
+    shapes = () if link.beam is None else link.beam.course.shapes()
+    return [
+        Demand.saying(
+            value, True, f"{what}: {words} of its {shape.kind} must be positive, got {{got}}"
+        )
+        for shape in shapes
+        for value, words in shape.parameter_constraints()
+    ]
+
+
+def _of_inertia(what: str, mass_properties: RigidMass) -> list[Demand]:
+    """Conditions that moments of inertia belong to a mass: no principal second moment is negative.
+
+    So it is where no minor on the diagonal of the matrix of second moments is, each beside its
+    largest terms.
+    """
+    moments = [[ca.SX(entry) for entry in row] for row in second_moments(mass_properties.inertia)]
+    numbers = {axis: mass_properties.inertia[k][k] for k, axis in enumerate("xyz")}
+    words = (
+        f"{what}: impossible moments of inertia {{x}}, {{y}}, {{z}} kg m^2 about x, y and z: each"
+        " principal moment must be at most the sum of the other two"
+    )
+    found = []
+    for chosen in ((0,), (1,), (2,), (0, 1), (0, 2), (1, 2), (0, 1, 2)):
+        minor = ca.vertcat(*(ca.horzcat(*(moments[i][j] for j in chosen)) for i in chosen))
+        size = sum((ca.fabs(moments[i][i]) for i in range(3)), ca.SX(0)) ** len(chosen)
+        found.append(Demand.saying(ca.det(minor) + END["double"] * size, False, words, **numbers))
+    return found
+
+
+def _of_density(
+    what: str, density: Density, length: Expression, precision: Precision
+) -> list[Demand]:
+    """The lowest density of each cell, beside what the sum of its terms rounds [kg or kg/m]; not
+    finite where a term is not.
+    """
+    if density.even:
+        mass = density.cells[0][0] * (length if density.per_length else 1.0)
+        return [Demand.saying(mass, False, f"{what}: mass must not be negative, got {{got}} kg")]
+    spans = zip(density.breaks, density.breaks[1:], density.cells, strict=False)
+    places = [lowest(cell, a, b) for a, b, cell in spans]
+    place, value = places[0]
+    for other_place, other in places[1:]:
+        lower = other < value
+        place, value = ca.if_else(lower, other_place, place), ca.if_else(lower, other, value)
+
+    def refusal(number: Evaluator) -> str:
+        got = number(value) / (1.0 if density.per_length else number(length))
+        return (
+            f"{what}: density must not be negative, got {readable(got)} kg/m at xi/l ="
+            f" {number(place):.6g}"
+        )
+
+    sizes = [sum(ca.fabs(ca.SX(c)) for c in cell) for cell in density.cells]
+    return [
+        Demand(least + END[precision] * size, False, refusal)
+        for (_, least), size in zip(places, sizes, strict=True)
+    ]
+
+
+def _of_slices(what: str, slices: Slices, precision: Precision) -> list[Demand]:
+    """Conditions that second moments of slices belong to a mass: neither yy, nor zz, nor yy zz - yz
+    yz is negative anywhere.
+    """
+    words = (
+        f"{what}: impossible second moments of slices: yy, zz and yy zz - yz yz must not be"
+        " negative anywhere along the link"
+    )
+    found = []
+    for start, stop in itertools.pairwise(slices.breaks):
+        yy, zz, yz = (moment.cell_at((start + stop) / 2) for moment in slices.each)
+        squares = product(yy, zz), product(yz, yz)
+        both = [a - b for a, b in itertools.zip_longest(*squares, fillvalue=ca.SX(0))]
+        for cell in (yy, zz, both) if any(not nil(c) for c in yz) else (yy, zz):
+            size = sum(ca.fabs(ca.SX(c)) for c in cell)
+            least = lowest(cell, start, stop)[1] + END[precision] * size
+            found.append(Demand.saying(least, False, words))
+    return found
+
+
+def _some_mass(name: str, masses: list[Expression], *, loaded: bool) -> Demand:
+    """Condition that something has a mass, or is loaded: without either there is no force
+    anywhere.
+    """
+    total = sum(masses[1:], masses[0]) if masses else ca.SX(0)
+
+    def refusal(number: Evaluator) -> str:
+        mass = number(total)
+        if mass == 0.0:
+            return (
+                f"mechanism '{name}' has neither mass nor load; give at least one link or point"
+                " mass a mass or a load"
+            )
+        return (
+            f"mechanism '{name}': its whole mass must be finite and positive, got"
+            f" {readable(mass)} kg"
+        )
+
+    return Demand(total, not loaded, refusal)
+
+
+def _surely_positive(mass: Expression) -> bool:
+    """Return whether a mass is positive for all values of the parameters."""
+    constant = ca.SX(mass)
+    return bool(constant.is_constant() and 0.0 < float(constant) < math.inf)
+
+
+def _of_axes(joint: Joint, precision: Precision) -> list[Demand]:
+    """Conditions that directions in space that depend on parameters are not zero, and at right
+    angles where two are given.
+    """
+    what, found = f"joint '{joint.name}'", []
+    if joint.directions is not None:
+        found += _of_pair(what, *joint.directions[:2], precision)
+    if joint.turned is not None:
+        found += _of_pair(f"{what}: turned", *joint.turned, precision)
+    return found
+
+
+def _of_pair(what: str, first: Vector, second: Vector, precision: Precision) -> list[Demand]:
+    cosine = dot(first, second)
+    if not isinstance(cosine, ca.SX) or cosine.is_constant():
+        return []
+    return [
+        Demand.saying(
+            dot(first, first) + dot(second, second),
+            True,
+            f"{what}: its axes must not be of length zero",
+        ),
+        Demand(
+            max(RIGHT, END[precision]) - ca.fabs(cosine),
+            False,
+            lambda number: not_right(what, number(cosine)),
+        ),
+    ]
+
+
+def _of_load_point(what: str, point: Point, precision: Precision, *, space: bool) -> list[Demand]:
+    """A fixed point is between both ends of its link, if that has sections."""
+    body = point.body
+    if point.end is not None or not (isinstance(body, Link) and isinstance(body.mass, Density)):
+        return []
+    back = ", turned=[('z', '180 deg')]" if space else ", angle='180 deg'"
+
+    def refusal(number: Evaluator) -> str:
+        x, length, link = number(point.x), number(body.length), body.name
+        there = (
+            f"its point at {readable(x, 0.0, length)} m is outside link '{link}', 0 to"
+            f" {readable(length, x)} m"
+        )
+        end, beyond, turned = ("", -x, back) if x < 0.0 else (".tip", x - length, "")
+        if not math.isfinite(beyond):
+            return f"{what}: {there}"
+        tail = f"tail = m.link('{link}_tail', length={readable(beyond)}, mass=0.0)"
+        weld = f"m.weld('{link}_end', m.links['{link}']{end}, tail{turned})"
+        return (
+            f"{what}: {there}; for a point beyond an end declare another link: {tail}; {weld}; and"
+            " use tail.tip as the point"
+        )
+
+    slack = END[precision] * body.length
+    margins = point.x + slack, (body.length - point.x) + slack
+    return [Demand(margin, False, refusal) for margin in margins]

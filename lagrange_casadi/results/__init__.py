@@ -1,0 +1,1 @@
+"""Solutions, and what is made of them: views, certificates, stresses, derivatives, and the file."""

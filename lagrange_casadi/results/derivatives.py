@@ -1,0 +1,104 @@
+"""The derivatives of a solution's quantities by parameters, as arrays that go with it."""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..base.arrays import Array, Instants, during
+from ..base.quantities import Output, quotient
+from ..errors import UnknownNameError
+from ..model.wanted_names import SENSITIVITY
+
+if TYPE_CHECKING:
+    from .solution import Solution
+
+
+@dataclass(frozen=True, eq=False)
+class Derivatives:
+    """The derivatives of quantities ``by`` parameters: of each parameter those of all that
+    equilibrium determines, by output.
+
+    They are exact and total: of loops, motions and densities too. Series have (t,), section forces
+    (t, xi). Instants and ratios xi/l stand still; at a station, a section force is that on its
+    tip's side.
+    """
+
+    by: Mapping[str, Mapping[Output, Array]] = field(default_factory=dict)
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """The names of the parameters."""
+        return tuple(self.by)
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """The full names of the quantities."""
+        return tuple(str(output) for output in next(iter(self.by.values()), {}))
+
+    def array(self, name: str | Output, parameter: str) -> Array:
+        """The derivative of a quantity by a parameter, in the quantity's unit over the parameter's.
+
+        Raises :class:`.UnknownNameError` for a parameter by which there is none, and a quantity
+        that has none.
+        """
+        if parameter not in self.by:
+            raise UnknownNameError("parameter with sensitivities", parameter, self.by)
+        found = {str(output): values for output, values in self.by[parameter].items()}
+        if str(name) not in found:
+            raise UnknownNameError("quantity with sensitivities", str(name), found)
+        return found[str(name)]
+
+    def notes(self) -> Iterator[str]:
+        """Notes on derivatives that are not finite at some instants, as at a square root of
+        zero.
+        """
+        for name, found in self.by.items():
+            for output, x in found.items():
+                if many := int((~np.isfinite(x.reshape(len(x), -1)).all(axis=1)).sum()):
+                    yield (
+                        f"the derivative of {output} by {name} is not finite at {many} of {len(x)}"
+                        " instants"
+                    )
+
+    def of(self, outputs: Container[Output]) -> Derivatives:
+        """Derivatives of some outputs."""
+        return Derivatives(
+            {
+                name: {o: x for o, x in found.items() if o in outputs}
+                for name, found in self.by.items()
+            }
+        )
+
+    def during(self, instants: Instants) -> Derivatives:
+        """Derivatives at some of the instants."""
+        return Derivatives(during(self.by, instants))
+
+
+@dataclass(frozen=True, eq=False)
+class Derivative:
+    """One of them: its full ``name``, as ``sensitivity:l:effort:O``, what it is of, its values and
+    unit, what a file says of it.
+    """
+
+    name: str
+    output: Output
+    values: Array
+    unit: str
+    attributes: dict[str, str]
+
+
+def derivatives(solution: Solution) -> Iterator[Derivative]:
+    """All of a solution."""
+    parameters = solution.description["parameters"]
+    for name, found in solution.sensitivities.by.items():
+        for output, values in found.items():
+            unit = quotient(solution.unit(output), str(parameters[name]["unit"]))
+            quantity = output.meant(solution.table)
+            words = quantity.attributes | {
+                "long_name": f"{quantity.long_name}: derivative by {name}"
+            }
+            yield Derivative(f"{SENSITIVITY}:{name}:{output}", output, values, unit, words)

@@ -1,0 +1,277 @@
+"""Deflections of links under their section forces: the elastic curve, and how far the ends move
+against each other.
+
+Strains are those of :mod:`.compliance`: turn' = M/EI, across' = turn + V/GAs, along' = N/EA, twist'
+= T/GIt (Timoshenko, *Strength of Materials*, part I); in space turn_z' = Mz/EIz and across_y' =
+turn_z + Vy/GAsy, turn_y' = My/EIy and across_z' = -turn_y + Vz/GAsz, for any axes of the
+cross-section. They are integrated as polynomials between two marks: exactly, where the
+cross-section is constant.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from ...base.arguments import Numeric, public
+from ...base.arrays import Array
+from ...engine.peak_search.fits import interpolation
+from ...errors import DeclarationError, UnknownNameError
+from ...model.end_conditions import ends_of
+from ..sizes import largest
+from ..solution import Solution
+from ..strength.member import Member
+from ..turning import stationary_points
+from .compliance import Compliance
+
+Against = Literal["ends", "base"]
+
+MOVES = {
+    False: ("along", "across", "turn"),
+    True: ("along", "across_y", "across_z", "twist", "turn_y", "turn_z"),
+}
+"""Displacements at a place of a link, in the plane and in space."""
+
+
+@dataclass(frozen=True)
+class DeflectionPeak:
+    """The deflection across a link that is largest in size [m], in the plane with its sign; its
+    time [s] and ratio xi/l.
+    """
+
+    value: float
+    t: float
+    xi: float
+
+
+@public
+@dataclass(frozen=True, eq=False)
+class Deflection:
+    """Bending, stretch and twist of a link, over time and along it.
+
+    ``against`` says from where deflections count. ``ends``: from the straight line between the
+    link's ends as they are. ``base``: from the link's own axes at its base. Stretch and twist count
+    from the base in both. Names are ``along``, ``across`` [m] and ``turn`` [rad], in space
+    ``along``, ``across_y``, ``across_z``, ``twist``, ``turn_y``, ``turn_z``; methods raise
+    :class:`.UnknownNameError` for any other.
+    """
+
+    compliance: Compliance
+    against: Against
+
+    @property
+    def member(self) -> Member:
+        """The link."""
+        return self.compliance.member
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the displacements at every place."""
+        return MOVES[self.member.space]
+
+    def __repr__(self) -> str:
+        return (
+            f"<Deflection of '{self.member.link}' against its {self.against}: {self.member.t.size}"
+            " instants>"
+        )
+
+    def at(self, name: str, u: Numeric) -> Array:
+        """Displacement by a name, at a ratio, or at ratios (t, ...), a row an instant."""
+        if name not in self.names:
+            raise UnknownNameError("deflection", name, self.names)
+        u = np.asarray(u, float)
+        if not u.shape:
+            u = np.full(self.member.t.size, float(u))
+        if len(u) != self.member.t.size or not ((u >= 0.0) & (u <= 1.0)).all():
+            raise DeclarationError(
+                "deflection: expected ratios xi/l from 0 to 1, a row for each of"
+                f" {self.member.t.size} instants"
+            )
+        found = self._at(name, u)
+        if self.against == "base" or name in ("along", "twist"):
+            return found
+        length, ends = self.member.law.length, (-1,) + (1,) * (u.ndim - 1)
+        beside = {
+            "turn": ("across", 1.0),
+            "turn_z": ("across_y", 1.0),
+            "turn_y": ("across_z", -1.0),
+        }
+        if name in beside:
+            across, sign = beside[name]
+            return np.asarray(found - sign * (self._tips[across] / length).reshape(ends))
+        return np.asarray(found - u * self._tips[name].reshape(ends))
+
+    def grid(self, name: str, xi: Array | None = None) -> Array:
+        """Displacement (t, xi) over ratios, by default those of the solution."""
+        u = self.member.xi if xi is None else np.asarray(xi, float)
+        return self.at(name, np.broadcast_to(u, (self.member.t.size, u.size)))
+
+    @property
+    def tip(self) -> Mapping[str, Array]:
+        """Displacements of the tip, each (t,): relative to the base those of the ends against each
+        other.
+        """
+        one = np.ones((self.member.t.size, 1))
+        return {name: self.at(name, one)[:, 0] for name in self.names}
+
+    @property
+    def base(self) -> Mapping[str, Array]:
+        """Rotation of the base, each (t,), relative to the line through the ends."""
+        nil = np.zeros((self.member.t.size, 1))
+        return {name: self.at(name, nil)[:, 0] for name in self.names}
+
+    def size(self, u: Array) -> Array:
+        """The deflection across the link at ratios (t, ...): in the plane with its sign, in space
+        its size.
+        """
+        if not self.member.space:
+            return self.at("across", u)
+        return np.hypot(self.at("across_y", u), self.at("across_z", u))
+
+    def largest(self) -> tuple[Array, Array]:
+        """The deflection across the link that is largest in size at every instant, and its ratio
+        xi/l, both (t,).
+        """
+        space = self.member.space
+        names = ("across_y", "across_z") if space else ("across",)
+
+        def slope(u: Array) -> Array:
+            rises = [self._rising(name, u) for name in names]
+            if not space:
+                return rises[0]
+            return np.asarray(
+                sum(self.at(name, u) * rise for name, rise in zip(names, rises, strict=True))
+            )
+
+        edges, degree = self.member.edges, (2 if space else 1) * (self.member.strain_degree + 2)
+        stationary = stationary_points(
+            slope, edges[:, :-1], edges[:, 1:], (0.0, 1.0), degree, signed=not space
+        )
+        places = np.concatenate([edges, stationary.places.reshape(len(edges), -1)], axis=1)
+        values = self.size(places)
+        best = np.argmax(np.abs(values), axis=1)[:, None]
+        return np.take_along_axis(values, best, 1)[:, 0], np.take_along_axis(places, best, 1)[:, 0]
+
+    def peak(self) -> DeflectionPeak:
+        """The largest of these, over the instants: along the link exactly, where the cross-section
+        is constant.
+        """
+        values, places = self.largest()
+        i = int(largest(values))
+        return DeflectionPeak(float(values[i]), float(self.member.t[i]), float(places[i]))
+
+    @cached_property
+    def _strains(self) -> dict[str, Array]:
+        """Polynomials of strains between two edges, coefficients (t, parts, n) of Chebyshev's: by
+        the names of section forces.
+        """
+        member = self.member
+        x, weights = interpolation(member.strain_degree)
+        low, width = member.edges[:, :-1, None], np.diff(member.edges, axis=1)[:, :, None]
+        u = (low + width * (x + 1.0) / 2.0).reshape(member.t.size, -1)
+        strains = self.compliance.strains(member.at(u), member.index_at(u), u).reshape(
+            len(member.forces), *width.shape[:2], -1
+        )
+        return dict(zip(member.forces, strains @ weights, strict=True))
+
+    @cached_property
+    def _curves(self) -> dict[str, Array]:
+        """Polynomials of all components, from the base."""
+        e, turned = self._strains, {}
+        found = {"along": self._sum(e["axial"])}
+        if not self.member.space:
+            found["turn"] = self._sum(e["bending"])
+            return found | {"across": self._sum(_plus(found["turn"], e["shear"]))}
+        turned["turn_y"], turned["turn_z"] = self._sum(e["bending_y"]), self._sum(e["bending_z"])
+        found |= {"twist": self._sum(e["torsion"]), **turned}
+        found["across_y"] = self._sum(_plus(turned["turn_z"], e["shear_y"]))
+        found["across_z"] = self._sum(_plus(-turned["turn_y"], e["shear_z"]))
+        return found
+
+    def _sum(self, coefficients: Array) -> Array:
+        """The integral from the base of polynomials between two edges."""
+        half = self.member.law.length * np.diff(self.member.edges, axis=1)[:, :, None] / 2.0
+        found: Array = np.asarray(chebyshev.chebint(coefficients, lbnd=-1, axis=-1), float) * half
+        ends = np.cumsum(found.sum(axis=-1), axis=1)
+        found[:, 1:, 0] += ends[:, :-1]
+        return found
+
+    def _at(self, name: str, u: Array) -> Array:
+        return self._valued(self._curves[name], u)
+
+    def _rising(self, name: str, u: Array) -> Array:
+        """Slope of a transverse deflection along the link."""
+        turn, sign, shear = {
+            "across": ("turn", 1.0, "shear"),
+            "across_y": ("turn_z", 1.0, "shear_y"),
+            "across_z": ("turn_y", -1.0, "shear_z"),
+        }[name]
+        return np.asarray(sign * self.at(turn, u) + self._valued(self._strains[shear], u))
+
+    def _valued(self, coefficients: Array, u: Array) -> Array:
+        """Polynomials between two edges at ratios (t, ...)."""
+        places, edges = u.reshape(len(u), -1), self.member.edges
+        index = np.sum(places[:, :, None] >= edges[:, None, 1:-1], axis=2)
+        low = np.take_along_axis(edges, index, 1)
+        width = np.take_along_axis(edges, index + 1, 1) - low
+        x = (
+            np.divide(2.0 * (places - low), width, out=np.zeros_like(places), where=width > 0.0)
+            - 1.0
+        )
+        chosen = np.take_along_axis(coefficients, index[:, :, None], 1)
+        found: Array = np.asarray(
+            chebyshev.chebval(x, np.moveaxis(chosen, -1, 0), tensor=False), float
+        )
+        return found.reshape(u.shape)
+
+    @cached_property
+    def _tips(self) -> dict[str, Array]:
+        one = np.ones((self.member.t.size, 1))
+        return {name: self._at(name, one)[:, 0] for name in self.names}
+
+
+def deflection(solution: Solution, link: str, against: Against | None = None) -> Deflection:
+    """Quasi-static deflection of a link under its section forces: see :class:`Deflection`.
+
+    By default deflections count from the line between the ends where joints hold both
+    (:func:`..declare.held.ends_of`), else from the link's axes at its base.
+
+    Parameters
+    ----------
+    solution : Solution
+        Has the section forces of the link.
+    link : str
+        Name of a link with a beam.
+    against : {"ends", "base"}, optional
+        Count from the line between the ends, or from the axes at the base.
+
+    Returns
+    -------
+    Deflection
+        Displacements [m] and rotations [rad] along the link.
+
+    Raises
+    ------
+    DeclarationError
+        If the link has no beam, its sections were not evaluated, its forces are indeterminate, its
+        material has no elasticity, or there is no formula for the torsion of its cross-section.
+    """
+    if against not in (None, "ends", "base"):
+        raise DeclarationError(
+            f"deflection of '{link}': expected against='ends' or 'base', got {against!r}"
+        )
+    compliance = Compliance.of(Member.of(solution, link), f"deflection of '{link}'")
+    return Deflection(
+        compliance, against or ("base" if "free" in ends_of(solution.description, link) else "ends")
+    )
+
+
+def _plus(longer: Array, shorter: Array) -> Array:
+    found: Array = longer.copy()
+    found[..., : shorter.shape[-1]] += shorter
+    return found

@@ -1,0 +1,202 @@
+"""Loads of a link as numbers: what acts at stations, and along it, with the functions that go with
+its coefficients.
+
+See :mod:`.engine.section_function`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import TypeVar
+
+import numpy as np
+
+from ..base.arrays import Array, Instants, during
+from ..base.quantities import Output
+
+_AnyLoad = TypeVar("_AnyLoad", bound="_Load")
+
+
+@dataclass(frozen=True, eq=False)
+class _Load:
+    """Load on a link, by its name."""
+
+    name: str
+
+    def during(self: _AnyLoad, instants: Instants) -> _AnyLoad:
+        """Load at some of the instants."""
+        return replace(self, **during(vars(self), instants))
+
+
+@dataclass(frozen=True, eq=False)
+class DistributedLoad(_Load):
+    """A load along a link up to ``end``, a ratio xi/l, on ``width`` of the link, both (t,) and the
+    same at all instants.
+
+    ``terms`` are by direction, ``qn`` and ``qf``, in space ``qn``, ``qfy``, ``qfz``: the
+    coefficients [N/m] of rising powers of (end - xi/l)/width, each (t,). What the rotary inertia of
+    slices does is one too, of couples ``cx``, ``cy``, ``cz`` [N].
+    """
+
+    width: Array
+    end: Array
+    terms: Mapping[str, tuple[Array, ...]]
+
+    @property
+    def powers(self) -> int:
+        """Number of powers."""
+        return max(map(len, self.terms.values()))
+
+    @property
+    def sound(self) -> bool:
+        """True if the load acts on some part of the link."""
+        return bool(np.isfinite([self.width, self.end]).all() and (self.width > 0.0).all())
+
+    @property
+    def marks(self) -> list[Array]:
+        """Begin and end of the load, except those that are ends of the link."""
+        return [
+            place
+            for place in (self.end - self.width, self.end)
+            if ((place > 0.0) & (place < 1.0)).any()
+        ]
+
+    def outputs(self, link: str) -> dict[Output, Array]:
+        """The numbers in it, as outputs of a link."""
+        ends = {"width": self.width, "end": self.end}
+        found = {Output("spread", link, name, self.name): ends[name] for name in ends}
+        for member, rows in self.terms.items():
+            for power, values in enumerate(rows):
+                found[Output("spread", link, member, self.name, power)] = values
+        return found
+
+    def of(self, link: str, outputs: Mapping[Output, Array]) -> DistributedLoad:
+        """Load of a link with other numbers, (..., t)."""
+
+        def value(member: str, power: int | None = None) -> Array:
+            return outputs[Output("spread", link, member, self.name, power)]
+
+        terms = {
+            member: tuple(value(member, j) for j in range(self.powers)) for member in self.terms
+        }
+        return DistributedLoad(self.name, value("width"), value("end"), terms)
+
+    def bound(self, direction: str, length: float, *, arm: bool) -> Array | float:
+        """The largest size of what any section carries of it if its coefficients have any sign,
+        wherever it begins and ends.
+        """
+        lever = length if arm else 1.0
+        return sum(
+            (
+                np.abs(c)[:, None] * (length * lever / (j + 1))
+                for j, c in enumerate(self.terms.get(direction, ()))
+            ),
+            0.0,
+        )
+
+    def moved(
+        self, direction: str, change: DistributedLoad, u: Array, length: float, *, arm: bool
+    ) -> Array:
+        """Change of a force or moment at ratios ``u`` (t, n) with width and end, whose changes are
+        (..., t).
+        """
+        width, end = self.width[..., :1], self.end[..., :1]
+        # x, L and a of engine/section_function.py.
+        x = np.clip((end - u) / width, 0.0, 1.0)
+        reach = length * width
+        lever = length * np.maximum(end - width - u, 0.0)
+        within = (x > 0.0) & (x < 1.0)
+        by_end, by_width = np.zeros_like(x), np.zeros_like(x)
+        for j, values in enumerate(self.terms.get(direction, ())):
+            c, share = values[:, None], x ** (j + 1) / (j + 1)
+            if arm:
+                by_end += c * length * reach * share
+                by_width += (
+                    c
+                    * length
+                    * share
+                    * np.where(
+                        within, reach * x * (2 / (j + 2) - 1), lever + reach * (2 / (j + 2) - 1)
+                    )
+                )
+            else:
+                by_end += c * length * np.where(within, x**j, 0.0)
+                by_width += c * length * share * np.where(within, -j, 1.0)
+        return by_end * change.end[..., None] + by_width * change.width[..., None]
+
+    def here(self, direction: str, u: Array, middle: Array) -> Array:
+        """The load per length [N/m] at ratios (t, parts, ...), in parts of the link with their
+        ``middle`` (t, parts).
+
+        Where it acts at the middle, the polynomial at the part's ends too; else 0.
+        """
+        ahead = (1,) * (u.ndim - 1)
+        width, end = (values.reshape(-1, *ahead) for values in (self.width, self.end))
+        x = (end - u) / width
+        value = np.zeros_like(u)
+        for coefficient in reversed(self.terms.get(direction, ())):
+            value = value * x + coefficient.reshape(-1, *ahead)
+        middle = middle.reshape(middle.shape + (1,) * (u.ndim - middle.ndim))
+        return np.where((end - width < middle) & (middle < end), value, 0.0)
+
+
+def distributed_load(
+    name: str, members: Mapping[str, Array], terms: Mapping[str, Mapping[int, Array]]
+) -> DistributedLoad:
+    """A load along a link, by the names of its members, and of its terms by direction and power.
+
+    Raises ``ValueError`` where one of these is missing.
+    """
+    powers = {
+        direction: tuple(found[j] for j in range(len(found)) if j in found)
+        for direction, found in terms.items()
+    }
+    many = {len(rows) for rows in (*powers.values(), *terms.values())}
+    if set(members) != {"width", "end"} or len(many) != 1:
+        raise ValueError(f"the load along the link '{name}' is incomplete")
+    return DistributedLoad(name, members["width"], members["end"], powers)
+
+
+@dataclass(frozen=True, eq=False)
+class _AtStation(_Load):
+    """Action on a link at a load point, whose ``station`` is the ratio xi/l, (t,): it moves where
+    something slides along the link.
+    """
+
+    station: Array
+
+
+@dataclass(frozen=True, eq=False)
+class PointLoad(_AtStation):
+    """Action in the plane: force along ``n`` and across ``f`` the link's axis [N], moment ``m``
+    [N m], each (t,).
+    """
+
+    n: Array
+    f: Array
+    m: Array
+
+
+@dataclass(frozen=True, eq=False)
+class SpatialPointLoad(_AtStation):
+    """Action in space: force ``n`` along the link's axis, ``fy``, ``fz`` across [N], moments
+    ``mx``, ``my``, ``mz`` [N m].
+    """
+
+    n: Array
+    fy: Array
+    fz: Array
+    mx: Array
+    my: Array
+    mz: Array
+
+
+AnyPointLoad = PointLoad | SpatialPointLoad
+
+
+def point_load(name: str, members: Mapping[str, Array]) -> AnyPointLoad:
+    """Make the action at a load point by the names of its members: those of the plane or those of
+    space.
+    """
+    return PointLoad(name, **members) if "f" in members else SpatialPointLoad(name, **members)

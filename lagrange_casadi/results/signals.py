@@ -1,0 +1,202 @@
+"""The quantities of a scene as curves over time, at any times: what :mod:`.peak_search` searches,
+by CasADi's virtual machine.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Protocol, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ..base.arrays import Array, Operand
+from ..base.quantities import Output, parts_along
+from ..base.status import Status
+from ..base.tables import table_of
+from ..engine.codegen.search import Search
+from ..engine.instants.backends import Interpreter
+from ..engine.peak_search.between import Flags
+from ..engine.peak_search.intervals import Curves, Listed, Peaks, Samples
+from ..engine.peak_search.search import peaks
+from ..engine.peak_search.sharpness import Sharpness, bent
+from ..model.density import NumericDensity
+from ..model.description import Description, density_of, in_space
+from .laws import law_of
+from .sizes import size_of
+
+_BLOCK = 4096
+
+
+class Along(Protocol):
+    """Quantity with several curves, or with those of a whole link: the columns it is made of, by
+    their keys.
+    """
+
+    @property
+    def columns(self) -> Mapping[Output, int]:
+        """The columns."""
+
+    def curves(self, columns: Array) -> tuple[Array, Array]:
+        """Ratios and values, each (curves, t), from the graph's columns (columns, t)."""
+
+
+@dataclass(frozen=True, eq=False)
+class SectionForce:
+    """A section force of a link: the columns of the outputs that its law is made of, and how its
+    mass lies.
+    """
+
+    force: str
+    link: str
+    columns: Mapping[Output, int]
+    length: float
+    density: NumericDensity
+
+    def curves(self, columns: Array) -> tuple[Array, Array]:
+        """Ratios and values, each (curves, t): see :meth:`.SectionLaw.curves`."""
+        outputs = {output: columns[k] for output, k in self.columns.items()}
+        places, values = law_of(self.link, outputs, self.length, self.density).curves(self.force)
+        return places.T, values.T
+
+
+def section_forces(
+    description: Description, link: str, rows: Mapping[Output, int]
+) -> dict[str, SectionForce]:
+    """The section forces of a link of a described mechanism by name; ``rows`` are those of all
+    outputs.
+    """
+    body = description["bodies"][link]
+    length, density = body["length"], density_of(body)
+    of_link = parts_along(rows, link)
+    return {
+        force: SectionForce(force, link, of_link, length, density)
+        for force in table_of(in_space(description)).forces
+    }
+
+
+Quantity: TypeAlias = "tuple[int, ...] | Along"
+"""A column, some that are the components of a vector whose size is meant, or what is known along a
+link, as a section force.
+"""
+
+
+@dataclass(frozen=True, eq=False)
+class Signals:
+    """Quantities of a graph, interpreted for parameters ``p`` over instants ``t``, with iterated
+    coordinates ``z`` there.
+
+    ``turned`` are, by the number of an angle that loops set, its values at the instants, which show
+    its turns. ``rounding`` (watched, 1) is how far from zero each of the watched counts as zero.
+    """
+
+    interpreter: Interpreter
+    sharpness: Sharpness
+    quantities: Sequence[Quantity]
+    t: Array
+    p: Array
+    z: Array
+    turned: Mapping[int, Array] = field(default_factory=dict)
+    rounding: Array | float = 0.0
+
+    def peaks(
+        self,
+        units: Sequence[int],
+        scales: Sequence[float] = (),
+        search: Search | None = None,
+        listed: Listed | None = None,
+        sampled: bool = False,
+    ) -> Peaks:
+        """The peaks of the quantities over all times between the first instant and the last.
+
+        ``units`` numbers the units of all, and ``scales`` gives for each unit how large others are
+        that have it. ``search`` is the compiled search; without it the reference serves. ``listed``
+        says which local peaks are reported too. ``sampled`` peaks are those at the instants.
+        """
+        samples = self.samples(self.t, self.z, np.arange(self.t.size))
+        first = self.columns(self.t[:1], self.z[:, :1])
+        with np.errstate(all="ignore"):
+            counts = [len(values) for _, values in self.curves(first, np.zeros(1, int))]
+        quantities = tuple(q for q, count in enumerate(counts) for _ in range(count))
+        columns = [
+            one if isinstance(one, tuple) else one.columns.values() for one in self.quantities
+        ]
+        sharpness = self.sharpness
+        watches, knots, depends = sharpness.watches, sharpness.knots, sharpness.dependence(columns)
+        curves = Curves(quantities, tuple(units), tuple(scales), watches, knots, depends)
+        with np.errstate(all="ignore"):
+            find = peaks if search is None else search.peaks
+            return find(
+                self,
+                curves,
+                self.t,
+                samples,
+                bent(self.interpreter.program, self.sharpness, self.t, self.p),
+                listed,
+                sampled,
+            )
+
+    def at(self, t: Array) -> Samples:
+        """All curves at times; NaN where iterated loops do not close."""
+        near = self.near(t)
+        z, failed = self.closed(t, near)
+        found = self.samples(t, z, near)
+        return found._replace(values=np.where(failed, np.nan, found.values))
+
+    def near(self, t: Array) -> npt.NDArray[np.intp]:
+        """The instants that are nearest to times."""
+        step = (self.t[-1] - self.t[0]) / max(self.t.size - 1, 1) or 1.0
+        return np.asarray(np.clip(np.round((t - self.t[0]) / step), 0, self.t.size - 1), np.intp)
+
+    def closed(self, t: Array, near: npt.NDArray[np.intp]) -> tuple[Array, Flags]:
+        """The iterated coordinates at times next to instants (z, t), and where the loops do not
+        close.
+        """
+        z = np.zeros((self.z.shape[0], t.size))
+        status = np.zeros(t.size, np.int32)
+        for k in range(t.size if len(z) else 0):
+            some = slice(k, k + 1)
+            self.interpreter.follow(t[some], self.p, self.z[:, near[k]], z[:, some], status[some])
+        return z, status == Status.NOT_CONVERGED
+
+    def samples(self, t: Array, z: Array, near: npt.NDArray[np.intp]) -> Samples:
+        """All curves at times next to instants, at which the iterated coordinates are known."""
+        blocks = [slice(start, start + _BLOCK) for start in range(0, t.size, _BLOCK)]
+        parts = [self._samples(t[block], z[:, block], near[block]) for block in blocks]
+        return Samples(*(np.concatenate(rows, axis=1) for rows in zip(*parts, strict=True)))
+
+    def _samples(self, t: Array, z: Array, near: npt.NDArray[np.intp]) -> Samples:
+        columns = self.columns(t, z)
+        watched = self.sharpness.watched(*self.inputs(t, z)).full()
+        watched[np.abs(watched) <= self.rounding] = 0.0
+        with np.errstate(all="ignore"):
+            places, values = (
+                np.concatenate(rows) for rows in zip(*self.curves(columns, near), strict=True)
+            )
+        return Samples(values, places, watched)
+
+    def inputs(self, t: Array, z: Array) -> tuple[Operand, ...]:
+        """Arguments of the graph's columns at times."""
+        return t[None], *self.interpreter.program.motion(t[None], self.p), z, self.p
+
+    def columns(self, t: Array, z: Array) -> Array:
+        """The graph's columns at times, (columns, t), with the iterated coordinates known."""
+        return self.interpreter.columns(t, self.p, z)
+
+    def curves(self, columns: Array, near: npt.NDArray[np.intp]) -> list[tuple[Array, Array]]:
+        """Curves of each quantity, as ratios and values (curves, t), from the graph's columns
+        (columns, t).
+        """
+        found = []
+        for q, quantity in enumerate(self.quantities):
+            if not isinstance(quantity, tuple):
+                found.append(quantity.curves(columns))
+                continue
+            rows = columns[list(quantity)]
+            values = rows[0] if len(rows) == 1 else size_of(rows)
+            if q in self.turned:
+                values = values + math.tau * np.round((self.turned[q][near] - values) / math.tau)
+            found.append((np.full((1, values.size), np.nan), values[None]))
+        return found

@@ -1,0 +1,119 @@
+"""Attributes of the file of a run: they are held to one rule when they are written and read."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, TypeAlias
+
+from ...base.methods import method
+from ...base.quantities import Output
+from ...engine.instants.beyond_equilibrium import Elasticity
+from ...model.description import check_places, shape_of, values_of
+from ..solution import Provenance, Solution
+from .opening import SCHEMA
+from .untrusted import check_shape, number, parsed, shown
+from .words import conventions
+
+Attributes: TypeAlias = Mapping[str, Any]
+"""Texts and numbers of a file, by name."""
+
+SCHEMA_VERSION = 1
+_PROVENANCE = {key: key for key in ("backend", "precision", "compiler", "flags")} | {
+    "rung": "method"
+}
+"""Field of the provenance that each attribute of a file holds."""
+
+
+def attributes_to_write(solution: Solution, figures: str, grids: Sequence[str]) -> Attributes:
+    """Attributes of the file of a solution, with section grids of the links ``grids``.
+
+    Raises ``ValueError``, ``TypeError`` or ``KeyError`` for attributes that a reader refuses.
+    """
+    check_shape(dict(solution.errors), {str: float}, "errors")
+    found = _attributes(solution, figures, grids)
+    read_attributes(found)
+    for fault in check_attributes(found):
+        raise ValueError(fault)
+    return found
+
+
+def _attributes(solution: Solution, figures: str, grids: Sequence[str]) -> Attributes:
+    """Attributes of the file of a solution; those of its datasets are apart."""
+    provenance, elasticity = solution.provenance, solution.elasticity
+    found: dict[str, Any] = {
+        "schema": SCHEMA,
+        "schema_version": SCHEMA_VERSION,
+        "case": solution.case,
+        **conventions(solution.table),
+        "mechanism": json.dumps(solution.description),
+        "parameters": json.dumps(values_of(solution.description)),
+        "certified": solution.certified,
+        "certificate_tolerance": solution.tolerance,
+        "outputs": json.dumps(list(solution.series)),
+    }
+    if len(grids) < len(solution.links_with_sections):
+        bare = (
+            str(Output("section", link, force))
+            for link in solution.links_with_sections
+            if link not in grids
+            for force in solution.table.forces
+        )
+        estimates = {name: solution.errors[name] for name in bare if name in solution.errors}
+        found |= {"grids": json.dumps(list(grids)), "error_estimates": json.dumps(estimates)}
+    found["undetermined"] = json.dumps(solution.undetermined)
+    if elasticity != Elasticity():
+        found["by_elasticity"] = json.dumps(list(map(str, elasticity.completed)))
+        found["open_because"] = json.dumps(elasticity.reasons)
+    if solution.holding:
+        reasons = {name: held.reason for name, held in solution.holding.items()}
+        found["holding"] = json.dumps(reasons)
+    found["versions"] = json.dumps(dict(provenance.versions))
+    stated = {key: getattr(provenance, name) for key, name in _PROVENANCE.items()}
+    return found | stated | {"figures": figures}
+
+
+def read_attributes(attributes: Attributes) -> dict[str, Any]:
+    """Fields of a :class:`Solution` that attributes of its file state; ``holding`` are reasons.
+
+    Raises ``ValueError``, ``TypeError`` or ``KeyError`` for attributes that are not written.
+    """
+
+    def stated(key: str, shape: Any, otherwise: str | None = None) -> Any:
+        text = attributes[key] if otherwise is None else attributes.get(key, otherwise)
+        return parsed(text, shape, key)
+
+    description = stated("mechanism", shape_of)
+    check_places(description)
+    words = {name: shown(attributes[key]) for key, name in _PROVENANCE.items()}
+    completed, reasons = (stated(key, [str], "[]") for key in ("by_elasticity", "open_because"))
+    return {
+        "case": shown(attributes["case"]),
+        "description": description,
+        "provenance": Provenance(**words, versions=stated("versions", {str: str})),
+        "indeterminate": tuple(map(Output.of, stated("undetermined", [str]))),
+        "errors": stated("error_estimates", {str: float}, "{}"),
+        "tolerance": number(attributes, "certificate_tolerance"),
+        "elasticity": Elasticity(tuple(map(Output.of, completed)), tuple(reasons)),
+        "holding": stated("holding", {str: str}, "{}"),
+    }
+
+
+def check_attributes(attributes: Attributes) -> Iterator[str]:
+    """Faults of figures, and of the case and parameters, which are stated twice."""
+    try:
+        figures_of(attributes)
+    except ValueError as error:
+        yield str(error)
+    description = parsed(attributes["mechanism"], shape_of, "mechanism")
+    if (
+        parsed(attributes["parameters"], {str: float}, "parameters") != values_of(description)
+        or attributes["case"] != description["name"]
+    ):
+        yield "case or parameters: differ from those of the mechanism"
+
+
+def figures_of(attributes: Attributes) -> tuple[object, ...]:
+    """Specifications of figures in a file. Raises ``ValueError`` if there are others."""
+    found: tuple[object, ...] = method("figures.parse")(shown(attributes.get("figures", "")))
+    return found

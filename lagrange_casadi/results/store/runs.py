@@ -1,0 +1,543 @@
+"""A solution in an HDF5 file, and back: the schema is written down in ``docs/schema.md``.
+
+A file is written under a temporary name beside its place, flushed, sealed, and renamed: a reader
+finds the file of before, or the whole new one. What is read is held to its seal before HDF5 sees it
+(:mod:`.seal`), and looked at before it is believed (:mod:`.untrusted`).
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import shutil
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from ...base.arguments import public
+from ...base.arrays import Array
+from ...base.publish import PatientFile, check_writable, is_hdf5, replacing, settled, uninterrupted
+from ...base.quantities import Output
+from ...base.seal import kind_of, seal
+from ...base.tables import ANGLE, LENGTH
+from ...engine.instants.beyond_equilibrium import ENDS, Holding, held_outputs
+from ...errors import PathError, StoreError, UnknownNameError, one_line
+from ...model.description import Description, motions_of, pieces_of
+from ...model.even_points import are_even
+from ...model.times import DriveAxis
+from ...model.wanted_names import SENSITIVITY
+from ..ordering import in_order
+from ..solution import Solution
+from ..verification.certificate import COARSE, TOLERANCE, blur, certify
+from .attributes import (
+    SCHEMA_VERSION,
+    attributes_to_write,
+    check_attributes,
+    figures_of,
+    read_attributes,
+)
+from .opening import SCHEMA, opened_file
+from .scales import LARGE, Scales
+from .slopes import add_slopes, check_slopes, slopes_of
+from .untrusted import check_chunks, check_dataset, check_links, number, parsed, reported_as, shown
+from .words import say, unlike, unlike_conventions
+
+_CHUNK_BYTES = 1 << 20
+_BLOCK_BYTES = 1 << 23
+_AXES = {
+    "t": ("s", {"long_name": "time"}),
+    "xi": ("1", {"long_name": "place along a link, ratio xi/l"}),
+}
+_OVER = "over"
+_BESIDE = ("units", "error_estimate", "DIMENSION_LIST")
+"""Attributes that a dataset may have beside those of what it holds."""
+
+_GRID_TOLERANCE = 1e-12
+_OVER_TOLERANCE = {"double": 1e-12, "single": 1e-6}
+"""Largest distance of a coordinate from that by which the instants were defined, relative to the
+largest.
+"""
+
+_KIND = "the file of a run"
+_TABLES = (".csv", ".tsv", ".txt", ".xls", ".xlsx", ".json", ".mat", ".parquet")
+_OTHERS = {
+    SCHEMA: _KIND,
+    f"{SCHEMA}-sweep": "the file of a sweep",
+    f"{SCHEMA}-optimum": "the file of a search",
+}
+
+
+@public
+def save(
+    solution: Solution,
+    path: str | os.PathLike[str],
+    figures: str = "",
+    *,
+    grids: bool | Sequence[str] | None = None,
+) -> None:
+    """Write a solution to a file; an existing file is replaced completely or not at all.
+
+    Parameters
+    ----------
+    solution
+        The solution.
+    path
+        The file, HDF5.
+    figures
+        Specifications of figures as JSON, which :mod:`.figures` reads from the file.
+    grids
+        Links whose section forces are stored at every ratio xi/l too, beside their laws: all or
+        none, or those that are named; by default all but the pieces of bent bars. Nothing is lost
+        without them: :func:`load` fills grids from the laws.
+
+    Raises
+    ------
+    StoreError
+        If the file cannot be written, or has attributes that :func:`load` or the command plot
+        refuses.
+    """
+    target, links = Path(path), _with_grids(solution, grids)
+    check_target(target)
+    with reported_as("cannot be written", target):
+        attributes = attributes_to_write(solution, figures, links)
+    _require_space(solution, target, len(links))
+    with replacing(target, hdf5=True) as draft:
+        with (
+            uninterrupted() as breathe,
+            PatientFile(draft, "x+") as bytes_,
+            h5py.File(bytes_, "w", track_order=True) as file,
+        ):
+            try:
+                _write(file, solution, links, breathe)
+                file.attrs.update(attributes)
+            except RuntimeError as error:  # of HDF5
+                raise StoreError(f"cannot write {target}: {one_line(error)}") from error
+            file.flush()
+            file.attrs["complete"] = True
+        seal(draft, SCHEMA)
+
+
+def check_target(target: Path, schema: str = SCHEMA) -> None:
+    """Raise :class:`PathError` where no file of a schema can be put: it replaces another one, and
+    nothing else that holds anything.
+
+    Nor may its name end as that of a table, which it is not.
+
+    Raises :class:`BusyError` where another program writes what is there.
+    """
+    if target.suffix.lower() in _TABLES:
+        name = target.with_suffix(".h5").name
+        raise PathError(
+            f"cannot write {target}: results are kept as HDF5, under a name such as {name}; for a"
+            " table of a solution use solution.to_pandas().to_csv(...)"
+        )
+    check_writable(target, hdf5=True)
+    place = settled(target)
+    if not place.exists() or not place.stat().st_size:
+        return
+    found = kind_of(place)
+    if found != schema:
+        unsealed = (
+            "an HDF5 file of something else, or without its seal"
+            if is_hdf5(place)
+            else "no file of HDF5"
+        )
+        kind = (_OTHERS | {None: unsealed}).get(found, "an HDF5 file of something else")
+        raise PathError(f"cannot write {target}: it is {kind}; choose another name")
+
+
+def _with_grids(solution: Solution, asked: bool | Sequence[str] | None) -> list[str]:
+    """Return the links whose grids are stored. Raises :class:`.UnknownNameError` for others."""
+    links = solution.links_with_sections
+    if asked is None:
+        pieces = pieces_of(solution.description)
+        return [link for link in links if link not in pieces]
+    if isinstance(asked, bool):
+        return list(links) if asked else []
+    if unknown := [name for name in asked if name not in links]:
+        raise UnknownNameError("link with sections", unknown, links)
+    return [link for link in links if link in asked]
+
+
+def _require_space(solution: Solution, target: Path, grids: int) -> None:
+    """Raise :class:`StoreError` where the disk has less room than the grids take."""
+    size = (
+        8
+        * solution.t.size
+        * (len(solution.series) + len(solution.table.forces) * solution.xi.size * grids)
+    ) + sum(
+        values.nbytes for found in solution.sensitivities.by.values() for values in found.values()
+    )
+    try:
+        free = shutil.disk_usage(target.parent).free
+    except OSError:
+        return
+    if size > free:
+        raise StoreError(
+            f"cannot write {target}: it takes {size / 1e9:.4g} GB, and the disk has"
+            f" {free / 1e9:.3g} GB left"
+        )
+
+
+@public
+def load(path: str | os.PathLike[str]) -> Solution:
+    """Read a solution from its file.
+
+    Parameters
+    ----------
+    path
+        The file of a run.
+
+    Returns
+    -------
+    Solution
+        The solution, without its scene.
+
+    Raises
+    ------
+    PathError
+        If there is no such file.
+    StoreError
+        If the file is damaged, incomplete, or of another schema.
+    """
+    with opened_file(path, SCHEMA, SCHEMA_VERSION, _KIND) as file:
+        return _read(file)
+
+
+def figure_specs(path: str | os.PathLike[str]) -> tuple[object, ...]:
+    """Specifications of the case's figures, as they were given to :func:`save`.
+
+    Raises what :func:`load` does.
+    """
+    with opened_file(path, SCHEMA, SCHEMA_VERSION, _KIND) as file:
+        return figures_of(file.attrs)
+
+
+@public
+def check(path: str | os.PathLike[str]) -> list[str]:
+    """Check a file of a run, and return its faults.
+
+    Every dataset is read, so its checksum is verified; every value must be finite, every axis have
+    its scale, every unit and sign be the schema's; and section grids, where stored, must agree with
+    the laws to 1e-12 of their peak.
+
+    Parameters
+    ----------
+    path
+        The file.
+
+    Returns
+    -------
+    list of str
+        The faults, one line each; empty if the file is complete and consistent.
+
+    Raises
+    ------
+    PathError, StoreError
+        As :func:`load`.
+    """
+    with opened_file(path, SCHEMA, SCHEMA_VERSION, _KIND) as file:
+        solution = _read(file)
+        certificate = (Output("certificate", "", name) for name in solution.certificate)
+        grids = parsed(file.attrs["grids"], [str], "grids") if "grids" in file.attrs else None
+        quantities = (
+            output
+            for output in solution.quantities()
+            if output.group != "section" or grids is None or output.part in grids
+        )
+        outputs = dict.fromkeys(
+            [*quantities, *solution.outputs, *held_outputs(solution.holding), *certificate]
+        )
+        listed = map(Output.of, parsed(file.attrs["outputs"], [str]))
+        found = [f"{_place(output)}: missing" for output in listed if output not in outputs]
+        found += check_attributes(file.attrs)
+        if not found:
+            found += unlike_conventions(file, solution.table)
+            found += _check_axes(file, solution)
+            found += _check_drive_axis(solution)
+            found += [
+                finding for output in outputs for finding in _check_dataset(file, solution, output)
+            ]
+            found += check_slopes(file, solution)
+            found += _check_certificate(file, solution)
+    return found
+
+
+def _check_certificate(file: h5py.File, solution: Solution) -> Iterator[str]:
+    """The stored residuals and what is said of them, and the same computed anew from what is
+    stored.
+    """
+    worse = f"is worse than the tolerance {solution.tolerance:.3g}"
+    for name, value in solution.failed.items():
+        yield f"certificate/{name}: {value:.3g} {worse}"
+    # Of angles of very many turns not enough digits are reported to compute anything anew.
+    if solution.certificate and blur(solution) < COARSE:
+        for name, value in replace(solution, certificate=certify(solution)).failed.items():
+            yield f"{name}: {value:.3g}, computed anew, {worse}"
+    if (
+        not TOLERANCE <= solution.tolerance <= COARSE
+        or bool(file.attrs["certified"]) != solution.certified
+    ):
+        yield "certificate: the verdict or its tolerance is not what follows from the residuals"
+
+
+def _check_dataset(file: h5py.File, solution: Solution, output: Output) -> Iterator[str]:
+    place, quantity, name = _place(output), output.meant(solution.table), output
+    dataset = file[place]
+    check_numbers(
+        dataset, [{"t": solution.t.size, "xi": solution.xi.size}[axis] for axis in quantity.axes]
+    )
+    gap, finite = _read_through(dataset, solution, name)
+    if solution.determined(name):
+        if not finite:
+            yield f"{place}: values that are not finite"
+        if quantity.axes == ("t", "xi") and gap > _GRID_TOLERANCE * abs(solution.peak(name).value):
+            yield f"{place}: differs from its law by {gap:.3g} {solution.unit(name)}"
+    yield from unlike(dataset, solution.unit(name), quantity.attributes)
+    if strange := dataset.attrs.keys() - {*quantity.attributes, *_BESIDE}:
+        yield f"{place}: {min(strange)} is not in the schema"
+    for axis, scale in enumerate(quantity.axes):
+        if file[scale] not in dataset.dims[axis].values():
+            yield f"{place}: axis {axis} has no scale /{scale}"
+
+
+def _check_axes(file: h5py.File, solution: Solution) -> Iterator[str]:
+    """Times and ratios: finite, and said to be these."""
+    for axis, values in (("t", solution.t), ("xi", solution.xi)):
+        if not np.isfinite(values).all():
+            yield f"{axis}: values that are not finite"
+        yield from unlike(file[axis], *_AXES[axis])
+
+
+def _check_drive_axis(solution: Solution) -> Iterator[str]:
+    """The coordinate by which instants were asked for: finite, in equal steps, and that of the
+    motion, where this is there.
+    """
+    if solution.over is None:
+        return
+    values = solution.over.values
+    if not np.isfinite(values).all() or not are_even(values):
+        yield f"{_OVER}: not in equal steps"
+    joint = solution.over.joint
+    motion, rate = (
+        solution.outputs.get(Output("motion", joint, member)) for member in ("", "rate")
+    )
+    allowed = _OVER_TOLERANCE.get(solution.provenance.precision, 0.0) * float(np.abs(values).max())
+    if rate is not None:
+        # Times are doubles, and a fast drive far from zero moves on between two of them.
+        allowed += 4.0 * float(np.max(np.abs(rate)) * np.spacing(np.abs(solution.t).max()))
+    if motion is not None and not np.abs(motion - values).max() <= allowed:
+        yield f"{_OVER}: not the coordinate of joint '{joint}'"
+
+
+def _read_through(dataset: h5py.Dataset, solution: Solution, output: Output) -> tuple[float, bool]:
+    """Distance of a grid from its law, and whether all values are finite, block by block."""
+    gap, finite = 0.0, True
+    height = max(1, _BLOCK_BYTES // (8 * math.prod(dataset.shape[1:])))
+    law = solution.section(output.part).law if output.group == "section" else None
+    basis = law.basis(solution.xi) if law else None
+    rests = output.group not in ("motion", "pose", "certificate") and bool(solution.resting.any())
+    for start in range(0, dataset.shape[0], height):
+        block = slice(start, start + height)
+        stored = dataset[block]
+        finite = finite and bool((np.isfinite(stored) | (rests & np.isnan(stored))).all())
+        if law and basis:
+            gap = float(
+                np.fmax(
+                    gap,
+                    np.fmax.reduce(
+                        np.abs(stored - law.during(block).on_grid(output.member, basis)), axis=None
+                    ),
+                )
+            )
+    return gap, finite
+
+
+def _place(output: Output) -> str:
+    return str(output).replace(":", "/")
+
+
+def _write(
+    file: h5py.File,
+    solution: Solution,
+    grids: Sequence[str],
+    breathe: Callable[[], None],
+) -> None:
+    for axis, values in (("t", solution.t), ("xi", solution.xi)):
+        scale = file.create_dataset(axis, data=values, fletcher32=True, fillvalue=np.nan, **LARGE)
+        say(scale, *_AXES[axis])
+        scale.make_scale(axis)
+    scales = Scales(file)
+    if solution.over:
+        _add_drive_axis(file, scales, solution.over)
+    for output, values in solution.outputs.items():
+        breathe()
+        _add(file, scales, solution, output, values)
+    for output, values in held_outputs(solution.holding).items():
+        _add(file, scales, solution, output, values)
+    for name, values in solution.certificate.items():
+        _add(file, scales, solution, Output("certificate", "", name), values)
+    for link in grids:
+        for force in solution.table.forces:
+            _add_grid(file, scales, solution, Output("section", link, force), breathe)
+    breathe()
+    add_slopes(file, scales, solution, partial(_empty, file))
+    scales.finish()
+
+
+def _add(
+    file: h5py.File, scales: Scales, solution: Solution, output: Output, values: Array
+) -> None:
+    _create(file, scales, solution, output, values.shape)[...] = values
+
+
+def _add_drive_axis(file: h5py.File, scales: Scales, over: DriveAxis) -> None:
+    """The coordinate by which instants were asked for, beside their times: an auxiliary coordinate,
+    as CF calls it.
+    """
+    dataset = file.create_dataset(
+        _OVER, data=over.values, fletcher32=True, fillvalue=np.nan, **LARGE
+    )
+    say(dataset, over.unit, {"long_name": over.long_name, "joint": over.joint})
+    scales.attach(dataset, ("t",))
+    file.attrs["coordinates"] = _OVER
+
+
+def _add_grid(
+    file: h5py.File, scales: Scales, solution: Solution, output: Output, breathe: Callable[[], None]
+) -> None:
+    """A grid block by block: it need not fit into memory."""
+    law, xi = solution.section(output.part).law, solution.xi
+    dataset = _create(file, scales, solution, output, (solution.t.size, xi.size))
+    height, width = dataset.chunks
+    height *= max(1, _BLOCK_BYTES // (8 * height * width))
+    for left in range(0, xi.size, width):
+        basis = law.basis(xi[left : left + width])
+        for start in range(0, solution.t.size, height):
+            breathe()
+            block = law.during(slice(start, start + height))
+            dataset[start : start + height, left : left + width] = block.on_grid(
+                output.member, basis
+            )
+
+
+def _empty(file: h5py.File, place: str, shape: tuple[int, ...]) -> h5py.Dataset:
+    width = tuple(min(size, _CHUNK_BYTES // 8) for size in shape[1:])
+    chunks = (min(shape[0], max(1, _CHUNK_BYTES // (8 * math.prod(width)))), *width)
+    return file.create_dataset(
+        place, shape, np.float64, chunks=chunks, fletcher32=True, fillvalue=np.nan
+    )
+
+
+def _create(
+    file: h5py.File, scales: Scales, solution: Solution, output: Output, shape: tuple[int, ...]
+) -> h5py.Dataset:
+    quantity, name = output.meant(solution.table), str(output)
+    dataset = _empty(file, _place(output), shape)
+    say(dataset, solution.unit(output), quantity.attributes)
+    if name in solution.errors:
+        dataset.attrs["error_estimate"] = solution.errors[name]
+    scales.attach(dataset, quantity.axes)
+    return dataset
+
+
+def _read(file: h5py.File) -> Solution:
+    check_links(file)
+    stated = read_attributes(file.attrs)
+    description, errors, reasons = stated["description"], stated["errors"], stated.pop("holding")
+    t, xi = (numbers(file[axis]) for axis in _AXES)
+    if t.ndim != 1 or xi.ndim != 1 or not t.size or not xi.size:
+        raise ValueError(f"t and xi have the shapes {t.shape} and {xi.shape}")
+    outputs: dict[Output, Array] = {}
+
+    def visit(place: str, item: h5py.Group | h5py.Dataset) -> None:
+        if (
+            isinstance(item, h5py.Dataset)
+            and place not in (*_AXES, _OVER)
+            and not place.startswith(f"{SENSITIVITY}/")
+        ):
+            output = Output.of(place.replace("/", ":"))
+            if "error_estimate" in item.attrs:
+                errors[str(output)] = number(item.attrs, "error_estimate")
+            if output.quantity.axes == ("t",) and output.group not in ("certificate", "holding"):
+                outputs[output] = numbers(item, t.shape)
+
+    file.visititems(visit)
+    solution = Solution(
+        t=t,
+        xi=xi,
+        outputs=in_order(outputs, description),
+        certificate={
+            name: numbers(file["certificate"][name], t.shape)
+            for name in file.get("certificate", ())
+        },
+        over=drive_axis(file[_OVER], t.shape, description) if _OVER in file else None,
+        **stated,
+    )
+    for link in solution.links_with_sections:
+        law = solution.section(link).law
+        whole = set(law.coefficients) == set(solution.table.law) and all(
+            distributed.sound for distributed in law.distributed_loads
+        )
+        if not whole or len(law.density.breaks) != len(law.density.cells) + 1:
+            raise ValueError(f"the law or the density of '{link}' is incomplete")
+    return replace(
+        solution,
+        sensitivities=slopes_of(file, solution, numbers),
+        holding=_held(file, solution, reasons),
+    )
+
+
+def _held(file: h5py.File, solution: Solution, reasons: Mapping[str, str]) -> dict[str, Holding]:
+    """The ranges of the efforts that joints at rest leave open, with the reason of each.
+
+    Raises ``ValueError`` for those of what is no drive.
+    """
+    found = {}
+    for name, reason in reasons.items():
+        if Output("effort", name) not in solution.outputs:
+            raise ValueError(f"there is a range of efforts of '{name}', which is no drive")
+        least, largest = (
+            numbers(file[_place(Output("holding", name, end))], solution.t.shape) for end in ENDS
+        )
+        found[name] = Holding(least, largest, solution.unit(Output("effort", name)), reason)
+    return found
+
+
+def drive_axis(
+    dataset: h5py.Dataset, shape: tuple[int, ...], description: Description
+) -> DriveAxis:
+    """The coordinate by which instants were asked for.
+
+    Raises ``ValueError`` for that of a joint which is not driven.
+    """
+    values, joint, unit = (
+        numbers(dataset, shape),
+        shown(dataset.attrs["joint"]),
+        shown(dataset.attrs["units"]),
+    )
+    kind = motions_of(description).get(joint)
+    if kind is None or unit != (LENGTH if kind == "slide" else ANGLE):
+        raise ValueError(
+            f"the instants are over '{joint}' in {unit}, which is no drive's coordinate"
+        )
+    return DriveAxis(joint, unit, values)
+
+
+def numbers(dataset: h5py.Dataset, shape: tuple[int, ...] | None = None) -> Array:
+    """The numbers of a dataset, of a shape if one is given.
+
+    Raises ``ValueError`` for what has others.
+    """
+    check_numbers(dataset, shape)
+    return np.asarray(dataset[()], np.float64)
+
+
+def check_numbers(dataset: h5py.Dataset, shape: Sequence[int] | None) -> None:
+    """Raise ``ValueError`` for a dataset that has no numbers, or another shape."""
+    check_dataset(dataset, shape)
+    check_chunks(dataset)

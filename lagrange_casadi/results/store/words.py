@@ -1,0 +1,50 @@
+"""Descriptions of datasets and files, beside numbers: units, meanings, signs and conventions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
+
+from ...base.tables import CF, Table
+
+if TYPE_CHECKING:
+    import h5py
+
+
+def conventions(table: Table) -> dict[str, str]:
+    """Attributes of a file as a whole."""
+    return {"Conventions": CF, "conventions": table.conventions}
+
+
+def say(dataset: h5py.Dataset, unit: str, words: Mapping[str, str]) -> None:
+    """Write the unit of a dataset, and other words about it, by attribute."""
+    dataset.attrs["units"] = unit
+    for key, text in words.items():
+        dataset.attrs[key] = text
+
+
+def unlike(dataset: h5py.Dataset, unit: str, words: Mapping[str, str]) -> Iterator[str]:
+    """Yield what a dataset says otherwise, a line each."""
+    place = dataset.name.removeprefix("/")
+    if not _states(dataset, "units", unit):
+        yield f"{place}: units {dataset.attrs.get('units')!r}, expected {unit!r}"
+    yield from (
+        f"{place}: {key} differs from the schema"
+        for key, text in words.items()
+        if not _states(dataset, key, text)
+    )
+
+
+def unlike_conventions(file: h5py.File, table: Table) -> Iterator[str]:
+    """Yield what a file says otherwise of all that it holds, a line each."""
+    yield from (
+        f"{key}: differs from the schema"
+        for key, text in conventions(table).items()
+        if not _states(file, key, text)
+    )
+
+
+def _states(item: h5py.HLObject, key: str, text: str) -> bool:
+    """Return whether an attribute is a text; arrays are none."""
+    value = item.attrs.get(key)
+    return isinstance(value, str) and value == text

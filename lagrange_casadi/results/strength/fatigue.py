@@ -1,0 +1,440 @@
+"""Fatigue: how a mean stress lowers what amplitude is borne, lives by S-N lines, and damage by
+Miner's sum.
+
+Stresses of several components count by von Mises: of a swing between two instants the amplitude is
+half that of the differences of the components (ASME Boiler and Pressure Vessel Code VIII-2, 5.5.3),
+so stresses out of phase are counted as they are. The mean is that of the components half-way, where
+a normal stress in compression counts as none (Shigley, *Mechanical Engineering Design*, 9th
+edition, sections 6-12 and 6-14). Which swings there are is counted along the direction of the
+largest difference.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from ...base.arguments import Numeric, public
+from ...base.arrays import Array, Operand
+from ...errors import UnknownNameError
+from ...model.beams.material import Material
+from ...model.beams.properties import larger
+from .rainflow import counted
+
+_LEAST = 1e3
+"""Cycles from which on S-N lines hold."""
+
+ROUNDED = 1.0 + 1e-12
+"""Factor of rounding by which a value may exceed a bound."""
+
+
+@dataclass(frozen=True)
+class Criterion:
+    """Treatment of a mean stress: ``strength`` is the material's number for a mean stress alone;
+    ``square`` if it counts squared.
+    """
+
+    strength: str
+    square: bool = False
+
+
+CRITERIA = {
+    "goodman": Criterion("ultimate"),
+    "gerber": Criterion("ultimate", square=True),
+    "soderberg": Criterion("yield_strength"),
+    "morrow": Criterion("fatigue_strength"),
+}
+
+
+def criterion_of(name: str) -> Criterion:
+    """A criterion by its name. Raises :class:`.UnknownNameError` for none."""
+    if name not in CRITERIA:
+        raise UnknownNameError("fatigue criterion", name, CRITERIA)
+    return CRITERIA[name]
+
+
+def strengths(material: Material, criterion: str) -> tuple[float, float]:
+    """The endurance limit, and the strength that bears a mean stress alone.
+
+    Raises :class:`.DeclarationError` for numbers that the material has not.
+    """
+    endurance, strength = material.needs(f"fatigue by {criterion}", *_needed(material, criterion))
+    by_ultimate = (
+        criterion_of(criterion).strength == "fatigue_strength" and material.fatigue_strength is None
+    )
+    return endurance, strength + 345e6 if by_ultimate else strength
+
+
+def _needed(material: Material, criterion: str) -> tuple[str, str]:
+    name = criterion_of(criterion).strength
+    return (
+        "endurance",
+        "ultimate" if name == "fatigue_strength" and material.fatigue_strength is None else name,
+    )
+
+
+@public
+def factor(
+    amplitude: Numeric, mean: Numeric, material: Material, criterion: str = "goodman"
+) -> Numeric:
+    """Return the factor by which amplitude and mean may grow together without failure by fatigue.
+
+    Parameters
+    ----------
+    amplitude, mean : float or array
+        Amplitude and mean of the stress [Pa]. A negative mean counts as zero.
+    material : Material
+        Has the endurance limit S_e, and the strength S that the criterion needs.
+    criterion : str
+        One of :data:`.CRITERIA`: ``"goodman"``, ``"gerber"``, ``"soderberg"`` or ``"morrow"``.
+
+    Returns
+    -------
+    float or array
+        The factor of safety n.
+
+    Raises
+    ------
+    UnknownNameError
+        For another criterion.
+    DeclarationError
+        If the material lacks a number that is needed.
+
+    Notes
+    -----
+    Goodman, Soderberg and Morrow: a/S_e + m/S = 1/n; Gerber: n a/S_e + (n m/S)^2 = 1 (Shigley, eq.
+    6-45 to 6-48; Dowling for Morrow).
+    """
+    with np.errstate(divide="ignore"):
+        return 1.0 / used(np.asarray(amplitude), np.asarray(mean), material, criterion)
+
+
+def used(amplitude: Array, mean: Array, material: Material, criterion: str = "goodman") -> Operand:
+    """Utilisation of a material by amplitude and mean, one over :func:`factor`; of numbers, arrays
+    or expressions.
+    """
+    endurance, strength = strengths(material, criterion)
+    a, m = amplitude / endurance, larger(mean, 0.0) / strength
+    return (a + (a * a + 4.0 * m * m) ** 0.5) / 2 if criterion_of(criterion).square else a + m
+
+
+def lacking(material: Material, criterion: str = "goodman") -> str:
+    """Say why fatigue of a material is open by a criterion, or on Findley's planes: which numbers
+    it has not; empty if none.
+    """
+    needed = _needed(material, criterion) if criterion in CRITERIA else ("endurance",)
+    missing = [name for name in needed if getattr(material, name) is None]
+    return (
+        f"fatigue: material '{material.name}' has no {' and no '.join(missing)}" if missing else ""
+    )
+
+
+@public
+def reversed_amplitude(
+    amplitude: Numeric, mean: Numeric, material: Material, criterion: str = "goodman"
+) -> Numeric:
+    """Return the fully reversed amplitude with the same damage as an amplitude with a mean.
+
+    Parameters
+    ----------
+    amplitude, mean : float or array
+        Amplitude and mean of the stress [Pa]. A negative mean counts as zero.
+    material : Material
+        Has the strength that the criterion needs.
+    criterion : str
+        One of :data:`.CRITERIA`.
+
+    Returns
+    -------
+    float or array
+        The amplitude [Pa], infinite if the mean alone causes failure.
+
+    Raises
+    ------
+    UnknownNameError
+        For another criterion.
+    DeclarationError
+        If the material lacks a number that is needed.
+    """
+    _, strength = strengths(material, criterion)
+    m = np.maximum(mean, 0.0) / strength
+    remaining = 1.0 - (m * m if criterion_of(criterion).square else m)
+    return np.where(
+        remaining > 0.0, np.asarray(amplitude) / np.where(remaining > 0.0, remaining, 1.0), np.inf
+    )
+
+
+def line(material: Material) -> tuple[float, float, float]:
+    """The endurance limit, the amplitude that is borne a thousand times [Pa], and the exponent of a
+    material's S-N line.
+
+    Raises :class:`.DeclarationError` for numbers that the material has not.
+    """
+    endurance, ultimate = material.needs("a life", "endurance", "ultimate")
+    start = material.fatigue_share * ultimate
+    return (
+        endurance,
+        start,
+        math.log10(material.endurance_cycles / _LEAST) / math.log10(endurance / start),
+    )
+
+
+@public
+def cycles(amplitude: Numeric, material: Material) -> Numeric:
+    """Return the number of cycles to failure at a fully reversed amplitude.
+
+    Parameters
+    ----------
+    amplitude : float or array
+        Amplitude of stress [Pa].
+    material : Material
+        Has the S-N line: ultimate strength, endurance limit and its number of cycles.
+
+    Returns
+    -------
+    float or array
+        Cycles by the S-N line, infinite below the endurance limit of an ``endless`` material. The
+        line begins at 1000 cycles; a smaller number is an estimate, from the same line continued.
+
+    Raises
+    ------
+    DeclarationError
+        If the material has no endurance limit.
+    """
+    endurance, start, slope = line(material)
+    size = np.abs(amplitude)
+    with np.errstate(divide="ignore", over="ignore"):
+        found = _LEAST * (size / start) ** slope
+    return np.where((size <= endurance) & material.endless, np.inf, found)
+
+
+class Loaded(NamedTuple):
+    """The swings at a place and fibre: amplitudes and means [Pa], how often each comes in a cycle,
+    and between which instants.
+    """
+
+    amplitude: Array
+    mean: Array
+    times: Array
+    instants: list[tuple[int, int]]
+
+
+def loaded(values: Array) -> Loaded:
+    """The swings of a history of stresses (3, t), normal and shear along y and z, which repeats for
+    ever.
+    """
+    vector, (first, last) = values * _VON_MISES, widest(values)
+    along = vector[:, last] - vector[:, first]
+    size = float(np.linalg.norm(along))
+    stress_cycles = counted(along @ vector / size, repeating=True) if size else []
+    if not stress_cycles:  # none that is more than rounding
+        pairs, counts = [(first, first)], [1.0]
+    else:
+        pairs, counts = [(s.first, s.last) for s in stress_cycles], [s.times for s in stress_cycles]
+    a, b = (values[:, list(side)] for side in zip(*pairs, strict=True))
+    amplitude, mean = (np.sqrt(square) for square in cycle_squares(a, b))
+    return Loaded(amplitude, mean, np.array(counts), pairs)
+
+
+def widest(values: Array) -> tuple[int, int]:
+    """The two instants between which stresses (3, t) differ most, by von Mises."""
+    return _farthest(values * _VON_MISES)
+
+
+_VON_MISES = np.array([[1.0], [math.sqrt(3.0)], [math.sqrt(3.0)]])
+
+
+def cycle_squares(first: Operand, last: Operand) -> tuple[Operand, Operand]:
+    """The squares of amplitude and mean of a swing from some stresses, normal and shear along y and
+    z, to others.
+
+    They are numbers, arrays or expressions.
+    """
+    far = [b - a for a, b in zip(first, last, strict=True)]
+    normal, *shears = ((a + b) / 2 for a, b in zip(first, last, strict=True))
+    amplitude = (far[0] ** 2 + 3.0 * (far[1] ** 2 + far[2] ** 2)) / 4
+    return amplitude, larger(normal, 0.0) ** 2 + 3.0 * (shears[0] ** 2 + shears[1] ** 2)
+
+
+def _farthest(points: Array) -> tuple[int, int]:
+    """Two points (3, t) farthest from each other: those that are outermost in many directions, and
+    from there on uphill.
+    """
+    sheared = [axis for axis in (1, 2) if points[axis].any()]
+    if not sheared:
+        return int(np.argmin(points[0])), int(np.argmax(points[0]))
+    if len(sheared) == 1:
+        points = points[[0, *sheared]]
+    levels = _DIRECTIONS[len(points)] @ points
+    low, high = np.argmin(levels, axis=1), np.argmax(levels, axis=1)
+    k = int(np.argmax(_squares(points[:, high] - points[:, low])))
+    first, last, best = int(low[k]), int(high[k]), -1.0
+    while (size := float(_squares(points[:, last] - points[:, first]))) > best:
+        best = size
+        first, last = last, int(np.argmax(_squares(points - points[:, last : last + 1])))
+    return first, last
+
+
+def _squares(vectors: Array) -> Array:
+    return np.asarray(np.einsum("i...,i...->...", vectors, vectors))
+
+
+def _directions() -> dict[int, Array]:
+    """Half of all directions: in the plane of normal and one shear stress, and all around."""
+    angles = np.arange(32) * math.pi / 32
+    zero, c, s = np.zeros(32), np.cos(angles), np.sin(angles)
+    # The even spirals of Saff and Kuijlaars.
+    z = (np.arange(64) + 0.5) / 64
+    turn = math.pi * (1.0 + math.sqrt(5.0)) * np.arange(64)
+    r = np.sqrt(1.0 - z * z)
+    around = np.stack([z, r * np.cos(turn), r * np.sin(turn)], 1)
+    planes = [np.stack([c, s, zero], 1), np.stack([c, zero, s], 1)]
+    return {2: np.stack([c, s], 1), 3: np.vstack([*planes, around])}
+
+
+_DIRECTIONS = _directions()
+"""Directions by the number of stresses that are not zero throughout."""
+
+
+@dataclass(frozen=True, eq=False)
+class Histories:
+    """Stresses over time of n designs: ``normal`` (n, places, t), and of places that are
+    ``sheared`` the ``shears``.
+
+    These are (n, axes, sheared, t), along one of ``axes`` after the other (0 is y, 1 is z), for in
+    a plane there are none along z.
+    """
+
+    normal: Array
+    shears: Array
+    sheared: npt.NDArray[np.intp]
+    axes: tuple[int, ...]
+
+    @classmethod
+    def of(cls, values: Array, sheared: npt.NDArray[np.intp], axes: tuple[int, ...]) -> Histories:
+        """Make them of stresses (n, stresses, t), those of one direction after another."""
+        n, count, t = values.shape
+        many = count - len(axes) * sheared.size
+        shears = values[:, many:].reshape(n, len(axes), sheared.size, t)
+        return cls(values[:, :many], shears, sheared, axes)
+
+    def at(self, design: int, place: int) -> Array:
+        """The stresses of a design at a place: (3, t)."""
+        found = np.zeros((3, self.normal.shape[2]))
+        found[0] = self.normal[design, place]
+        for column in np.flatnonzero(self.sheared == place):
+            found[[1 + axis for axis in self.axes]] = self.shears[design, :, column]
+        return found
+
+    def widest(self) -> tuple[Array, Array]:
+        """Amplitudes and means [Pa] that no swing is beyond, each (n, places)."""
+        high, low = self.normal.max(axis=2), self.normal.min(axis=2)
+        amplitude, mean = (high - low) ** 2, np.maximum(high, 0.0) ** 2
+        square, size = self._sheared()
+        amplitude[:, self.sheared] += square
+        mean[:, self.sheared] += size
+        return np.sqrt(amplitude) / 2, np.sqrt(mean)
+
+    def bounds(self, material: Material) -> Array:
+        """Bounds on utilisation by Goodman's rule, (n, places).
+
+        Of a history of normal stress alone the swing from its smallest to its largest value is the
+        worst, and the bound its utilisation.
+        """
+        endurance, strength = strengths(material, "goodman")
+        high, low = self.normal.max(axis=2), self.normal.min(axis=2)
+        bound = (high - low) / (2 * endurance) + np.maximum((high + low) / 2, 0.0) / strength
+        if self.sheared.size:
+            sheared = self.sheared
+            square, size = self._sheared()
+            high, low = high[:, sheared], low[:, sheared]
+            stress_cycle, middle = (high - low) ** 2, np.maximum((high + low) / 2, 0.0)
+            whole = (
+                np.sqrt(stress_cycle + square) / (2 * endurance)
+                + np.sqrt(middle**2 + size) / strength
+            )
+            # A smaller swing has a larger mean. Where shear is most of it, or means count for much,
+            # no more is known than this.
+            wide = 2.0 * square if strength >= math.sqrt(2.0) * endurance else stress_cycle + square
+            other = (
+                np.sqrt(wide) / (2 * endurance)
+                + np.sqrt(np.maximum(high, 0.0) ** 2 + size) / strength
+            )
+            bound[:, sheared] = np.maximum(whole, other) * ROUNDED
+        return np.asarray(bound)
+
+    def _sheared(self) -> tuple[Array, Array]:
+        """Three times the squares of the ranges of shear stress, and of its sizes, at places with
+        shear, each (n, sheared).
+        """
+        return 3.0 * np.sum(np.ptp(self.shears, axis=3) ** 2, axis=1), 3.0 * np.max(
+            np.sum(self.shears**2, axis=1), axis=2
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Score:
+    """Measure that is largest where a link is worst, ``of`` stresses (3, t) at a fibre; between
+    equals the next of its numbers decides.
+
+    ``bound`` has for every place of designs numbers that it is not above, (n, places, numbers).
+    Where it is ``exact`` it is the score of fibres that have normal stress alone. ``swing`` says
+    how bad a swing is by its amplitude and its mean.
+    """
+
+    of: Callable[[Array], tuple[float, ...]]
+    bound: Callable[[Histories], Array]
+    swing: Callable[[Array, Array], Operand]
+    exact: bool = False
+
+
+def use_score(material: Material, criterion: str = "goodman") -> Score:
+    """The utilisation against fatigue. Raises what :func:`strengths` does."""
+    strengths(material, criterion)
+    goodman = criterion == "goodman"
+
+    def of(values: Array) -> tuple[float]:
+        found = loaded(values)
+        return (float(np.max(used(found.amplitude, found.mean, material, criterion))),)
+
+    def bound(histories: Histories) -> Array:
+        if goodman:
+            return histories.bounds(material)[..., None]
+        most = used(*histories.widest(), material, criterion)
+        return np.asarray(most * ROUNDED)[..., None]
+
+    def swing(amplitude: Array, mean: Array) -> Operand:
+        return used(amplitude, mean, material, criterion)
+
+    return Score(of, bound, swing, exact=goodman)
+
+
+def damage_score(material: Material, criterion: str = "goodman") -> Score:
+    """The damage by Miner's sum, and where there is none the largest amplitude.
+
+    Raises what :func:`strengths` does.
+    """
+    strengths(material, criterion)
+
+    def of(values: Array) -> tuple[float, float]:
+        found = loaded(values)
+        sizes = reversed_amplitude(found.amplitude, found.mean, material, criterion)
+        with np.errstate(divide="ignore"):
+            return float(np.sum(found.times / cycles(sizes, material))), float(np.max(sizes))
+
+    def bound(histories: Histories) -> Array:
+        amplitude, mean = (size * ROUNDED for size in histories.widest())
+        sizes = reversed_amplitude(amplitude, mean, material, criterion)
+        many = histories.normal.shape[2] / 2 + 1
+        with np.errstate(divide="ignore"):
+            return np.stack([many / cycles(sizes, material), sizes], axis=-1)
+
+    def swing(amplitude: Array, mean: Array) -> Operand:
+        return used(amplitude, mean, material, criterion)
+
+    return Score(of, bound, swing)

@@ -1,0 +1,116 @@
+"""All parts of a solution whose strength is known."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from ...base.arguments import public
+from ...errors import DeclarationError
+from ...model.description import beams_of, fitted_of
+from ..solution import Solution
+from .bearings import joint_safety
+from .member import Member
+from .safety import Safety, safety
+
+NEEDED = ("yield_strength", "elasticity")
+"""The numbers of a material that factors of safety need."""
+
+
+@public
+def safeties(solution: Solution) -> Iterator[Safety]:
+    """Yield the factors of safety of all links with a beam and of all joints with pins or bearings.
+
+    Parameters
+    ----------
+    solution : Solution
+        Has section forces and reactions.
+
+    Yields
+    ------
+    Safety
+        Of each part. Parts whose forces are indeterminate are left out.
+    """
+    return (found for found in looked(solution) if found.verdicts)
+
+
+def looked(solution: Solution) -> Iterator[Safety]:
+    """The same, and of those that are open the reason, without a verdict."""
+    links, joints = _parts(solution)
+    for part in [*links, *joints]:
+        try:
+            yield joint_safety(solution, part) if part in joints else safety(solution, part)
+        except DeclarationError as error:
+            yield Safety(part, (), (str(error),))
+
+
+def not_evaluated(solution: Solution) -> dict[str, str]:
+    """Links with beams, and joints with pins or bearings, that have no factor of safety, and the
+    reasons.
+    """
+    links, joints = _parts(solution)
+    reasons = {
+        link: _reason(
+            lambda name: Member.of(solution, name).beam.material.needs("safety", *NEEDED), link
+        )
+        for link in links
+    }
+    reasons |= {
+        joint: _reason(lambda name: joint_safety(solution, name), joint) for joint in joints
+    }
+    return {part: reason for part, reason in reasons.items() if reason}
+
+
+def _parts(solution: Solution) -> tuple[list[str], list[str]]:
+    """The links that have a beam and sections, and the joints that have something fitted."""
+    beams = beams_of(solution.description)
+    return [link for link in solution.links_with_sections if link in beams], fitted_of(
+        solution.description
+    )
+
+
+def part_safety(
+    solution: Solution, part: str, *, criterion: str = "goodman", yield_criterion: str = "von_mises"
+) -> Safety:
+    """The factors of safety of a link, or of what is fitted to a joint: see :func:`.safety` and
+    :func:`.joint_safety`.
+    """
+    if part in solution.description["joints"]:
+        return joint_safety(solution, part)
+    return safety(solution, part, criterion=criterion, yield_criterion=yield_criterion)
+
+
+def fitted_in(solution: Solution) -> tuple[str, ...]:
+    """The joints that have pins or bearings whose reactions were evaluated."""
+    fitted = fitted_of(solution.description)
+    forces = {
+        name: [o for o in solution.outputs if o.group == "reaction" and o.part == name]
+        for name in fitted
+    }
+    return tuple(name for name, own in forces.items() if own and all(map(solution.determined, own)))
+
+
+def strong_of(solution: Solution, *numbers: str) -> tuple[str, ...]:
+    """The links whose stresses were evaluated, and whose material has some numbers."""
+    bodies = solution.description["bodies"]
+    known = (link for link in solution.links_with_sections if not _reason(solution.stress, link))
+    return tuple(
+        link
+        for link in known
+        if all(bodies[link]["beam"]["material"][name] is not None for name in numbers)
+    )
+
+
+def bending_of(solution: Solution) -> tuple[str, ...]:
+    """The links whose deflections were evaluated."""
+    return tuple(
+        link for link in strong_of(solution, "elasticity") if not _reason(solution.deflection, link)
+    )
+
+
+def _reason(asked: Callable[[str], object], part: str) -> str:
+    """Reason why a result of a part is not available; empty if it is."""
+    try:
+        asked(part)
+    except DeclarationError as error:
+        return str(error)
+    return ""

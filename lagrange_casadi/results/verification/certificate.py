@@ -1,0 +1,188 @@
+"""Independent checks of a solution, from its own arrays and from what was declared: none shares the
+graphs that made them.
+
+The reported motions of the joints place every body anew, in plain arithmetic (:mod:`.placing`). The
+reported reactions, efforts, loads and multipliers must then balance every body (Newton-Euler), the
+power of drives and loads must be the change of kinetic energy, loops must close and the users'
+equations hold, and the sections at a link's base must give back what its joints do there. A
+mechanism of the plane is one in space whose z is zero. Each residual is relative, (t,).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ...base.arrays import Array
+from ...base.quantities import Output
+from ...base.tables import SPACE
+from ...errors import CertificateError
+from ...model.declared import Declared
+from ...model.scene import kinds
+from ..section_law import SectionLaw
+from ..solution import Solution
+from .balance import balance, forces_reported
+from .closure import Residuals, closure
+from .digits import COARSE as COARSE
+from .digits import TOLERANCE as TOLERANCE
+from .digits import Digits
+from .digits import blur as blur
+from .friction import friction_residuals
+from .placing import Placed, place
+from .reported import Reported
+from .unplaced import place_all
+
+NEAR = 1e3
+_BLOCK = 1 << 14
+_TURNED = 100.0
+
+_EDGE = 1e-9
+"""Distance from a link's base, relative to its length, that counts as at the base."""
+
+
+def certify(
+    solution: Solution,
+    declared: Declared | None = None,
+    hidden: Mapping[Output, Array] | None = None,
+    phases: Mapping[Output, Array] | None = None,
+) -> dict[str, Array]:
+    """The residuals that the solution's outputs allow: ``balance``, ``power``, ``closure``,
+    ``ends``, ``friction``, each where it can be had; where a joint that rubs is at rest,
+    ``closure``, and ``friction`` of others.
+
+    ``declared`` is the mechanism, with its constraints and rows, which a solution does not hold:
+    without it, a solution of a mechanism that has some is looked at for ``closure`` alone.
+    ``hidden`` are forces that it does not give: multipliers that were not wanted, and what is open,
+    which takes some value all the same. ``phases`` are angles that are known up to whole turns more
+    closely than they are reported.
+    """
+    declared = declared or Declared.of(solution.description)
+    resting = solution.resting
+    if resting.any() and not resting.all():
+        merged: dict[str, Array] = {}
+        for some in (~resting, resting):
+            pick = (
+                {output: values[some] for output, values in (more or {}).items()}
+                for more in (hidden, phases)
+            )
+            for name, distances in certify(solution.during(some), declared, *pick).items():
+                merged.setdefault(name, np.zeros_like(solution.t))[some] = distances
+        return merged
+    whole = replace(solution, outputs={**solution.outputs, **(hidden or {})}, indeterminate=())
+    reported = reported_of(whole, phases or {})
+    digits = Digits.of(solution)
+    found: dict[tuple[str, int], list[Array]] = {}
+    scales: dict[tuple[str, int], float] = {}
+    for start in range(0, whole.t.size, _BLOCK):
+        block = (
+            reported if whole.t.size <= _BLOCK else reported.during(slice(start, start + _BLOCK))
+        )
+        for name, parts in _residuals(declared, block, digits).items():
+            for part, (distances, scale) in enumerate(parts):
+                found.setdefault((name, part), []).append(np.broadcast_to(distances, block.t.shape))
+                scales[name, part] = max(scales.get((name, part), 0.0), scale)
+    residuals: dict[str, Array] = {}
+    for (name, part), blocks in found.items():
+        distances = np.concatenate(blocks) / (scales[name, part] or 1.0)
+        residuals[name] = np.maximum(residuals.get(name, distances), distances)
+    return residuals
+
+
+def tolerance(solution: Solution) -> float:
+    """Limit of residuals."""
+    exact = solution.provenance.precision == "double" and not any(
+        word in solution.provenance.method for word in ("--newton", "--table")
+    )
+    return min(COARSE, max(TOLERANCE, _TURNED * blur(solution))) if exact else COARSE
+
+
+def failure(solution: Solution) -> str:
+    """Describe the residuals of a solution that fail."""
+    worse = ", ".join(
+        f"{_SAID.get(name, name)} {value:.2g}" for name, value in solution.failed.items()
+    )
+    return f"the certificate fails: {worse}, but at most {solution.tolerance:.2g} is rounding"
+
+
+def refuse_failed(solution: Solution, then: str = "") -> None:
+    """Raise :class:`.CertificateError` for a solution whose certificate fails, which says ``then``
+    what became of it.
+    """
+    if solution.failed:
+        raise CertificateError(failure(solution) + (f"; {then}" if then else ""))
+
+
+def certified_outputs(outputs: Sequence[str]) -> list[str]:
+    """The outputs that a certificate needs, by their kinds, of those that a scene has."""
+    return ["effort", "motion", *(kind for kind in kinds(outputs) if kind in _ACTING)]
+
+
+_ACTING = ("reaction", "multiplier", "load", "friction")
+_SAID = {"ends": "section ends"}
+_NOTHING = "not computed; it needs motion, efforts, reactions and loads"
+
+
+def summary(residuals: Mapping[str, Array]) -> str:
+    """The largest residuals, in one line; and how singular the loops are, where it matters."""
+    parts = [
+        f"{_SAID.get(name, name)} {np.max(values):.1e}"
+        for name, values in residuals.items()
+        if name != "condition"
+    ]
+    found = ", ".join(parts)
+    said = f"certificate: {f'relative residuals {found}' if found else _NOTHING}"
+    worst = float(np.max(residuals.get("condition", np.ones(1))))
+    return said + (
+        f"; near a dead centre, where the loops magnify errors by {worst:.3g}"
+        if worst > NEAR
+        else ""
+    )
+
+
+def reported_of(solution: Solution, phases: Mapping[Output, Array]) -> Reported:
+    """Read a solution as vectors; ``phases`` as in :func:`certify`."""
+    description = solution.description
+    return Reported(
+        t=solution.t,
+        outputs=solution.outputs,
+        phases=phases,
+        laws={link: _law_at_base(solution, link) for link in solution.links_with_sections},
+        space=solution.table is SPACE,
+        two_force_links=description.get("bars", ()),
+        unmeasured=frozenset(description.get("unmeasured", ())),
+    )
+
+
+def _law_at_base(solution: Solution, link: str) -> SectionLaw:
+    """The law of a link, for its section at the base: what slides over the base just now counts as
+    at the base.
+    """
+    law = solution.section(link).law
+    return replace(law, slack=max(_EDGE, law.slack))
+
+
+def placed_of(declared: Declared, reported: Reported) -> Placed | None:
+    """Place every body by the reported motions; None where some is not reported."""
+    if any(
+        Output("motion", name) not in reported.outputs
+        for name in {*declared.kinds} - reported.unmeasured
+    ):
+        return None
+    if any(Output("pose", name, "x") not in reported.outputs for name in declared.bodies):
+        return None
+    placed = place_all(place(declared, reported.without_locked(declared)))
+    return placed if len(placed.bodies) == len(declared.bodies) + 1 else None
+
+
+def _residuals(
+    declared: Declared, reported: Reported, digits: Digits
+) -> dict[str, list[Residuals]]:
+    """The gaps of each residual, each with the largest of what it is to be compared with."""
+    if (placed := placed_of(declared, reported)) is None:
+        return {}
+    found = {"closure": closure(placed, digits)}
+    if (residuals := friction_residuals(placed, digits)) is not None:
+        found["friction"] = [(residuals, 1.0)]
+    return found | (balance(placed, digits) if forces_reported(placed) else {})

@@ -1,0 +1,70 @@
+"""Uncertainty of a solution's residuals by its finite number of digits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...base.compensated import DTYPES, ROUNDING
+from ...base.quantities import Output
+from ...base.vocabulary import Precision
+from ...model.description import coordinates_of
+from ..solution import Solution
+
+ROUNDINGS = 4.0
+NEARBY = 32.0
+"""So many roundings may be between what is reported, and what a law has seen of it."""
+
+TOLERANCE, COARSE = 1e-9, 1e-3
+"""A residual above it means that the solution is wrong, not that it is rounded; in doubles, and
+where less was asked for.
+"""
+
+
+def blur(solution: Solution) -> float:
+    """Uncertainty of a phase by the reported angles: one rounding of the largest of them [rad]."""
+    angles = [
+        Output("motion", name)
+        for name, kind in coordinates_of(solution.description).items()
+        if kind == "angle"
+    ]
+    angles += [Output("pose", name, "angle") for name in solution.description["bodies"]]
+    reported = (solution.outputs[angle] for angle in angles if angle in solution.outputs)
+    return Digits.of(solution).rounding * max(
+        (float(np.max(np.abs(values))) for values in reported), default=0.0
+    )
+
+
+@dataclass(frozen=True)
+class Digits:
+    """Uncertainty by a precision.
+
+    ``rounding`` is the largest relative error of one rounding, ``least`` the force beside which
+    what underflows is as small as a rounding, and ``tolerance`` the least residual that fails.
+    """
+
+    rounding: float
+    least: float
+    tolerance: float
+
+    @property
+    def doubted(self) -> float:
+        """Limit of a residual by the roundings of a law alone; a larger one is examined more
+        closely.
+        """
+        return 256.0 * self.rounding
+
+    @property
+    def coarseness(self) -> float:
+        """A rounding as a share of the least residual that fails."""
+        return ROUNDINGS * self.rounding / self.tolerance
+
+    @classmethod
+    def of(cls, solution: Solution) -> Digits:
+        """The digits that a solution was made with."""
+        single = solution.provenance.precision == "single"
+        precision: Precision = "single" if single else "double"
+        rounding = ROUNDING[precision]
+        least = float(np.finfo(DTYPES[precision]).tiny) / rounding
+        return cls(rounding, least, COARSE if single else TOLERANCE)

@@ -1,0 +1,114 @@
+"""The results to be verified, read as vectors: in a plane z is zero."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...base.arrays import Array, during
+from ...base.quantities import Output
+from ...model.declared import Declared, JointNumbers
+from ..section_law import SectionLaw
+from .vectors import GROUND, Axes, Scalar, Vector
+
+_NEAR = 1e-3
+"""The square of the cosine of a second turn below which the rates of three turns have lost digits
+of the body's.
+"""
+
+
+@dataclass(frozen=True, eq=False)
+class Reported:
+    """Outputs at some instants ``t``, those that are hidden from users included.
+
+    ``phases`` are angles up to whole turns that are known more closely than they are reported.
+    ``laws`` are the laws of links with sections. ``two_force_links`` are links whose spin about
+    their own axis is taken to be none. ``unmeasured`` are coordinates that are not reported, or not
+    used.
+    """
+
+    t: Array
+    outputs: Mapping[Output, Array]
+    phases: Mapping[Output, Array]
+    laws: Mapping[str, SectionLaw]
+    space: bool
+    two_force_links: Collection[str]
+    unmeasured: frozenset[str]
+
+    def during(self, instants: slice) -> Reported:
+        """The results at some of the instants."""
+        moving = {name: getattr(self, name) for name in ("t", "outputs", "phases", "laws")}
+        return replace(self, **during(moving, instants))
+
+    def without_locked(self, declared: Declared) -> Reported:
+        """The results without turns near gimbal lock among what is used: those bodies are taken
+        where they are reported.
+
+        Three turns that loops set say nothing where they lock, and little near it; driven ones are
+        known all the same.
+        """
+        locked = {
+            name for joint in declared.joints.values() for name in self._locked(declared, joint)
+        }
+        return replace(self, unmeasured=self.unmeasured | locked) if locked else self
+
+    def _locked(self, declared: Declared, joint: JointNumbers) -> list[str]:
+        rotations = [axis.coordinate for axis in joint.axes if axis.kind == "angle"]
+        if len(rotations) < 3 or {*rotations} & {*declared.driven, *self.unmeasured}:
+            return []
+        second = self.outputs[Output("motion", rotations[1])]
+        return [] if np.min(np.cos(second) ** 2) > _NEAR else rotations
+
+    def value(self, coordinate: str) -> Array:
+        """The value of a coordinate."""
+        return self.outputs[Output("motion", coordinate)]
+
+    def rate(self, coordinate: str) -> Array:
+        """The rate of a coordinate."""
+        return self.outputs[Output("motion", coordinate, "rate")]
+
+    def acceleration(self, coordinate: str) -> Array:
+        """The acceleration of a coordinate."""
+        return self.outputs[Output("motion", coordinate, "acceleration")]
+
+    def phase(self, output: Output) -> Array:
+        """An angle up to whole turns, as closely as it is known."""
+        return self.phases.get(output, self.outputs[output])
+
+    def place(self, body: str) -> Vector:
+        """The place of a body's origin."""
+        return Vector(*(self.outputs.get(Output("pose", body, x), 0.0) for x in "xyz"))
+
+    def axes(self, body: str) -> Axes:
+        """The axes of a body; those of the ground where it has none."""
+        if self.space:
+            if Output("pose", body, "xx") not in self.outputs:
+                return GROUND
+            return Axes(
+                *(
+                    Vector(*(self.outputs[Output("pose", body, axis + x)] for x in "xyz"))
+                    for axis in "xyz"
+                )
+            )
+        angle = Output("pose", body, "angle")
+        return Axes.about(GROUND.z, self.phase(angle)) if angle in self.outputs else GROUND
+
+    def force(self, group: str, part: str, letter: str = "f", axes: str = "xyz") -> Vector:
+        """The force of a part, or by the ``letter`` "m" its moment; components that it has none of
+        are zero.
+        """
+        return Vector(*(self.outputs.get(Output(group, part, letter + x), 0.0) for x in axes))
+
+    def inside(self, link: str) -> tuple[Vector, Vector]:
+        """The force and the moment of a link's section at its base, in the link's axes."""
+        law, base = self.laws[link], np.zeros((self.t.size, 1))
+
+        def at(name: str) -> Scalar:
+            return law.at(name, base)[:, 0]
+
+        if self.space:
+            force, moment = ("axial", "shear_y", "shear_z"), ("torsion", "bending_y", "bending_z")
+            return Vector(*map(at, force)), Vector(*map(at, moment))
+        return Vector(at("axial"), at("shear"), 0.0), Vector(0.0, 0.0, at("bending"))

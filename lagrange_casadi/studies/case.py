@@ -1,0 +1,164 @@
+"""Cases: a folder with a ``case.py``, or a Python file, whose function ``scene()`` returns a
+:class:`.Scene`.
+
+One that comes with the package is known by its name alone.
+
+A case may also have ``figures()``, which returns how it wants to be drawn, see :mod:`.figures`, and
+modules of its own beside its file.
+"""
+
+from __future__ import annotations
+
+import os
+import traceback
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+from typing import TypeVar
+
+from ..base import case_modules
+from ..base.arguments import public
+from ..base.shipped_cases import shipped_cases
+from ..errors import CaseError, LagrangeCasadiError, shown
+from ..model.expressions import error_text
+from ..model.scene import Scene
+from ..views.shapes.kept import dump_specs, parse_specs
+from ..views.shapes.specs import Spec
+
+_Result = TypeVar("_Result")
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """A case, loaded: its scene, and the drawings it wants, empty for the usual ones."""
+
+    path: Path
+    scene: Scene
+    figures: Sequence[Spec]
+
+    def __repr__(self) -> str:
+        return f"<Case {self.name}: {self.scene!r}>"
+
+    @property
+    def name(self) -> str:
+        """The name of its folder, or of its file without the ending."""
+        return self.path.parent.name if self.path.name == "case.py" else self.path.stem
+
+    def __reduce__(self) -> tuple[Callable[[Path], Case], tuple[Path]]:
+        """Sent to another process, a case is loaded there from its file."""
+        return load_case, (self.path,)
+
+
+def reference(case: Case, folder: Path) -> str:
+    """Path of a case from a folder, or the name of one that comes with the package."""
+    place = case.path.parent if case.path.name == "case.py" else case.path
+    shipped = shipped_cases().get(case.name)
+    if shipped and shipped.resolve() == place:
+        return case.name
+    return Path(os.path.relpath(place, folder.resolve())).as_posix()
+
+
+@public
+def load_case(path: str | os.PathLike[str]) -> Case:
+    """Load a case.
+
+    Parameters
+    ----------
+    path
+        A case's folder or Python file, or the name of a case that comes with the package. A folder
+        or file of that name has precedence.
+
+    Returns
+    -------
+    Case
+        The case with its scene.
+
+    Raises
+    ------
+    CaseError
+        If the file is missing, fails, or has no ``scene``. Errors of a declaration pass unchanged.
+    """
+    given = Path(path)
+    file = _file(given)
+    if file.suffix != ".py":
+        raise CaseError(
+            f"case {given}: expected a folder with a case.py, or a Python file ending in .py"
+        )
+    file = file.resolve()
+    module = _guard(given, file, lambda: case_modules.load(file))
+    scene = _call(given, file, module, "scene")
+    if not isinstance(scene, Scene):
+        raise CaseError(
+            f"case {given}: scene() returned {type(scene).__name__}, expected a"
+            " lagrange_casadi.Scene"
+        )
+    figures = (
+        _call(given, file, module, "figures") if callable(getattr(module, "figures", None)) else ()
+    )
+    if not isinstance(figures, (list, tuple)) or not all(
+        isinstance(spec, Spec) for spec in figures
+    ):
+        raise CaseError(
+            f"case {given}: figures() must return a list of specs of lagrange_casadi.figures, got"
+            f" {shown(figures)}"
+        )
+    for spec in figures:
+        try:
+            parse_specs(dump_specs([spec]))
+        except (TypeError, ValueError, RecursionError) as error:
+            raise CaseError(
+                f"case {given}: figures(): figure {shown(spec.name)} cannot be kept in a file:"
+                f" {error_text(error)}"
+            ) from None
+    return Case(file, scene, tuple(figures))
+
+
+def scene_of(given: Scene | Case) -> Scene:
+    """Return the scene that a user hands over, or that of a case."""
+    return given.scene if isinstance(given, Case) else given
+
+
+def _file(given: Path) -> Path:
+    """The file of a case."""
+    try:
+        file = given / "case.py" if given.is_dir() else given
+        there = file.is_file()
+    except OSError as error:
+        raise CaseError(f"case {given}: {error.strerror}") from None
+    if there:
+        return file
+    expected = "expected a folder with a case.py, or a Python file"
+    if file != given:
+        raise CaseError(f"case {given}: has no case.py; {expected}")
+    shipped = shipped_cases()
+    if str(given) in shipped:
+        return shipped[str(given)] / "case.py"
+    names = f", or one that comes with the package: {', '.join(shipped)}" if shipped else ""
+    raise CaseError(f"case {given}: no such file; {expected}{names}")
+
+
+def _call(given: Path, file: Path, module: ModuleType, name: str) -> object:
+    function = getattr(module, name, None)
+    if not callable(function):
+        raise CaseError(f"case {given}: has no function {name}()")
+    with case_modules.beside(module):
+        return _guard(given, file, function)
+
+
+def _guard(given: Path, file: Path, action: Callable[[], _Result]) -> _Result:
+    """Run a piece of the case; what it raises becomes one line that names the case's own line."""
+    try:
+        return action()
+    except (LagrangeCasadiError, KeyboardInterrupt):
+        raise
+    except BaseException as error:
+        lines = [
+            frame.lineno
+            for frame in traceback.extract_tb(error.__traceback__)
+            if frame.filename == str(file)
+        ]
+        if isinstance(error, SyntaxError):
+            lines = [error.lineno]
+        where = f", line {lines[-1]}" if lines and lines[-1] else ""
+        raise CaseError(f"case {given}{where}: {error_text(error)}") from error

@@ -1,0 +1,1 @@
+"""Charts of studies: of designs, a duty, a free cycle, an identification."""

@@ -1,0 +1,1 @@
+"""Figures: what a case may want drawn, and the drawing of it."""

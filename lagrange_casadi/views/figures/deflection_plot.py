@@ -1,0 +1,115 @@
+"""A picture of a link that bends: its deflection over time and along it, and its harmonics beside
+its natural frequency.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...base.arrays import Array
+from ...results.elastic.deflection import Deflection
+from ...results.elastic.vibration import Vibration, vibration
+from ...results.solution import Solution
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_PIXELS, _FLOOR = 1600, 1e-6
+_UNITS = {False: (1e3, "mm"), True: (1.0, "m")}
+_FROM = {"ends": "the line between its ends", "base": "its axis at the base"}
+
+
+def draw_deflection(
+    solution: Solution, link: str, along: Array, label: str, si: bool = False
+) -> Figure:
+    """The deflection of a link across it as a map, and where its span is a cycle the harmonics of
+    its bending.
+    """
+    from matplotlib.figure import Figure
+
+    found, response = solution.deflection(link), vibration(solution, link)
+    figure = Figure(figsize=(8.0, 7.0 if response.harmonics else 3.8), layout="constrained")
+    subplots = list(figure.subplots(2 if response.harmonics else 1, 1, squeeze=False).flat)
+    _map(figure, subplots[0], found, along, label, *_UNITS[si])
+    if response.harmonics:
+        _spectrum(subplots[1], response)
+    figure.suptitle(
+        f"{solution.case}: deflection of {link} from {_FROM[found.against]}", fontsize=11
+    )
+    return figure
+
+
+def _map(
+    figure: Figure,
+    axes: Axes,
+    found: Deflection,
+    along: Array,
+    label: str,
+    factor: float,
+    unit: str,
+) -> None:
+    member = found.member
+    instants, ratios = (
+        slice(None, None, 1 + size // _PIXELS) for size in (member.t.size, member.xi.size)
+    )
+    xi, peak = member.xi[ratios], found.peak()
+    u = np.broadcast_to(xi, (member.t.size, xi.size))
+    values = found.size(u)[instants] * factor
+    most = abs(peak.value) * factor or 1.0
+    colours: dict[str, Any] = (
+        {"cmap": "viridis", "vmin": 0.0}
+        if member.space
+        else {"cmap": "RdBu_r", "vmin": -most, "vmax": most}
+    )
+    picture = axes.pcolormesh(
+        along[instants], xi, values.T, shading="nearest", rasterized=True, **colours
+    )
+    place = float(along[int(np.argmin(np.abs(member.t - peak.t)))])
+    axes.plot(place, peak.xi, "k+", markersize=13, markeredgewidth=1.8, clip_on=False)
+    axes.set_title(
+        f"largest: {peak.value * factor:.4g} {unit}, " + rf"$\xi/l$ = {peak.xi:.3f}", fontsize=10
+    )
+    axes.set_xlabel(label)
+    axes.set_ylabel(r"$\xi/l$")
+    figure.colorbar(picture, ax=axes, label=f"deflection across the link [{unit}]")
+
+
+def _spectrum(axes: Axes, response: Vibration) -> None:
+    from matplotlib.ticker import NullFormatter
+
+    assert response.cycle is not None
+    shares = np.array(response.harmonics)
+    frequencies = response.cycle * np.arange(shares.size)
+    shown = (shares > _FLOOR) & (frequencies > 0.0)
+    if shown.any():
+        axes.vlines(
+            frequencies[shown],
+            _FLOOR,
+            shares[shown],
+            color="#2166ac",
+            linewidth=2.0,
+            label="harmonics of its bending",
+        )
+    axes.axvline(
+        response.frequency,
+        color="#b2182b",
+        label=f"first bending frequency, {' and '.join(response.ends)}",
+    )
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_ylim(_FLOOR, 1e2)  # room for the legend
+    axes.xaxis.set_major_formatter("{x:g}")
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.set_xlabel("frequency [Hz]")
+    axes.set_ylabel("share of the largest bending")
+    off = (
+        f"{100 * response.excess:.3g} %"
+        if response.excess is not None and response.excess < 10.0
+        else "many times"
+    )
+    verdict = "enough" if response.enough else "NOT enough"
+    axes.set_title(f"resonance changes bending by {off}: rigid links are {verdict}", fontsize=10)
+    axes.legend(frameon=False, fontsize=9)

@@ -1,0 +1,149 @@
+"""Pictures of strength: stress over time and along a link, its swings beside what it bears, and how
+far all parts are used.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...base.arrays import Array
+from ...results.solution import Solution
+from ...results.strength.fatigue import Loaded, loaded, use_score, used
+from ...results.strength.stress import Stress
+from ...results.strength.worst import LinkHistories
+from ..shapes.readable import Scale
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_MEGA, _PIXELS = 1e6, 1600
+
+
+def draw_strength(
+    solution: Solution, link: str, along: Array, label: str, si: bool = False
+) -> Figure:
+    """Von Mises' stress of a link as a map, and where its material has an endurance limit its
+    swings in Goodman's diagram.
+    """
+    from matplotlib.figure import Figure
+
+    stress = solution.stress(link)
+    fatigue = (
+        stress.member.beam.material.endurance is not None
+        and stress.member.beam.material.ultimate is not None
+    )
+    figure = Figure(figsize=(8.0, 7.6 if fatigue else 3.8), layout="constrained")
+    subplots = list(figure.subplots(2 if fatigue else 1, 1, squeeze=False).flat)
+    # What is drawn is in MPa.
+    unit = Scale(_MEGA, "Pa") if si else Scale(1.0, "MPa")
+    _map(figure, subplots[0], stress, along, label, unit)
+    if fatigue:
+        _goodman(subplots[1], stress, unit)
+    figure.suptitle(
+        f"{solution.case}: strength of {link}, {stress.member.beam.material.name}", fontsize=11
+    )
+    return figure
+
+
+def draw_utilisation(solution: Solution, parts: Sequence[str]) -> Figure:
+    """Draw the utilisation of every link and joint for each mode of failure: one over the factor of
+    safety.
+    """
+    from matplotlib.figure import Figure
+
+    found = {part: solution.safety(part) for part in parts}
+    rows = [
+        (f"{part}, {v.against}", 1.0 / v.factor, v is safety.governs)
+        for part, safety in found.items()
+        for v in safety.verdicts
+    ]
+    figure = Figure(figsize=(7.0, 0.32 * len(rows) + 1.4), layout="constrained")
+    axes = figure.subplots()
+    places = np.arange(len(rows))[::-1]
+    axes.barh(
+        places,
+        [share for _, share, _ in rows],
+        color=["#b2182b" if most else "#92a5b5" for _, _, most in rows],
+    )
+    axes.set_yticks(places, [name for name, _, _ in rows])
+    axes.axvline(1.0, color="k", linewidth=0.9)
+    axes.set_xlim(0.0, 1.05 * max(1.0, *(min(share, 10.0) for _, share, _ in rows)))
+    axes.set_xlabel("utilisation, 1 / factor of safety")
+    axes.set_title(f"{solution.case}: what governs each part is red", fontsize=11)
+    return figure
+
+
+def _map(figure: Figure, axes: Axes, stress: Stress, along: Array, label: str, unit: Scale) -> None:
+    instants, ratios = (
+        slice(None, None, 1 + size // _PIXELS)
+        for size in (stress.member.t.size, stress.member.xi.size)
+    )
+    xi, peak = stress.member.xi[ratios], stress.peak("von_mises")
+    values = Stress(stress.member.during(instants)).grid("von_mises", xi) / _MEGA
+    picture = axes.pcolormesh(
+        along[instants], xi, values.T, cmap="viridis", vmin=0.0, shading="nearest", rasterized=True
+    )
+    place = float(along[int(np.argmin(np.abs(stress.member.t - peak.t)))])
+    axes.plot(place, peak.xi, "k+", markersize=13, markeredgewidth=1.8, clip_on=False)
+    axes.set_title(
+        f"von Mises: peak {unit.said(peak.value / _MEGA)} at {peak.fibre}, "
+        rf"$\xi/l$ = {peak.xi:.3f}",
+        fontsize=10,
+    )
+    axes.set_xlabel(label)
+    axes.set_ylabel(r"$\xi/l$")
+    unit.put(figure.colorbar(picture, ax=axes, label=f"von Mises [{unit.unit}]").ax.yaxis)
+
+
+def _goodman(axes: Axes, stress: Stress, unit: Scale) -> None:
+    stress = Stress(stress.member.counted)
+    material = stress.member.beam.material
+    endurance, ultimate = (
+        strength / _MEGA
+        for strength in material.needs("Goodman's diagram", "endurance", "ultimate")
+    )
+    cycles: dict[str, list[Loaded]] = {"swings, every fibre": [], "in notches": []}
+    histories = LinkHistories.of(stress.member)
+    for part in histories.parts:
+        along = histories.at(part, histories.places(part)[None])
+        cycles["in notches" if part.notch else "swings, every fibre"] += [
+            loaded(along.at(*index)) for index in np.ndindex(along.normal.shape[:2])
+        ]
+    worst = histories.worst(use_score(material))
+    most = loaded(histories.history(worst))
+    axes.plot([0.0, ultimate], [endurance, 0.0], color="#b2182b", label="Goodman")
+    if material.yield_strength is not None:
+        strength = material.yield_strength / _MEGA
+        axes.plot([0.0, strength], [strength, 0.0], color="0.6", linestyle="--", label="yield")
+    top = endurance
+    for (label, found), color in zip(cycles.items(), ("#2166ac", "#e08214"), strict=True):
+        if found:
+            means, amplitudes = (
+                np.concatenate([getattr(one, name) for one in found]) / _MEGA
+                for name in ("mean", "amplitude")
+            )
+            axes.plot(means, amplitudes, ".", markersize=3, color=color, label=label)
+            top = max(top, float(amplitudes.max()))
+    k = int(np.argmax(used(most.amplitude, most.mean, material)))
+    axes.plot(
+        most.mean[k] / _MEGA, most.amplitude[k] / _MEGA, "k+", markersize=13, markeredgewidth=1.8
+    )
+    axes.set_xlim(left=0.0)
+    axes.set_ylim(0.0, 1.05 * top)
+    axes.set_xlabel(f"mean [{unit.unit}]")
+    axes.set_ylabel(f"amplitude [{unit.unit}]")
+    unit.put(axes.xaxis)
+    unit.put(axes.yaxis)
+    least = 1.0 / worst.value[0] if worst.value[0] else math.inf
+    where = "in the notch at " if worst.part.notch else "at "
+    axes.set_title(
+        f"fatigue: least factor {least:.4g} {where}"
+        rf"$\xi/l$ = {histories.ratio(worst):.3f}, {worst.name}",
+        fontsize=10,
+    )
+    axes.legend(frameon=False, fontsize=9)

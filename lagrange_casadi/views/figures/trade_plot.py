@@ -1,0 +1,66 @@
+"""A picture of a :class:`.Trade`: error over time, each method a numbered point, those that nothing
+beats joined.
+"""
+
+from __future__ import annotations
+
+from typing import BinaryIO
+
+from ...studies.trade import Trade
+from ..shapes.pictures import one_at_a_time, save
+
+_OFFSETS = ((0, 6), (0, -14), (0, 17), (0, -25))
+_LEAST = 1e-17
+
+
+@one_at_a_time()
+def draw_trade(trade: Trade, file: BinaryIO, ending: str) -> None:
+    """Write the picture into a file; its kind follows from the ending of the name."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(12, 6.5), layout="constrained")
+    axes, key = figure.subplots(1, 2, width_ratios=(3, 2))
+    front = trade.front
+    places = {one: (1e9 * one.seconds, max(one.largest, _LEAST)) for one in trade.measurements}
+    axes.step(
+        *zip(*(places[one] for one in front), strict=True), where="post", color="tab:red", lw=1
+    )
+    words = []
+    for number, (one, place) in enumerate(places.items(), 1):
+        colour = "tab:red" if one in front else "0.35"
+        axes.plot(*place, "o", color=colour, ms=5)
+        offset = _OFFSETS[number % len(_OFFSETS)]
+        axes.annotate(
+            str(number),
+            place,
+            offset,
+            textcoords="offset points",
+            ha="center",
+            fontsize=8,
+            color=colour,
+        )
+        words.append((f"{number:>2}  {one.method.options}", colour))
+    axes.set(
+        xscale="log",
+        yscale="log",
+        xlabel="time an instant [ns], one thread",
+        ylabel="largest error over the peak",
+    )
+    axes.set_title(f"{trade.case}: speed and accuracy of every output", fontsize=11)
+    axes.grid(True, color="0.9")
+    axes.margins(0.1)
+    key.axis("off")
+    for line, (text, colour) in enumerate(words):
+        key.text(
+            0.0,
+            0.98 - line / max(len(words), 20),
+            text,
+            va="top",
+            fontsize=9,
+            color=colour,
+            family="monospace",
+        )
+    key.set_title(
+        "red: nothing is faster and more accurate", fontsize=9, color="tab:red", loc="left"
+    )
+    save(figure, file, ending)

@@ -1,0 +1,154 @@
+"""Two runs, or two designs, side by side on one page: what is largest in each, their curves in one
+chart, and both mechanisms in motion.
+
+Each mechanism is a report within the page. Both pictures have one scale and one clock: they show
+the same time, or where both runs are over the same joint, the same place of it.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+
+from ...base.arrays import Json
+from ...errors import DeclarationError, shown
+from ...results.ordering import error_of, ordered
+from ...results.solution import Solution
+from .arrays import Arrays
+from .contents import series_of
+from .instants import drive_entry, shown_instants
+from .page import COMPARISON_SCRIPTS, assembled, page, page_digest, script, write_page
+from .words import GROUPS, what
+
+
+def write_comparison(
+    solutions: Sequence[Solution], path: str | os.PathLike[str], names: Sequence[str] = ()
+) -> None:
+    """Write a page that shows two solutions side by side.
+
+    Parameters
+    ----------
+    solutions
+        Two solutions, with the motion of their bodies.
+    path
+        A file whose name ends in .html; it is replaced whole or not at all.
+    names
+        Names of the two on the page; by default their cases, or the parameters that differ.
+
+    Raises
+    ------
+    DeclarationError
+        For anything but two solutions, and for two that have no quantity in common.
+    """
+    if len(solutions) != 2 or not all(isinstance(one, Solution) for one in solutions):
+        raise DeclarationError(f"report: expected two solutions, got {shown(solutions)}")
+    first, second = solutions
+    words = tuple(names) or _names(first, second)
+    write_page(Path(path), lambda: _page((first, second), words))
+
+
+def _page(solutions: tuple[Solution, Solution], names: Sequence[str]) -> str:
+    rows = list(_rows(solutions))
+    if not rows:
+        raise DeclarationError(
+            "report: nothing to compare: the two runs have no quantity in common"
+        )
+    arrays = Arrays()
+    runs: list[Json] = []
+    clock = _clock(solutions)
+    for solution, name in zip(solutions, names, strict=True):
+        chosen = shown_instants(solution)
+        runs.append(
+            {
+                "name": name,
+                "case": solution.case,
+                "certified": solution.certified,
+                "t": arrays.add(solution.t[chosen]),
+                "over": drive_entry(solution, chosen, arrays),
+                "series": [asdict(one) for one in series_of(solution, chosen, arrays)],
+                "parameters": {
+                    parameter: [entry["value"], entry["unit"]]
+                    for parameter, entry in solution.description["parameters"].items()
+                },
+                "frame": page(solution, clock=clock),
+            }
+        )
+    cases = " and ".join(dict.fromkeys(solution.case for solution in solutions))
+    content: dict[str, Json] = {"case": cases, "runs": runs, "rows": rows, "groups": GROUPS}
+    content |= {"clock": clock, "same": same_runs(*solutions)}
+    content |= {"arrays": arrays.places, "numbers": arrays.block()}
+    return assembled(
+        f"{cases}: two runs",
+        content,
+        [script(name) for name in COMPARISON_SCRIPTS],
+        wasm=False,
+        others=[page_digest()],
+    )
+
+
+def same_runs(first: Solution, second: Solution) -> bool:
+    """Return whether two runs have the same instants, and the same values of all quantities."""
+    return (
+        np.array_equal(first.t, second.t)
+        and first.outputs.keys() == second.outputs.keys()
+        and all(
+            np.array_equal(values, second.outputs[output], equal_nan=True)
+            for output, values in first.outputs.items()
+        )
+    )
+
+
+def _clock(solutions: tuple[Solution, Solution]) -> dict[str, Json]:
+    """Time or the coordinate along which both runs are shown, and the ends of both times [s]."""
+    first, second = (solution.over for solution in solutions)
+    if first and second and (first.joint, first.unit) == (second.joint, second.unit):
+        return {"name": "over"}
+    times = [float(t) for solution in solutions for t in solution.t]
+    return {"name": "t", "ends": [min(times), max(times)]}
+
+
+def _rows(solutions: tuple[Solution, Solution]) -> Iterator[dict[str, Json]]:
+    """The quantities that both have, each with its peaks and how far these may be off."""
+    first, second = solutions
+    others = {str(output) for output in ordered(second)}
+    for output in ordered(first):
+        if str(output) not in others or first.unit(output) != second.unit(output):
+            continue
+        if not all(one.determined(output) for one in solutions):
+            continue
+        peaks = [solution.peak(output) for solution in solutions]
+        yield {
+            "name": str(output),
+            "group": output.group,
+            "part": output.part,
+            "what": what(output, first.table),
+            "unit": first.unit(output),
+            "values": [peak.value + 0.0 for peak in peaks],
+            "t": [peak.t for peak in peaks],
+            "xi": [peak.xi for peak in peaks],
+            "errors": [error_of(solution, output) for solution in solutions],
+        }
+
+
+def _names(first: Solution, second: Solution) -> tuple[str, str]:
+    """Names to distinguish two solutions: their cases, otherwise the parameters that differ,
+    otherwise numbers.
+    """
+    if first.case != second.case:
+        return first.case, second.case
+    values = [
+        {name: entry["value"] for name, entry in one.description["parameters"].items()}
+        for one in (first, second)
+    ]
+    differ = [name for name, value in values[0].items() if value != values[1].get(name)]
+    if not differ:
+        return "first run", "second run"
+    one, other = (
+        ", ".join(f"{name} = {named[name]:.5g}" for name in differ[:3] if name in named)
+        for named in values
+    )
+    return one, other

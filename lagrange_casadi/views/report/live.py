@@ -1,0 +1,252 @@
+"""The engine itself in a page: the exported C as WebAssembly, and which of its numbers go where.
+
+The page evaluates the whole cycle anew for other parameters. What it shows are arrays with numbers
+(:mod:`.arrays`); here stands of which outputs each is made, and where the numbers of the picture
+come from: lengths, places and axes are expressions of parameters, and are evaluated in the module
+too.
+"""
+
+from __future__ import annotations
+
+import base64
+import shlex
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+import numpy.typing as npt
+
+from ...base.arrays import Json
+from ...base.quantities import Output
+from ...engine.codegen.printer import print_functions
+from ...engine.derive import compile_scene
+from ...engine.instants.evaluation_method import EvaluationMethod
+from ...engine.model_data import ModelData
+from ...errors import DeclarationError
+from ...interop.portable.data import LARGEST
+from ...interop.portable.source import Source
+from ...interop.portable.sourced import sourced
+from ...interop.portable.wasm import check_zig, layout, page_build, places
+from ...model.description import Description
+from ...model.scene import Scene
+from ...model.times import Timing
+from ...results.solution import Solution
+from .arrays import Arrays
+
+_CORNERS = (
+    "Corners of motions, constraints and lifts were checked with the first values of the"
+    " parameters only, not with those of the sliders."
+)
+
+_NUMBERS = """#include <math.h>
+typedef double casadi_real;
+{functions}
+void live_numbers(const double* p, double* numbers) {{
+  const casadi_real* arg[1];
+  casadi_real* res[1];
+  arg[0] = p;
+  res[0] = numbers;
+  numbers_of(arg, res);
+}}
+"""
+
+
+def run_of(case: str) -> str:
+    """Begin the command line that evaluates a case."""
+    return f"lagrange-casadi run {shlex.quote(case)}"
+
+
+@dataclass(frozen=True, eq=False)
+class Live:
+    """Program of a live page: the ``source`` of its solution's program, and the definition of its
+    instants.
+
+    ``command`` is how a command line begins that evaluates the same.
+    """
+
+    source: Source
+    timing: Timing
+    command: str
+    numbers: int
+    module: Future[bytes]
+    """WebAssembly, which is compiled while the solution is evaluated."""
+
+    @classmethod
+    def of(
+        cls,
+        scene: Scene,
+        timing: Timing,
+        wanted: Sequence[str] | None,
+        command: str,
+        parameters: Mapping[str, float] | None = None,
+    ) -> Live:
+        """Derive a scene, for outputs that are ``wanted``, and begin to compile it; ``parameters``
+        are those of the solution.
+
+        Raises :class:`.DeclarationError` where a scene has no parameter,
+        :class:`.LagrangeCasadiError` where ziglang is missing, and what :func:`.export` does.
+        """
+        data = compile_scene(scene, wanted, parameters=parameters).data
+        if not data.parameters:
+            raise DeclarationError(
+                f"live: mechanism '{data.name}' has no parameter to change; declare one, or leave"
+                " live out"
+            )
+        check_zig("a live report")
+        source = sourced(
+            scene, "", parameters, wanted, EvaluationMethod("auto", "double"), LARGEST["double"]
+        )
+        function = _numbers(data, timing)
+        text = _NUMBERS.format(
+            functions=print_functions({"numbers_of": function}, "double", prefix="live")
+        )
+        build = page_build(source, {"live.c": text}, ["live_numbers"])
+        compilers = ThreadPoolExecutor(1)
+        module = compilers.submit(build)
+        compilers.shutdown(wait=False)
+        return cls(source, timing, command, function.numel_out(), module)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Notes for whoever changes parameters in the page."""
+        corners = self.source.exported.program.data.corners
+        return (_CORNERS,) if corners.laws or corners.constraints else ()
+
+    def entry(
+        self, solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays
+    ) -> dict[str, Json]:
+        """Data of a page beside its solution: the module, and its inputs, outputs and numbers.
+
+        ``chosen`` are the instants that are shown, by number.
+        """
+        return _entry(self, solution, chosen, arrays)
+
+
+def _numbers(data: ModelData, timing: Timing) -> ca.Function:
+    """The ends of the instants, the numbers of the picture, and the masses, by the parameters."""
+    start, stop = timing.ends(data.symbols)
+    masses = (data.mass(body, data.symbols) for body in data.template.content["bodies"])
+    numbers = ca.vertcat(start, stop, data.template.numbers(data.symbols), *masses)
+    return ca.Function("numbers_of", [data.symbols], [ca.densify(numbers)], {"cse": True})
+
+
+def _entry(
+    live: Live, solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays
+) -> dict[str, Json]:
+    source, timing = live.source, live.timing
+    data = source.exported.program.data
+    described, asked = data.template.content, data.template.numbers(data.symbols)
+    bodies = described["bodies"]
+    contract = source.contract
+    known = {member.source: k for k, member in enumerate((*contract.inputs, *contract.outputs))}
+    return {
+        "module": base64.b64encode(live.module.result()).decode("ascii"),
+        "layout": layout(source) | {"more": live.numbers},
+        "defaults": data.defaults.tolist(),
+        "loops": (
+            [places(source)["loops"], source.exported.sizes["loops"]] if source.iterated else None
+        ),
+        "wrapped": [k for k, member in enumerate(contract.outputs) if member.wrapped],
+        "of": [
+            [number, [known[name] for name in names]]
+            for number, names in enumerate(arrays.of)
+            if names and known.keys() >= set(names)
+        ],
+        "poses": {body: _pose(body, solution, known) for body in solution.description["bodies"]},
+        "links": {
+            link.name: _link(link.name, k, solution, known) for k, link in enumerate(contract.links)
+        },
+        "forces": solution.table.forces,
+        "timing": {
+            "count": timing.count,
+            "joint": timing.joint,
+            "coordinate": known.get(f"motion:{timing.joint}", -1),
+        },
+        "shown": None if chosen.size == timing.count else chosen.tolist(),
+        "numbers": live.numbers,
+        "picture": _picture(
+            described, 2, {body: 2 + asked.numel() + k for k, body in enumerate(bodies)}
+        ),
+        "command": live.command,
+    }
+
+
+def _pose(body: str, solution: Solution, known: Mapping[str, int]) -> list[int]:
+    """Places of the numbers of a body's pose, -1 for those that it lacks; in the plane three, in
+    space twelve.
+    """
+    members = ["x", "y", "angle"]
+    if len(solution.description["gravity"]) > 2:
+        members = ["x", "y", "z", *(axis + component for axis in "xyz" for component in "xyz")]
+    return [known.get(str(Output("pose", body, member)), -1) for member in members]
+
+
+def _link(link: str, number: int, solution: Solution, known: Mapping[str, int]) -> dict[str, Json]:
+    """Pieces of a link's functions along it: the breaks of its density, distributed loads, and the
+    highest degree.
+    """
+    law = solution.section(link).law
+    density = law.density
+    distributed_loads = [
+        [known[str(Output("spread", link, member, load.name))] for member in ("width", "end")]
+        for load in law.distributed_loads
+    ]
+    degree = max([*map(len, density.cells), *(load.powers for load in law.distributed_loads)]) + 2
+    return {
+        "number": number,
+        "breaks": density.breaks,
+        "degree": degree,
+        "spreads": distributed_loads,
+    }
+
+
+def _picture(described: Description, first: int, masses: Mapping[str, int]) -> dict[str, Json]:
+    """The numbers that a picture is made of, as their places behind ``first``; -1 is nothing."""
+
+    def at(number: float | None) -> int:
+        return -1 if number is None else first + int(number)
+
+    def place(point: Description) -> list[int]:
+        return [at(point["x"]), at(point["y"]), at(point.get("z"))]
+
+    def vector(components: Sequence[float]) -> list[int]:
+        return [*map(at, components), *[-1] * (3 - len(components))]
+
+    def joint(entry: Description) -> dict[str, Json]:
+        ends = {"parent": place(entry["parent"]), "child": place(entry["child"])}
+        if "turned" in entry:
+            second = entry["kind"] == "universal" and len(entry["axes"]) > 1
+            return ends | {
+                "axes": [*map(vector, entry["axes"])],
+                "turned": [*map(vector, entry["turned"])] if second else None,
+            }
+        return ends | {
+            "axes": [vector(entry["axis"])] if entry["kind"] in ("prismatic", "slot") else None,
+            "turned": None,
+        }
+
+    return {
+        "bodies": {
+            name: {
+                "length": at(body["length"]),
+                "mass": masses[name],
+                "centre": place(body["centre"]) if "centre" in body else None,
+                "outlines": [
+                    [vector(corner) for corner in outline]
+                    for outline in described.get("outlines", {}).get(name, ())
+                ],
+            }
+            for name, body in described["bodies"].items()
+        },
+        "joints": [joint(entry) for entry in described["joints"].values()],
+        "loads": [
+            [place(point) for point in load["points"]] for load in described["loads"].values()
+        ],
+        "paths": [place(point) for point in described.get("paths", {}).values()],
+        "rollers": [
+            {"body": roller["body"], "at": place(roller), "radius": at(roller["radius"])}
+            for roller in described.get("rollers", {}).values()
+        ],
+    }

@@ -1,0 +1,228 @@
+"""A sweep as a page for browsers: maps, fronts, a table of designs, and the mechanism of the design
+that is looked at, in motion.
+
+The mechanism is a live page within the page: it evaluates the design that is chosen.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ...base.arrays import Array
+from ...engine.derive import compile_scene
+from ...engine.fingerprint import fingerprint, sources
+from ...engine.model_data import template
+from ...errors import DeclarationError, shown
+from ...model.description import values_of
+from ...model.scene import Scene, Wanted
+from ...model.wanted_names import SENSITIVITY
+from ...results.store.untrusted import check_shape, reported_as
+from ...studies.evaluate import evaluate
+from ...studies.sweep.axes import DESIGN
+from ...studies.sweep.best import best
+from ...studies.sweep.meanings import STATUS
+from ...studies.sweep.reading import Sweep
+from ..charts.usual_designs import usual_pair, varied
+from . import Live, assembled, live_digest, page, with_motion, write_page
+from .arrays import Arrays
+from .live import run_of
+from .page import SWEEP_SCRIPTS, script
+
+MOST = 300_000
+"""Numbers that a page holds at most: 8 bytes each, 11 in the page."""
+
+_LEAST = 500
+"""Designs that it shows at least, where there are so many."""
+
+_FLAGS = ("effort", "motion")
+_GROUPS = {
+    "reactions": "reaction",
+    "multipliers": "multiplier",
+    "loads": "load",
+    "sections": "section",
+    "own": "output",
+}
+"""Groups of outputs that were wanted, with how the name of one begins."""
+
+_NO_SCENE = "For the mechanism in motion, make the page with the case that was swept."
+
+
+def write_sweep_report(
+    sweep: Sweep, path: str | os.PathLike[str], scene: Scene | None = None, command: str = ""
+) -> None:
+    """Write a page that shows a sweep, replacing the file at ``path`` whole or not at all.
+
+    With its ``scene`` the mechanism of each design moves; ``command`` is how a command line begins
+    that evaluates it. Raises :class:`.DeclarationError` for the scene of another sweep, for a sweep
+    without columns to show, and what :func:`.write_report` raises.
+    """
+    if not (scene is None or isinstance(scene, Scene)):
+        raise DeclarationError(f"report: scene: expected a Scene, got {shown(scene)}")
+    write_page(Path(path), lambda: _page(sweep, scene, command))
+
+
+def is_of(sweep: Sweep, scene: Scene) -> bool:
+    """Return whether a sweep is of a scene: its parts are those that were swept, and, if the same
+    code wrote them, its expressions too.
+    """
+    swept = sweep.identity["mechanism"]
+    values = values_of(swept)
+    if (
+        values.keys() != scene.parameters.keys()
+        or json.loads(json.dumps(template(scene).filled(values))) != swept
+    ):
+        return False
+    known = fingerprint(scene, _wanted(sweep))
+    return (
+        known is None or sweep.identity["sources"] != sources() or known == sweep.identity["scene"]
+    )
+
+
+def _page(sweep: Sweep, scene: Scene | None, command: str) -> str:
+    if scene is not None and not is_of(sweep, scene):
+        raise DeclarationError(
+            f"{sweep.path}: the sweep was made with another scene; give the case that was swept,"
+            " without later changes"
+        )
+    names = [name for name, column in sweep.columns.items() if not column.axes and name != STATUS]
+    if not names:
+        raise DeclarationError(
+            f"{sweep.path}: there is nothing to show: it keeps no column with one value for each"
+            " design"
+        )
+    pair = next(iter(usual_pair(sweep, {})), tuple(names[:2]))
+    front = [design.number for design in best(sweep, minimise=pair)] if len(pair) == 2 else []
+    arrays, numbers = Arrays(), _shown(sweep, len(names), front)
+    content: dict[str, Any] = {
+        "case": sweep.case,
+        "parameters": [
+            {"name": name, "title": name, "unit": unit, "sized": False}
+            for name, unit in sweep.parameters.items()
+        ],
+        "columns": [
+            {
+                "name": name,
+                "title": name,
+                "unit": sweep.unit(name),
+                "sized": name.startswith("peak:"),
+            }
+            for name in names
+        ],
+        "varied": varied(sweep),
+        "pair": list(pair),
+        "counts": [
+            [f"without: {sweep.statuses[status][1]}" if status else "with a result", count]
+            for status, count in sweep.counts().items()
+            if count
+        ],
+        "statuses": {str(number): words for number, (_, words) in sweep.statuses.items()},
+        "command": command or run_of(sweep.case),
+        "note": _NO_SCENE,
+        "frame": None if scene is None else _frame(sweep, scene, front, command),
+    }
+    values = _values(sweep, [*sweep.parameters, *names, STATUS], numbers)
+    for one in (*content["parameters"], *content["columns"]):
+        one["values"] = arrays.add(values[one["name"]])
+    content["designs"] = {
+        "shown": int(numbers.size),
+        "total": sweep.size,
+        "grid": DESIGN not in sweep.dimensions,
+        "numbers": arrays.add(numbers.astype(float)),
+        "status": arrays.add(values[STATUS].astype(float)),
+    }
+    content |= {"arrays": arrays.places, "numbers": arrays.block()}
+    others = [live_digest()] if scene is not None else []
+    scripts = [script(name) for name in SWEEP_SCRIPTS]
+    return assembled(
+        f"{sweep.case}: a sweep", content, scripts, wasm=scene is not None, others=others
+    )
+
+
+def _shown(sweep: Sweep, many: int, front: list[int]) -> npt.NDArray[np.int64]:
+    """The designs that are shown, by number: all, or evenly spread ones and those of the front."""
+    most = max(_LEAST, MOST // (many + len(sweep.parameters) + 2))
+    found = np.concatenate([numbers for numbers, _ in sweep.blocks([STATUS])])
+    if found.size <= most:
+        return found
+    return np.unique(
+        np.concatenate([found[:: math.ceil(found.size / most)], np.array(front, np.int64)])
+    )
+
+
+def _values(sweep: Sweep, names: list[str], wanted: npt.NDArray[np.int64]) -> dict[str, Array]:
+    """Columns of some designs, by name."""
+    parts: dict[str, list[npt.NDArray[Any]]] = {name: [] for name in names}
+    for numbers, values in sweep.blocks(names):
+        there = np.isin(numbers, wanted)
+        for name in names:
+            parts[name].append(np.asarray(values[name][there], float))
+    return {name: np.concatenate(blocks) for name, blocks in parts.items()}
+
+
+def _frame(sweep: Sweep, scene: Scene, front: list[int], command: str) -> str:
+    """The live page of the mechanism, which begins with a design that has a result."""
+    first = (
+        front[0]
+        if front
+        else next(
+            (int(n) for numbers, v in sweep.blocks([STATUS]) for n in numbers[v[STATUS] == 0]), None
+        )
+    )
+    if first is None:
+        raise DeclarationError(f"{sweep.path}: no design has a result: there is nothing to show")
+    asked, design = sweep.identity["t"], sweep.design(first)
+    wanted = with_motion(_names(_wanted(sweep)))
+    timing, data = scene.timing(), compile_scene(scene, wanted, parameters=design).data
+    if json.loads(json.dumps(timing.words(data.symbols))) != asked:
+        if any(isinstance(bound, str) for bound in (*asked[:2], *asked[4:])):
+            raise DeclarationError(
+                f"{sweep.path}: its instants are not those of the scene: {asked}"
+            )
+        timing = (
+            scene.timing(over=(asked[3], *asked[:3]))
+            if len(asked) > 3
+            else scene.timing(t=tuple(asked))
+        )
+    words: dict[str, Any] = (
+        {"over": (timing.joint, *_bounds(asked))} if timing.joint else {"t": _bounds(asked)}
+    )
+    if any(isinstance(bound, str) for bound in asked[:2]):
+        words = {}
+    live = Live.of(scene, timing, wanted, command, design)
+    return page(evaluate(scene, parameters=design, wanted=wanted, elastic=False, **words), live)
+
+
+def _bounds(asked: Sequence[float]) -> tuple[float, ...]:
+    return tuple(asked[:3])
+
+
+def _wanted(sweep: Sweep) -> Wanted:
+    """The outputs that were wanted. Raises :class:`.StoreError` where the file does not say."""
+    content: dict[str, Any] = sweep.identity["wanted"]
+    needed = [one.name for one in dataclasses.fields(Wanted) if one.default is dataclasses.MISSING]
+    kinds = {name: bool if name in _FLAGS else [str] for name in (*needed, *content)}
+    with reported_as("the outputs of the sweep", sweep.path):
+        check_shape(content, kinds, "wanted")
+        found: dict[str, Any] = {
+            name: tuple(value) if isinstance(value, list) else value
+            for name, value in content.items()
+            if name != SENSITIVITY  # of which the graph knows nothing
+        }
+        return Wanted(**found)
+
+
+def _names(wanted: Wanted) -> list[str]:
+    """The names of outputs that were wanted."""
+    found = [name for name in _FLAGS if getattr(wanted, name)]
+    return found + [
+        f"{kind}:{part}" for group, kind in _GROUPS.items() for part in getattr(wanted, group)
+    ]

@@ -1,0 +1,207 @@
+"""A report as one page of HTML that needs nothing else: no server, no network, no other file.
+
+The viewer's sources in ``assets`` are what a page holds, word for word: plain JavaScript and CSS,
+nothing is built. What a solution says goes beside them as JSON; the viewer makes the page's
+elements of it, as texts and never as markup. A page may load nothing, and may run no script except
+the viewer: its policy gives the browser the digest of the viewer.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import html
+import json
+import os
+from collections.abc import Callable, Mapping, Sequence
+from importlib import resources
+from pathlib import Path
+from string import Template
+
+from ...base.arrays import Json
+from ...base.publish import writing
+from ...errors import DeclarationError
+from ...interop.portable.wasm import engine
+from ...model.scene import Scene
+from ...results.solution import Solution
+from ...studies.evaluate import evaluate
+from .contents import contents
+from .live import Live, run_of
+
+SCRIPTS = (
+    *(
+        "data",
+        "dom",
+        "together",
+        "units",
+        "instants",
+        "law",
+        "places",
+        "paper",
+        "solids",
+        "symbols",
+        "arrows",
+        "ribbons",
+        "stage",
+        "gestures",
+    ),
+    *(
+        "player",
+        "axes",
+        "chart",
+        "polar",
+        "heat",
+        "diagrams",
+        "save",
+        "cards",
+        "sorted",
+        "tables",
+        "sliders",
+        "page",
+    ),
+)
+"""The viewer's sources, in the order in which they stand in a page."""
+
+LIVE_SCRIPTS = ("chebyshev", "along", "shapes", "alive")
+"""Scripts of a live page before the others, after the engine's own wrapper."""
+
+SWEEP_SCRIPTS = (
+    "data",
+    "dom",
+    "units",
+    "axes",
+    "chart",
+    "sorted",
+    "designs",
+    "designs_plots",
+    "designs_page",
+)
+"""Scripts of the page of a sweep."""
+
+COMPARISON_SCRIPTS = (
+    "data",
+    "dom",
+    "units",
+    "axes",
+    "sorted",
+    "save",
+    "comparison",
+)
+"""Scripts of the page of two runs."""
+
+ENDINGS = (".html", ".htm")
+
+
+def write_report(
+    solution: Solution, path: str | os.PathLike[str], live: Live | None = None
+) -> None:
+    """Write a page that shows a solution in a browser, replacing the file at ``path`` whole or not
+    at all.
+
+    With ``live`` the page evaluates its scene for other parameters. Raises
+    :class:`.DeclarationError` where the solution lacks the motion of its bodies, and where ``path``
+    does not end in .html; :class:`.PathError` and :class:`.StoreError` where the file cannot be
+    written.
+    """
+    if not isinstance(solution, Solution) or not isinstance(path, (str, os.PathLike)):
+        raise DeclarationError(
+            f"report: expected a solution and a path, got {solution!r} and {path!r}"
+        )
+    write_page(Path(path), lambda: page(solution, live))
+
+
+def write_page(target: Path, made: Callable[[], str]) -> None:
+    """Write the page that is ``made``, replacing the file whole or not at all.
+
+    Raises what :func:`write_report` does.
+    """
+    if target.suffix.lower() not in ENDINGS:
+        raise DeclarationError(
+            f"report {target}: expected a name that ends in {' or '.join(ENDINGS)}"
+        )
+    text = made().encode()
+    with writing(target) as (file,):
+        file.write(text)
+
+
+def page(solution: Solution, live: Live | None = None, clock: Json = None) -> str:
+    """The text of the page; within a page of two runs with the ``clock`` of both."""
+    alive = [engine(), *map(script, LIVE_SCRIPTS)] if live else []
+    content = contents(solution, live) | ({"clock": clock} if clock else {})
+    return assembled(solution.case, content, [*alive, *map(script, SCRIPTS)], wasm=bool(live))
+
+
+def assembled(
+    title: str,
+    content: Mapping[str, Json],
+    scripts: Sequence[str],
+    *,
+    wasm: bool,
+    others: Sequence[str] = (),
+) -> str:
+    """A page with ``content`` as JSON, which runs ``scripts``; with ``wasm`` it may compile that.
+
+    ``others`` are digests of scripts that pages within it run.
+    """
+    text = _whole(scripts)
+    data = json.dumps(content, allow_nan=False, separators=(",", ":"), ensure_ascii=True)
+    run = [f"'sha256-{one}'" for one in (_digest(text), *others)]
+    return Template(_asset("page.html")).substitute(
+        title=html.escape(title),
+        # A browser compiles WebAssembly only where a page says so.
+        run=" ".join([*run, *(["'wasm-unsafe-eval'"] if wasm else [])]),
+        style=_asset("page.css"),
+        script=text,
+        # No text in JSON can end the element that holds it, or begin a comment.
+        data=data.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026"),
+    )
+
+
+def live_digest() -> str:
+    """The digest of the script of a live page."""
+    return _digest(_whole([engine(), *map(script, (*LIVE_SCRIPTS, *SCRIPTS))]))
+
+
+def page_digest() -> str:
+    """The digest of the script of a page that is not live."""
+    return _digest(_whole([script(name) for name in SCRIPTS]))
+
+
+def script(name: str) -> str:
+    """A source of the viewer."""
+    return _asset(f"{name}.js")
+
+
+def _whole(scripts: Sequence[str]) -> str:
+    return "".join(["(() => {\n'use strict';\n", *scripts, "})();\n"])
+
+
+def _digest(text: str) -> str:
+    return base64.b64encode(hashlib.sha256(text.encode()).digest()).decode("ascii")
+
+
+def _asset(name: str) -> str:
+    return (
+        resources.files(__package__).joinpath("assets").joinpath(name).read_text(encoding="utf-8")
+    )
+
+
+def scene_report(
+    scene: Scene,
+    path: str | os.PathLike[str],
+    parameters: Mapping[str, float] | None,
+    wanted: Sequence[str] | None,
+    live: bool,
+) -> None:
+    """Evaluate a scene and write its page: see :meth:`.Scene.report`."""
+    scene.wants(wanted)
+    asked = with_motion(scene.wanted if wanted is None else wanted)
+    run = run_of(scene.name)
+    alive = Live.of(scene, scene.timing(), asked, run, parameters) if live else None
+    elastic = False if live else None
+    write_report(evaluate(scene, parameters=parameters, wanted=asked, elastic=elastic), path, alive)
+
+
+def with_motion(wanted: Sequence[str]) -> list[str]:
+    """Wanted outputs with motion, without which nothing can be shown."""
+    return list(wanted) if {"all", "motion"} & set(wanted) else [*wanted, "motion"]

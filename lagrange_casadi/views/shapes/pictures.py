@@ -1,0 +1,65 @@
+"""Files of pictures: their kinds, one at a time, with the same bytes each time."""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, BinaryIO
+
+from ...base.publish import check_writable
+from ...errors import DeclarationError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+PICTURES: dict[str, dict[str, None]] = {
+    ".png": {"Software": None},
+    ".pdf": {"Creator": None, "Producer": None, "CreationDate": None},
+    ".svg": {"Creator": None, "Date": None},
+}
+"""Endings of pictures' names, and the metadata that each must not hold, so that a figure always
+gives the same bytes: programs, clocks.
+"""
+
+
+def ending_of(svg: bool) -> str:
+    """Return the ending of a figure's name in a folder of figures."""
+    return ".svg" if svg else ".png"
+
+
+def check_picture(path: str | Path) -> None:
+    """Raise :class:`.DeclarationError` for a name that ends in none of .png, .pdf and .svg, and
+    :class:`.PathError`.
+    """
+    target = Path(path)
+    if target.suffix not in PICTURES:
+        raise DeclarationError(f"{target}: expected a name that ends in {', '.join(PICTURES)}")
+    check_writable(target)
+
+
+_drawing = threading.RLock()
+
+
+@contextmanager
+def one_at_a_time(settings: Any = None) -> Iterator[None]:
+    """Draw, by ``settings`` of matplotlib beside those that hold: a thread at a time, for they are
+    those of the whole process.
+    """
+    from matplotlib import rc_context
+
+    with _drawing, rc_context(settings):
+        yield
+
+
+def save(
+    figure: Figure, file: BinaryIO | str | os.PathLike[str], ending: str = ".png", dpi: int = 150
+) -> None:
+    """Write a figure into a file. ``ending`` is a key of :data:`PICTURES`, ``dpi`` the pixels for
+    each inch.
+    """
+    # Names within an SVG are drawn at random where nothing is given.
+    with one_at_a_time({"svg.hashsalt": "lagrange_casadi"}):
+        figure.savefig(file, format=ending.removeprefix("."), dpi=dpi, metadata=PICTURES[ending])

@@ -1,0 +1,238 @@
+"""Figures of a solution, declared as frozen specs, which a case may give and a file keeps.
+
+Specs are known wherever cases are. How each is drawn is known in :mod:`.figures.figures`, imported
+when something is drawn.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+from ...base.arguments import Finite, public
+from ...base.brief import Brief
+from ...base.methods import method
+from ...base.quantities import Output
+from ...base.tables import PLANE
+from ...results.solution import Solution
+from .views import AZIMUTH, ELEVATION
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+class _Drawn:
+    """A spec, which can be drawn."""
+
+    @public
+    def draw(self, solution: Solution, si: bool = False) -> Figure:
+        """The figure; axes have the units that people read, or with ``si`` those of SI, without
+        prefixes.
+        """
+        found: Figure = method("Spec.draw")(self, solution, si)
+        return found
+
+
+@public
+@dataclass(frozen=True, repr=False)
+class TimePlot(_Drawn, Brief):
+    """Quantities over time, those of each unit on axes of their own; of a section force, one curve
+    for each ratio in ``xi``.
+
+    ``factor`` multiplies what is drawn: -1 turns the package's sign into another convention, which
+    ``note`` then names.
+    """
+
+    kind: ClassVar[str] = "time"
+    name: str
+    quantities: tuple[str, ...]
+    title: str = ""
+    xi: tuple[float, ...] = ()
+    factor: Finite = 1.0
+    note: str = ""
+
+    def needs(self) -> tuple[str, ...]:
+        """Full names of the quantities it draws."""
+        return self.quantities
+
+
+@public
+@dataclass(frozen=True, repr=False)
+class SpanPlot(_Drawn, Brief):
+    """A section force along its link at the instant nearest to ``t``."""
+
+    kind: ClassVar[str] = "span"
+    name: str
+    quantity: str
+    t: Finite
+    title: str = ""
+    factor: Finite = 1.0
+    note: str = ""
+
+    def needs(self) -> tuple[str, ...]:
+        """Full names of the quantities it draws."""
+        return (self.quantity,)
+
+
+@public
+@dataclass(frozen=True)
+class SectionMaps(_Drawn):
+    """The section forces of a link as maps of time and xi/l, the peaks marked; a grid finer than
+    the picture is thinned.
+
+    In space there are six, and the resultants of shear and bending.
+    """
+
+    kind: ClassVar[str] = "maps"
+    name: str
+    link: str
+
+    def needs(self) -> tuple[str, ...]:
+        """Full names of the quantities it draws."""
+        return tuple(str(Output("section", self.link, force)) for force in PLANE.forces)
+
+
+@public
+@dataclass(frozen=True)
+class SectionDiagrams(_Drawn):
+    """The section forces along links, each at the instant that governs it, as textbooks draw them:
+    N, V and M, with values at ends and peaks.
+
+    The instant is that of the largest stress where stresses were wanted, else of the largest
+    bending moment.
+    """
+
+    kind: ClassVar[str] = "diagrams"
+    name: str
+    links: tuple[str, ...]
+
+    def needs(self) -> tuple[str, ...]:
+        """Full names of the quantities it draws."""
+        return tuple(name for link in self.links for name in SectionMaps(self.name, link).needs())
+
+
+@public
+@dataclass(frozen=True)
+class PolarPlots(_Drawn):
+    """The forces in joints over all instants, each as a polar plot: in the plane in ground axes, in
+    space on axes across that of the joint.
+    """
+
+    kind: ClassVar[str] = "polar"
+    name: str
+    joints: tuple[str, ...]
+
+    def needs(self) -> tuple[str, ...]:
+        """Full names of the quantities it draws."""
+        return tuple(
+            f"reaction:{joint}:{member}" for joint in self.joints for member in ("fx", "fy")
+        )
+
+
+@public
+@dataclass(frozen=True)
+class MechanismDrawing(_Drawn):
+    """The mechanism at ``count`` instants, evenly spread over the motion until it repeats itself;
+    positions that are the same once.
+
+    With ``overlay`` they are in one picture, the first strong and the others faint. One in space is
+    always drawn so: from above, from the front, from the right, and from ``azimuth`` and
+    ``elevation`` [deg], the angle about the upward axis, and that above the level, of the direction
+    from which it is looked at. The upward axis is the ground's axis that is most against gravity.
+    """
+
+    kind: ClassVar[str] = "drawing"
+    name: str = "mechanism"
+    count: int = 4
+    azimuth: float = AZIMUTH
+    elevation: float = ELEVATION
+    overlay: bool = False
+
+    def needs(self) -> tuple[str, ...]:
+        """Full names of the quantities it draws; the poses of all bodies besides."""
+        return ()
+
+
+@public
+@dataclass(frozen=True)
+class StrengthPlot(_Drawn):
+    """Von Mises' stress of a link that has a beam, over time and along it, and its swings in
+    Goodman's diagram.
+    """
+
+    kind: ClassVar[str] = "strength"
+    name: str
+    link: str
+
+    def needs(self) -> tuple[str, ...]:
+        """Full names of the quantities it draws."""
+        return SectionMaps(self.name, self.link).needs()
+
+
+@public
+@dataclass(frozen=True)
+class UtilisationPlot(_Drawn):
+    """Utilisation of links that have a beam, and of joints that have pins or bearings, for each
+    mode of failure.
+    """
+
+    kind: ClassVar[str] = "utilisation"
+    name: str
+    links: tuple[str, ...]
+    joints: tuple[str, ...] = ()
+
+    def needs(self) -> tuple[str, ...]:
+        """Full names of the quantities it draws."""
+        reactions = [
+            str(Output("reaction", joint, member))
+            for joint in self.joints
+            for member in ("fx", "fy")
+        ]
+        return (
+            *(name for link in self.links for name in SectionMaps(self.name, link).needs()),
+            *reactions,
+        )
+
+
+@public
+@dataclass(frozen=True)
+class DeflectionPlot(_Drawn):
+    """The deflection of a link that has a beam, over time and along it, and the harmonics of its
+    bending.
+    """
+
+    kind: ClassVar[str] = "deflection"
+    name: str
+    link: str
+
+    def needs(self) -> tuple[str, ...]:
+        """Full names of the quantities it draws."""
+        return SectionMaps(self.name, self.link).needs()
+
+
+Spec = (
+    TimePlot
+    | SpanPlot
+    | SectionMaps
+    | SectionDiagrams
+    | PolarPlots
+    | MechanismDrawing
+    | StrengthPlot
+    | UtilisationPlot
+    | DeflectionPlot
+)
+KINDS: dict[str, type[Spec]] = {
+    spec.kind: spec
+    for spec in (
+        TimePlot,
+        SpanPlot,
+        SectionMaps,
+        SectionDiagrams,
+        PolarPlots,
+        MechanismDrawing,
+        StrengthPlot,
+        UtilisationPlot,
+        DeflectionPlot,
+    )
+}
+"""Kinds of figures by their words in files."""

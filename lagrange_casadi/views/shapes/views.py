@@ -1,0 +1,157 @@
+"""Views of a mechanism in space: orthographic ones by azimuth and elevation, and four of them on a
+page.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...base.arrays import Array
+
+AZIMUTH, ELEVATION = -60.0, 25.0
+"""The view that shows most of most mechanisms [deg]."""
+
+_WIDE, _HIGH = 9.6, 7.6
+"""The most that the two columns and the two rows of views take [inch]."""
+
+_LEFT, _BETWEEN, _RIGHT = 0.75, 0.8, 0.25
+_BELOW, _ABOVE = 0.6, 0.35
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """An orthographic view: the directions in ground axes that are to the ``right`` and ``up`` on
+    the page, and its title.
+
+    The two :attr:`coordinates` of a view along an axis may run backward.
+    """
+
+    title: str
+    right: Array
+    up: Array
+
+    def on_page(self, points: Array) -> Array:
+        """Points (..., 3) on the page (..., 2) [m]."""
+        return np.asarray(points, float) @ np.column_stack([self.right, self.up])
+
+    @property
+    def coordinates(self) -> tuple[str, str] | None:
+        """The coordinates to the right and up with their signs, as "x" or "-z"; None where the view
+        is along no axis.
+        """
+        named = [_named(direction) for direction in (self.right, self.up)]
+        return (named[0], named[1]) if all(named) else None
+
+
+def upright(gravity: Sequence[float]) -> Array:
+    """The ground's axes as rows: to the right, away and up on the page; up is the axis that is most
+    against gravity.
+    """
+    g = np.array(gravity, float)
+    k = 2 if not g.any() else int(np.argmax(np.abs(g) * [1.0, 1.0, 1.0 + 1e-9]))
+    up = np.zeros(3)
+    up[k] = -1.0 if g[k] > 0.0 else 1.0
+    right = np.eye(3)[1 if k == 0 else 0]
+    return np.array([right, np.cross(up, right), up])
+
+
+def view(axes: Array, azimuth: float, elevation: float, title: str = "") -> View:
+    """The view from a direction [deg]: ``azimuth`` about the upward axis, from that to the right;
+    ``elevation`` above the level.
+
+    ``axes`` are those of :func:`upright`.
+    """
+    (c, s), (ce, se) = (_cosine_and_sine(angle) for angle in (azimuth, elevation))
+    right, up = np.array([-s, c, 0.0]) @ axes, np.array([-se * c, -se * s, ce]) @ axes
+    text = f"azimuth {azimuth:g}°, elevation {elevation:g}°, {_named(axes[2])} up"
+    return View(title or text, right, up)
+
+
+def views(
+    gravity: Sequence[float], azimuth: float, elevation: float
+) -> tuple[View, View, View, View]:
+    """Views from above, from a chosen direction, from the front, from the right: as rows of a page
+    in third-angle projection.
+    """
+    axes = upright(gravity)
+    right, away, up = (_named(axis) for axis in axes)
+    front = away.removeprefix("-") if away.startswith("-") else f"-{away}"
+    return (
+        view(axes, -90.0, 90.0, f"from above ({_signed(up)})"),
+        view(axes, azimuth, elevation),
+        view(axes, -90.0, 0.0, f"from the front ({_signed(front)})"),
+        view(axes, 0.0, 0.0, f"from the right ({_signed(right)})"),
+    )
+
+
+@dataclass(frozen=True)
+class Page:
+    """A page of four views, in two rows: its size [inch], their one scale [inch/m], and of each its
+    place on it and what it shows.
+
+    ``places`` are left, bottom, width and height [inch], ``boxes`` are left, right, bottom and top
+    [m].
+    """
+
+    size: tuple[float, float]
+    scale: float
+    places: tuple[tuple[float, float, float, float], ...]
+    boxes: tuple[tuple[float, float, float, float], ...]
+
+
+def page(
+    four: Sequence[View], points: Array, margins: Sequence[float], head: float, foot: float
+) -> Page:
+    """A page on which points (n, 3) fit, with a margin [m] around those of each view, a ``head``
+    and a ``foot`` [inch].
+    """
+    flat = [one.on_page(points) for one in four]
+    ends = [
+        (p.min(axis=0) - margin, p.max(axis=0) + margin)
+        for p, margin in zip(flat, margins, strict=True)
+    ]
+    spans = [high - low for low, high in ends]
+    columns = [max(spans[0][0], spans[2][0]), max(spans[1][0], spans[3][0])]
+    rows = [max(spans[0][1], spans[1][1]), max(spans[2][1], spans[3][1])]
+    scale = min(_WIDE / sum(columns), _HIGH / sum(rows))
+    lefts = (_LEFT, _LEFT + scale * columns[0] + _BETWEEN)
+    bottoms = (foot + _BELOW + scale * rows[1] + _BETWEEN, foot + _BELOW)
+    places, boxes = [], []
+    for k, (low, high) in enumerate(ends):
+        row, column = divmod(k, 2)
+        half = np.array([columns[column], rows[row]]) / 2
+        middle = (low + high) / 2
+        boxes.append(
+            (*(middle[0] + half[0] * np.array([-1, 1])), *(middle[1] + half[1] * np.array([-1, 1])))
+        )
+        places.append((lefts[column], bottoms[row], scale * columns[column], scale * rows[row]))
+    size = (lefts[1] + scale * columns[1] + _RIGHT, bottoms[0] + scale * rows[0] + _ABOVE + head)
+    return Page(size, scale, tuple(places), tuple(boxes))
+
+
+def _cosine_and_sine(degrees: float) -> tuple[float, float]:
+    """Cosine and sine of an angle, exact for whole right angles, so that what lies along an axis
+    does.
+    """
+    quarter = round(degrees / 90.0)
+    if degrees == 90.0 * quarter:
+        return ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[quarter % 4]
+    return math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+
+
+def _named(direction: Array) -> str:
+    """The ground's axis that a direction is, with its sign where it is backward; nothing where it
+    is none.
+    """
+    along = np.flatnonzero(direction)
+    if along.size != 1:
+        return ""
+    return f"{'-' if direction[along[0]] < 0 else ''}{'xyz'[along[0]]}"
+
+
+def _signed(name: str) -> str:
+    return name if name.startswith("-") else f"+{name}"
