@@ -91,7 +91,8 @@ _GRID = (
 )
 _STAGES = """
 import time
-from lagrange_casadi import codegen, compile_scene, load_case
+from lagrange_casadi import compile_scene, load_case
+from lagrange_casadi.engine import codegen
 scene = load_case("cases/{0}").scene
 start = time.perf_counter()
 graph = compile_scene(scene)

@@ -34,9 +34,10 @@ ROOT, MAPS, EQUIVALENT = TESTS.parent, TESTS / "maps", TESTS / "equivalent.txt"
 PACKAGE = ROOT / "lagrange_casadi"
 
 NUMBERS = (
-    *("declare", "density.py", "elements", "beams", "arithmetic", "geometry", "equations"),
-    *("codegen", "peak_search", "instants", "verification", "sensitivity", "strength", "elastic"),
-    *("studies/designs", "studies/peaks.py", "forward", "actuators", "identification"),
+    *("base/boxes.py", "base/compensated.py", "base/frames.py", "base/interpret.py"),
+    *("base/ipopt.py", "base/lookups.py", "base/rotation.py", "base/running_errors.py"),
+    *("base/scalars.py", "base/vectors.py", "model", "engine", "results", "studies/designs"),
+    *("studies/peaks.py", "studies/forward", "studies/actuators", "studies/identification"),
 )
 """Folders and modules that compute numbers, C that is compiled among them."""
 

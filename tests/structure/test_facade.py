@@ -80,7 +80,7 @@ LOADED = "import json, sys\n{}\nprint(json.dumps(sorted(name for name in sys.mod
         ),
         (
             "import lagrange_casadi as lc; lc.Mechanism, lc.Scene, lc.evaluate",
-            ("h5py", "matplotlib", "lagrange_casadi.engine"),
+            ("h5py", "matplotlib", "lagrange_casadi.engine.derive"),
         ),
         (
             "import lagrange_casadi.cli",

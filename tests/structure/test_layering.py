@@ -3,10 +3,7 @@ away, and what is compiled is not declared again.
 """
 
 import ast
-import json
 import re
-import subprocess
-import sys
 from functools import cache
 from pathlib import Path
 
@@ -18,17 +15,14 @@ import lagrange_casadi
 
 PACKAGE = Path(lagrange_casadi.__file__).parent
 CASE = Path(__file__).parents[2] / "cases" / "four_bar"
-DECLARED = (
-    *("version", "errors", "methods", "base", "arguments", "arithmetic", "geometry", "beams"),
-    *("declare", "elements", "equations"),
-)
-"""The rooms up to where a scene is compiled. All others read what it is compiled to."""
+DECLARED = ("version", "errors", "base", "model", "engine")
+"""The packages up to where a scene is compiled. All others read what it is compiled to."""
 
 
 PUBLIC = (
-    *("actuators", "animation", "beams", "bearings", "case", "cli", "density", "elements"),
-    *("errors", "figures", "forward", "motion", "peaks", "version"),
-    *("studies.optimise", "studies.sweep", "studies.trade"),
+    *("actuators", "animation", "beams", "bearings", "cli", "density", "elements"),
+    *("errors", "figures", "forward", "motion", "peaks", "strength", "version"),
+    *("studies.case", "studies.optimise", "studies.sweep", "studies.trade"),
 )
 """What users import from, and tests as well."""
 
@@ -93,7 +87,7 @@ def test_what_is_compiled_is_not_declared_again():
             if isinstance(node, ast.Assign) and "load_case(" in ast.unparse(node.value)
         ]
         handed = {ast.unparse(target) for node in loads for target in node.targets} | {"error"}
-        for node in nodes_of(path) if room(name) not in (*DECLARED, "case") else ():
+        for node in nodes_of(path) if room(name) not in DECLARED and name != "studies.case" else ():
             if isinstance(node, ast.Attribute) and node.attr in ("scene", "mechanism"):
                 owner = ast.unparse(node.value)
                 assert owner in handed or owner.startswith("load_case("), f"{name}:{node.lineno}"
@@ -113,7 +107,7 @@ def test_only_the_table_of_methods_names_what_is_above():
                 (word,) = (argument.value for argument in node.args)
                 asked[word] = name
             last = getattr(called, "attr", getattr(called, "id", ""))
-            if last.endswith(("import_module", "__import__")) and name != "methods":
+            if last.endswith(("import_module", "__import__")) and name != "base.methods":
                 assert ast.unparse(node.args[0]).startswith("'distributed"), f"{name}:{node.lineno}"
     assert asked.keys() == METHODS.keys()
     for answer in METHODS.values():
@@ -129,126 +123,6 @@ def test_only_the_table_of_methods_names_what_is_above():
             for alias in node.names
         }
         assert function in defined | brought, answer
-
-
-WITHOUT = """
-import importlib, json, os, pkgutil, sys, traceback
-
-class Gone:
-    def find_spec(name, path, target=None):
-        if name.startswith("lagrange_casadi.") and name.split(".")[1] in gone:
-            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
-
-case, leaves = sys.argv[1], json.loads(sys.argv[2])
-sys.meta_path.insert(0, Gone)
-gone = set(leaves)
-import lagrange_casadi
-for found in pkgutil.walk_packages(lagrange_casadi.__path__, "lagrange_casadi."):
-    if not found.name.endswith("__main__") and found.name.split(".")[1] not in gone:
-        importlib.import_module(found.name)
-
-def without(leaf, commands):
-    global gone
-    gone, name_of_leaf, out = {leaf}, f"lagrange_casadi.{leaf}", "x.h5"
-    from lagrange_casadi.errors import MissingPackageError
-    from lagrange_casadi.base.methods import METHODS, method
-    lost, refused = [], []
-    for found in pkgutil.walk_packages(lagrange_casadi.__path__, "lagrange_casadi."):
-        if not found.name.endswith("__main__") and found.name != name_of_leaf:
-            try:
-                importlib.import_module(found.name)
-            except ModuleNotFoundError as error:
-                assert error.name.startswith(name_of_leaf), error
-                lost.append(found.name)
-    for look, names in ((method, METHODS), (lagrange_casadi.__getattr__, dir(lagrange_casadi))):
-        for name in names:
-            try:
-                look(name)
-            except MissingPackageError as error:
-                assert name_of_leaf in str(error), error
-                refused.append(name)
-    if leaf == "cli":
-        solution = lagrange_casadi.evaluate(lagrange_casadi.load_case(case).scene, t=(0, 0.1, 5), backend="vm")
-        lagrange_casadi.save(solution, out)
-    else:
-        from lagrange_casadi.cli import main
-        assert main(["run", case, "--no-figures", "--backend", "vm", "--t", "0:0.1:5", "--out", out]) == 0
-        asked = {"animate": [out], "drive": [case], "export": [case, "--out", "c"], "plot": [out, "--out", "p"]}
-        asked |= {"report": [out], "new": ["new", "--from", "model.json"]}
-        asked |= {"free": [case]}
-        asked |= {"loads": [case, "--link", "crank", "--out", "l"]}
-        asked |= {"identify": [case, "data.csv"]}
-        for word in commands:
-            assert main([word, *asked[word]]) == 1
-    print(json.dumps([lost, refused]))
-
-for leaf, commands in leaves.items():
-    if not os.fork():
-        os.mkdir(leaf)
-        os.chdir(leaf)
-        for stream, name in ((1, "out"), (2, "err")):
-            os.dup2(os.open(name, os.O_WRONLY | os.O_CREAT), stream)
-        try:
-            without(leaf, commands)
-        except BaseException:
-            traceback.print_exc()
-        sys.stdout.flush()
-        sys.stderr.flush()
-        os._exit(0)
-    os.wait()
-"""  # noqa: E501
-"""Read all but the leaves without any of them; then take away each in a process of its own."""
-
-GOES = {
-    "exports": (["cli.export"], ["export"], ["export"]),
-    "figures": (
-        ["cli.optimise", "cli.trade"],
-        ["PostureError.drawn", "Spec.draw", "figures", "figures.default_figures", "figures.draw"],
-        ["plot"],
-    ),
-    "report": (
-        ["cli.report_page"],
-        [name for name, answer in METHODS.items() if re.match("report[.:]", answer)],
-        ["report"],
-    ),
-    "animation": (["cli.animate"], ["Solution.animate", "animation"], ["animate"]),
-    "actuators": (["cli.drive"], ["actuators"], ["drive"]),
-    "cluster": ([], ["optimise.dask", "sweep.dask"], []),
-    "formats": ([], ["read", "save_model"], ["new"]),
-    "load_cases": (
-        ["cli.loads"],
-        ["LoadCase", "link_load_cases", "write_load_cases", "write_spectrum"],
-        ["loads"],
-    ),
-    "identification": (
-        ["cli.identify"],
-        ["Identification", "Measurements", "excite", "identify", "read_measurements"],
-        ["identify"],
-    ),
-    "forward": (["cli.free"], ["flywheel", "forward", "free"], ["free"]),
-    "cli": ([], [], []),
-}
-"""What goes with each leaf: commands' modules, methods and public names, and commands that then say
-what they need.
-"""
-
-
-def test_every_leaf_can_be_taken_away(tmp_path):
-    """All else imports and a case runs; what the leaf did is refused by an error of ours.
-
-    What is no leaf imports without all of them.
-    """
-    leaves = json.dumps({leaf: GOES[leaf][2] for leaf in GOES})
-    command = [sys.executable, "-c", WITHOUT, str(CASE), leaves]
-    subprocess.run(command, check=True, cwd=tmp_path)
-    for leaf, (modules_lost, refusing, commands) in GOES.items():
-        out, err = ((tmp_path / leaf / name).read_text() for name in ("out", "err"))
-        assert "Traceback" not in err, f"{leaf}: {err}"
-        lost, refused = json.loads(out.splitlines()[-1])
-        assert lost == [f"lagrange_casadi.{name}" for name in modules_lost], leaf
-        assert sorted(refused) == sorted(refusing), leaf
-        needs = f"needs lagrange_casadi.{leaf}, which this installation lacks"
-        assert err.count(needs) == len(commands), leaf
 
 
 def for_users() -> set[str]:
