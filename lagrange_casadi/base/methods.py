@@ -11,8 +11,6 @@ import importlib
 from collections.abc import Callable
 from typing import Any
 
-from ..errors import MissingPackageError
-
 _ROOT = __package__.partition(".")[0]
 
 METHODS: dict[str, str] = {
@@ -42,25 +40,7 @@ METHODS: dict[str, str] = {
 
 
 def method(name: str) -> Callable[..., Any]:
-    """The function that answers a method of :data:`METHODS`.
-
-    Raises :class:`.MissingPackageError` without its package.
-    """
+    """The function that answers a method of :data:`METHODS`."""
     module, _, function = METHODS[name].partition(":")
-    try:
-        found: Callable[..., Any] = getattr(importlib.import_module(f"{_ROOT}.{module}"), function)
-    except ModuleNotFoundError as error:
-        raise missing(error, name) from None
+    found: Callable[..., Any] = getattr(importlib.import_module(f"{_ROOT}.{module}"), function)
     return found
-
-
-def missing(error: ModuleNotFoundError, name: str) -> ImportError:
-    """An error of ours where what is missing is a package of ours, which ``name`` needs; else the
-    same error.
-    """
-    lacking = error.name or ""
-    if lacking.partition(".")[0] != _ROOT:
-        return error
-    return MissingPackageError(
-        f"{name} needs {lacking}, which this installation lacks; install all of lagrange_casadi"
-    )

@@ -18,7 +18,6 @@ from typing import Any
 import click
 
 from ..base.interrupts import SENTENCE, STATUS, interrupts, keep_status
-from ..base.methods import missing
 from ..base.standard_streams import lead_nowhere
 from ..errors import LagrangeCasadiError, PostureError, UnknownNameError, one_line
 from ..version import __version__
@@ -133,11 +132,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         except _Unread:
             lead_nowhere()
             return 1
-        except ModuleNotFoundError as error:
-            lacking = missing(error, "this")
-            if lacking is error:
-                raise
-            return _fail(str(lacking), 1)
         except MemoryError as error:
             return _fail(f"out of memory: {str(error) or 'fewer instants or ratios fit'}", 1)
         except OSError as error:  # of help on standard output; all else is an error of ours
