@@ -9,12 +9,13 @@ import numpy as np
 from lagrange_casadi import Scene, SpatialMechanism, compile_scene
 from lagrange_casadi.base.tables import SPACE
 from lagrange_casadi.base.vocabulary import Backend
+from lagrange_casadi.engine.instants.evaluation_method import Provenance
 from lagrange_casadi.engine.instants.grids import empty
 from lagrange_casadi.engine.program import Program
 from lagrange_casadi.model.motion import polynomial
 from lagrange_casadi.results.ordering import in_order
 from lagrange_casadi.results.section_law import SectionLaw
-from lagrange_casadi.results.solution import Provenance, Solution
+from lagrange_casadi.results.solution import Solution
 
 from .engine import columns_of
 from .peers.arm_data import AXES, FIRST, LENGTHS, MASSES, RATE, TURN

@@ -15,13 +15,13 @@ from lagrange_casadi.base.space import cores
 from lagrange_casadi.base.vocabulary import Backend
 from lagrange_casadi.engine import codegen
 from lagrange_casadi.engine.instants.backends import rows, run
-from lagrange_casadi.engine.instants.evaluation_method import EvaluationMethod
+from lagrange_casadi.engine.instants.evaluation_method import EvaluationMethod, Provenance
 from lagrange_casadi.engine.instants.grids import empty
 from lagrange_casadi.engine.program import Program
 from lagrange_casadi.model.motion import polynomial
 from lagrange_casadi.results.ordering import in_order
 from lagrange_casadi.results.section_law import SectionLaw
-from lagrange_casadi.results.solution import Provenance, Solution
+from lagrange_casadi.results.solution import Solution
 from lagrange_casadi.studies.designs.engine import DesignEngine
 from lagrange_casadi.studies.designs.outcome import KEPT
 

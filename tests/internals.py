@@ -19,7 +19,7 @@ from lagrange_casadi.engine.codegen.stages import compensated, controlled, plain
 from lagrange_casadi.engine.fingerprint import fingerprint
 from lagrange_casadi.engine.instants import backends, cycle_table, grids
 from lagrange_casadi.engine.instants.backends import run
-from lagrange_casadi.engine.instants.evaluation_method import EvaluationMethod
+from lagrange_casadi.engine.instants.evaluation_method import EvaluationMethod, Provenance
 from lagrange_casadi.engine.instants.refusal import refusal as refusal_refusal
 from lagrange_casadi.interop.formats import case_of
 from lagrange_casadi.model import laws
@@ -30,7 +30,6 @@ from lagrange_casadi.model.scene import Wanted
 from lagrange_casadi.model.stated import Stated
 from lagrange_casadi.results.elastic.compliance import Compliance, nodes
 from lagrange_casadi.results.elastic.deflection import deflection
-from lagrange_casadi.results.solution import Provenance
 from lagrange_casadi.results.strength.member import Member
 from lagrange_casadi.results.verification.certificate import certify
 from lagrange_casadi.results.verification.disturbed import TRIALS, Instants, effects

@@ -14,11 +14,11 @@ import numpy.typing as npt
 
 from ..base.arguments import public
 from ..base.arrays import Array, during
-from ..base.brief import Brief
 from ..base.methods import method
 from ..base.quantities import Kinds, Output, motions_of
 from ..base.tables import Table
 from ..engine.instants.beyond_equilibrium import Elasticity, Holding, held_notes
+from ..engine.instants.evaluation_method import Provenance
 from ..errors import DeclarationError, UnknownNameError, shown
 from ..model.description import Description, density_of, kinds_of_described
 from ..model.limits import no_sections
@@ -41,23 +41,6 @@ if TYPE_CHECKING:
     from .elastic.deflection import Deflection
     from .strength.safety import Life, Safety
     from .strength.stress import Stress
-
-
-@public
-@dataclass(frozen=True, repr=False)
-class Provenance(Brief):
-    """Origin of the numbers.
-
-    Holds no clock, no user and no path; ``method`` are the options of the
-    :class:`.EvaluationMethod`.
-    """
-
-    backend: str
-    precision: str
-    compiler: str
-    flags: str
-    method: str
-    versions: Mapping[str, str]
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,6 @@ from ...base.space import cores
 from ...base.status import Status
 from ...base.vocabulary import Backend
 from ...errors import CompilerError, warn
-from ...results.solution import Provenance
 from ...version import __version__
 from .. import codegen
 from ..codegen.emit import NEWTON_STEPS, newton_rule
@@ -30,7 +29,7 @@ from ..codegen.stages import Stages, plain, stages_for
 from ..program import Program
 from . import grids
 from .cycle_table import CycleTable
-from .evaluation_method import EvaluationMethod
+from .evaluation_method import EvaluationMethod, Provenance
 
 _LANGUAGES: dict[Backend, tuple[codegen.Language, ...]] = {
     "auto": ("c++", "c"),

@@ -5,9 +5,12 @@ precision, how exactly; how long.
 from __future__ import annotations
 
 import shlex
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ...base.arguments import public
+from ...base.brief import Brief
 from ...base.vocabulary import BACKENDS, PRECISIONS, Backend, Precision
 from ...errors import DeclarationError, UnknownNameError, check_kind
 
@@ -17,6 +20,23 @@ if TYPE_CHECKING:
 FEWEST_NODES = 8
 MOST_STEPS = 1000
 """Each step squares what a loop still misses: after some ten nothing changes."""
+
+
+@public
+@dataclass(frozen=True, repr=False)
+class Provenance(Brief):
+    """Origin of the numbers.
+
+    Holds no clock, no user and no path; ``method`` are the options of the
+    :class:`.EvaluationMethod`.
+    """
+
+    backend: str
+    precision: str
+    compiler: str
+    flags: str
+    method: str
+    versions: Mapping[str, str]
 
 
 @dataclass(frozen=True)

@@ -17,13 +17,12 @@ from ...base.space import cores
 from ...base.status import Status
 from ...base.symbolic import symbolic
 from ...base.threads import in_threads
-from ...results.solution import Provenance
 from ..checks import Check
 from ..program import Program
 from .backends import Evaluated, run, unevaluated
 from .cycle import TURNS, the_drive
 from .cycle_table import CycleTable
-from .evaluation_method import EvaluationMethod
+from .evaluation_method import EvaluationMethod, Provenance
 from .tabulate import still, tabulate
 
 _SHARE = 1 << 14

@@ -9,8 +9,9 @@ from typing import Any, TypeAlias
 from ...base.methods import method
 from ...base.quantities import Output
 from ...engine.instants.beyond_equilibrium import Elasticity
+from ...engine.instants.evaluation_method import Provenance
 from ...model.description import check_places, shape_of, values_of
-from ..solution import Provenance, Solution
+from ..solution import Solution
 from .opening import SCHEMA
 from .untrusted import check_shape, number, parsed, shown
 from .words import conventions

@@ -28,7 +28,7 @@ from ...engine.codegen.stages import Stages
 from ...engine.derive import compile_scene
 from ...engine.instants.backends import begun, compiled, provenance
 from ...engine.instants.determinacy import undetermined
-from ...engine.instants.evaluation_method import EvaluationMethod, seconds
+from ...engine.instants.evaluation_method import EvaluationMethod, Provenance, seconds
 from ...engine.instants.grids import empty
 from ...engine.peak_search.intervals import TOPS, Listed
 from ...engine.peak_search.sharpness import bent, with_watched
@@ -39,7 +39,6 @@ from ...model.times import Times, Timing
 from ...results.sensitivity.ends import Ends
 from ...results.sensitivity.peaks import AS_LARGE, MeanSlopes, MovingPeaks, PeakSlopes, faint
 from ...results.sensitivity.slopes import Slopes
-from ...results.solution import Provenance
 from ..solving import checked_span, outputs_of, unwind
 from .interpreted import InterpretedDesigns
 from .outcome import KEPT, History, Outcome, Results, outcome_of, refuse, rows_of
