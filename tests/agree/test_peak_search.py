@@ -191,7 +191,7 @@ def test_what_grows_without_an_end_too_slowly_is_not_told():
     ),
     st.tuples(st.floats(0, 2), st.floats(1e-4, 1.0), st.floats(-3, 3)),
     st.integers(2, 60),
-    st.sampled_from([bell, tent, ridge, gap]),
+    st.sampled_from([bell, ridge, gap]),
 )
 def test_any_signal(waves, hump, count, shape):
     """Waves and a hump of any width, at any number of instants: no peak is short, but it may say
