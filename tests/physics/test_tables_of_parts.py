@@ -75,7 +75,10 @@ def test_hollow_sections_have_the_properties_that_the_standards_publish(name):
 def test_every_table_says_where_it_is_from_and_fits_a_shape():
     hollow = dict.fromkeys(("SHS", "RHS", "SHS_cold", "RHS_cold"), "hollow_section")
     kinds = {"CHS": "tube", "flat": "rectangle", "round": "round_bar"} | hollow
-    tables = {path.stem: path for path in (Path(beams.__file__).parent / "tables").iterdir()}
+    tables = {
+        path.stem: path
+        for path in (Path(beams.__file__).parent / "model" / "beams" / "tables").iterdir()
+    }
     assert set(tables) == {*PUBLISHED, *kinds}
     for name, path in tables.items():
         head = path.read_text().partition("\nname,")[0].replace("\n# ", " ")
