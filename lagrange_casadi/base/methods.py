@@ -11,27 +11,25 @@ import importlib
 from collections.abc import Callable
 from typing import Any
 
-_ROOT = __package__.partition(".")[0]
-
 METHODS: dict[str, str] = {
     "PostureError.drawn": "views.figures.postures:draw_postures",
     "Scene._repr_html_": "views.report:scene_summary",
     "Scene.report": "views.report:scene_report",
     "Solution._repr_html_": "views.report:summary",
-    "Solution.animate": "animation:write_animation",
+    "Solution.animate": "views.animation.film:write_animation",
     "Solution.deflection": "results.elastic.deflection:deflection",
-    "Solution.life": "strength:life",
+    "Solution.life": "results.strength.safety:life",
     "Solution.notes": "results.elastic.vibration:swinging",
     "Solution.report": "views.report:write_report",
     "Solution.report_beside": "views.report:write_comparison",
     "Solution.safety": "results.strength.parts:part_safety",
-    "Solution.stress": "strength:stress",
+    "Solution.stress": "results.strength.safety:stress",
     "Solution.view": "views.report:view",
     "Spec.draw": "views.figures.figures:drawn",
     "Sweep._repr_html_": "views.report.sweep_summary:summary",
     "Sweep.report": "views.report.of_sweep:write_sweep_report",
-    "figures.default_figures": "figures:default_figures",
-    "figures.draw": "figures:draw",
+    "figures.default_figures": "views.figures.figures:default_figures",
+    "figures.draw": "views.figures.figures:draw",
     "figures.parse": "views.shapes.kept:parse_specs",
     "optimise.dask": "studies.cluster.dask_workers:Cluster",
     "sweep.dask": "studies.cluster.dask_workers:Cluster",
@@ -42,5 +40,7 @@ METHODS: dict[str, str] = {
 def method(name: str) -> Callable[..., Any]:
     """The function that answers a method of :data:`METHODS`."""
     module, _, function = METHODS[name].partition(":")
-    found: Callable[..., Any] = getattr(importlib.import_module(f"{_ROOT}.{module}"), function)
+    found: Callable[..., Any] = getattr(
+        importlib.import_module(f"..{module}", __package__), function
+    )
     return found

@@ -54,7 +54,7 @@ static inline __attribute__((always_inline)) void combine(long long many, long l
   }
 }
 
-/* What acts at a load point is carried by the sections whose edge it is beyond: see edge in equations/section_function.py. */
+/* What acts at a load point is carried by the sections whose edge it is beyond: see edge in engine/section_function.py. */
 static void act(long long n, double station, double constant, double slope, const double* u, const double* beyond,
                 double* restrict row) {
   long long j;

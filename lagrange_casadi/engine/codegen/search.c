@@ -1,4 +1,4 @@
-/* What is largest of each quantity, at the instants and between them: the same search as in peak_search/search.py, which is the
+/* What is largest of each quantity, at the instants and between them: the same search as in engine/peak_search/search.py, which is the
    reference: tests hold this to it.
 
    A panel is a row of equal steps with the values at their ends. In each step every curve is bounded; what could rise above the largest

@@ -14,7 +14,7 @@ LANES_INLINE casadi_real designs_larger(casadi_real x, casadi_real y) { return l
 LANES_INLINE casadi_real designs_on_link(casadi_real u) { return lanes_less(0, u, lanes_less(u, 1, u, 1), 0); }
 
 /* The ratio beyond which a section carries what acts at load points, as it is on the tip's side of one that is there, and on the base's: see
-   edge in equations/section_function.py. */
+   edge in engine/section_function.py. */
 LANES_INLINE casadi_real designs_section_edge(casadi_real u, int side) {
   if (side) return lanes_less(DESIGNS_END, u - DESIGNS_END, u - DESIGNS_END, DESIGNS_END);
   return lanes_less(u + DESIGNS_END, 1 - DESIGNS_END, u + DESIGNS_END, 1 - DESIGNS_END);
@@ -100,7 +100,7 @@ LANES_INLINE casadi_real designs_shear(const designs_link* link, int cell, casad
   return law[3] + law[4]*tail[0] + law[5]*(link->matter[0]*(u*tail[0] + tail[1]));
 }
 
-/* What sections at a ratio carry of loads along the link: see equations/distributed_loads.py. */
+/* What sections at a ratio carry of loads along the link: see engine/distributed_loads.py. */
 static inline void designs_spread(const designs_link* link, casadi_real u, casadi_real* force) {
   const casadi_real *load = link->spread, l = link->matter[0];
   casadi_real x, reach, lever, power, share;

@@ -124,7 +124,7 @@ static inline casadi_real designs_slope(const designs_between* of, int cell, cas
   return sum;
 }
 
-/* The two largest summits of the size of what is looked at between low and high, in order along the link: see instants/turning.py. */
+/* The two largest summits of the size of what is looked at between low and high, in order along the link: see results/turning.py. */
 static inline void designs_summits_between(const designs_between* of, const designs_nodes* nodes, casadi_real low, casadi_real high,
                                            casadi_real summit[2]) {
   const int n = nodes->degree;

@@ -12,8 +12,8 @@ many panels, or a quantity keeps growing slowly, its peak is not reported.
 Where friction at rest leaves a curve open at an instant, the steps beside it are searched by
 themselves from where, or up to where, it is a number.
 
-The C does the same (``codegen/search.c`` and its neighbours), and is tested against this, which
-serves where no compiler is.
+The C does the same (``engine/codegen/search.c`` and its neighbours), and is tested against this,
+which serves where no compiler is.
 """
 
 from __future__ import annotations

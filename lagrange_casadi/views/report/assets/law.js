@@ -11,7 +11,7 @@ const sections = contents.sections.map((entry) => {
 
 const sectionByLink = new Map(sections.map((section) => [section.link, section]));
 
-/** The ratio beyond which a section takes the load of a load point: see edge in equations/section_function.py. */
+/** The ratio beyond which a section takes the load of a load point: see edge in engine/section_function.py. */
 function edgeAt({ slack }, xi, side = "tip") {
   return side === "tip" ? Math.min(xi + slack, 1 - slack) : Math.max(xi - slack, slack);
 }
