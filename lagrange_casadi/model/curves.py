@@ -215,7 +215,8 @@ def curve(
         makes the curve a straight line.
     """
     at, to = rows("curve", x, y, 4)
-    if periodic and abs(to[-1] - to[0]) > _SAME * max(map(abs, to)):
+    span = max(to) - min(to)
+    if periodic and abs(to[-1] - to[0]) > _SAME * max(span, abs(to[0])):
         raise DeclarationError(
             f"curve: a periodic curve ends as it begins, but its values are {to[0]:.9g} at"
             f" {at[0]:g} and {to[-1]:.9g} at {at[-1]:g}; give the first value once more at the end"

@@ -171,7 +171,7 @@ DESIGNS_CENTRE
 #endif
 
 #if DESIGNS_CLOSINGS
-/* Whether the square of a sine may come to zero in a step: see steps_near of equations/dead_centres.py. */
+/* Whether the square of a sine may come to zero in a step: see steps_near of engine/dead_centres.py. */
 static int designs_near_zero(const designs_now* now, const lanes_real* row, int sine, casadi_int i, lanes_real limit) {
   const double* t = now->t + i;
   const int* status = now->instants.status + i;
@@ -204,7 +204,6 @@ static casadi_int designs_passed(const designs_now* now, int check) {
   }
 #endif
   (void) check;
-  (void) designs_closed;
   return now->n;
 }
 

@@ -147,8 +147,8 @@ def centre(slopes: int) -> str:
     """C of the rule of dead centres (:func:`.passes`), for so many slopes of a loop; the types
     ``centre_real`` and ``centre_step``, and ``centre_path``, stand before it.
     """
-    values = {"points": POINTS, "rounds": ROUNDS, "far": int(FAR)}
-    values |= {"slopes": slopes, "least_order": int(TOUCHES[0]), "most_order": int(TOUCHES[1])}
+    values = {"points": POINTS, "rounds": ROUNDS, "far": int(FAR), "slopes": slopes}
+    values |= {"least_order": int(TOUCHES[0]), "most_order": int(TOUCHES[1])}
     return Template(written("dead_centre.c")).substitute(values)
 
 
@@ -194,7 +194,7 @@ def _tables(program: Program, reduction: Reduction) -> str:
     sizes = itertools.count(len(program.bounds))
     sized = [next(sizes) if bound.kind == "ROW" else -1 for bound in program.bounds] or [-1]
     closings = itertools.count()
-    closed = [next(closings) if bound.kind in CLOSURES else -1 for bound in program.bounds] or [-1]
+    closed = [next(closings) if bound.kind in CLOSURES else -1 for bound in program.bounds]
     statuses = [Status.OK, *(rule.status for rule in program.rules)]
     others = [(k, link.breaks) for k, link in enumerate(reduction.links) if not link.uniform]
     breaks = [
@@ -205,12 +205,12 @@ def _tables(program: Program, reduction: Reduction) -> str:
         "checked": columns,
         "kind": (f"DESIGNS_IS_{kind}" if kind in CHECKS else -1 for kind in kinds),
         "sized": sized,
-        "closed": closed,
         "status": map(int, statuses),
         "effort": reduction.efforts or (0,),
         "doubted": shown_by,
         "doubtful": indeterminate,
     }
+    tables |= {"closed": closed} if max(closed, default=-1) >= 0 else {}
     lines = [_table("int", f"designs_{name}", values) for name, values in tables.items()]
     return "".join([*lines, *breaks])
 

@@ -206,8 +206,7 @@ class _Block:
         point += ["square[j] := squares[which];", "rate[j] := rates[which];"]
         point += [f"rate[j] := rate[j] + (gone[0] - 1.0) * slopes[{width} * which];"]
         point += _loop("i", 0, drives, [f"slope[{width} * j + i] := slopes[{width} * which + i];"])
-        below = "IF square[j] < -zero[which] THEN"
-        point += [below, "crossed := TRUE;", "END_IF;"]
+        point += ["IF square[j] < -zero[which] THEN", "crossed := TRUE;", "END_IF;"]
         if "loops" in exported.functions:
             point += [f"IF NOT (size < {done}) THEN", "square[j] := 0.0;", "END_IF;"]
         point += ["IF square[j] < square[least] THEN", "least := j;", "END_IF;"]
