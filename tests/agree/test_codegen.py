@@ -9,7 +9,7 @@ import pytest
 from compiled import PEDANTIC, STRICT
 from conftest import CASES
 from design_rows import DENSITIES, loaded
-from internals import library
+from internals import backends, library
 from mechanisms import (
     crank_and_rod,
     every_function,
@@ -58,6 +58,19 @@ def test_emitted_c_is_pedantically_clean(name):
 STEP = 2.0**-18
 
 
+@pytest.fixture
+def unwritten(monkeypatch):
+    """Columns are NaN before they are evaluated."""
+    empty = backends.rows
+
+    def rows(*size):
+        out = empty(*size)
+        out[...] = np.nan
+        return out
+
+    monkeypatch.setattr(backends, "rows", rows)
+
+
 def series(scene, count, first=0, **method):
     """The bits of all series at so many instants; none is left as it was."""
     t = (first * STEP, (first + count - 1) * STEP, count)
@@ -67,7 +80,7 @@ def series(scene, count, first=0, **method):
 
 
 @pytest.mark.quick
-@pytest.mark.usefixtures("released")
+@pytest.mark.usefixtures("released", "unwritten")
 @pytest.mark.sampled(19)
 @pytest.mark.parametrize("precision", PRECISIONS)
 @pytest.mark.parametrize("backend", BACKENDS)
@@ -85,7 +98,7 @@ def test_the_bits_are_those_of_the_instant_alone(name, backend, precision, monke
         assert series(scene, 80, threads=threads, **method).tobytes() == whole.tobytes()
 
 
-@pytest.mark.usefixtures("released")
+@pytest.mark.usefixtures("released", "unwritten")
 @pytest.mark.parametrize("precision", PRECISIONS)
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_columns_that_go_past_the_caches_have_the_same_bits(backend, precision):
