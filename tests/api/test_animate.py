@@ -239,6 +239,9 @@ def places_of(solution, body, place):
     pose = solution.pose(body)
     if pose.z is not None:
         base = np.column_stack([pose.x, pose.y, pose.z])
+        if pose.axes is None:  # of a point, which is at its only place
+            assert not any(place)
+            return base
         return base + np.einsum("j,njk->nk", np.resize([*place, 0.0], 3), pose.axes)
     angle = 0.0 if pose.angle is None else pose.angle
     moved_to = pose.x + 1j * pose.y + (x + 1j * y) * np.exp(1j * angle)
