@@ -241,8 +241,10 @@ def pytest_collection_modifyitems(config, items):
     """Leave out long tests, and parameters of those that are sampled, unless they are asked for,
     all or by name. What is early begins the order.
     """
+    if any("::" in argument for argument in config.args):
+        return
     items.sort(key=lambda item: item.get_closest_marker("early") is None)
-    if config.getoption("--long") or any("::" in argument for argument in config.args):
+    if config.getoption("--long"):
         return
     counts = Counter(item.nodeid.partition("[")[0] for item in items)
     seen, left = Counter(), []

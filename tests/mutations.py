@@ -26,6 +26,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
+from xml.etree import ElementTree
 
 import psutil
 
@@ -41,11 +42,11 @@ NUMBERS = (
 )
 """Folders and modules that compute numbers, C that is compiled among them."""
 
-RANDOM, FIRST, NEXT = 12, 6, 40
-"""Tests of random mechanisms, and others before and after them, in one run of pytest."""
+PROCESSES, SECONDS = 2, 30.0
+"""Processes that run tests of one mutation, and seconds of a processor that each may take."""
 
-SECONDS = 30.0
-"""Of the processor, for each mutation."""
+MOST = 400
+"""Tests that are asked at most: more take longer than there is."""
 
 _SWAPS: dict[type[ast.AST], type[ast.AST]] = {ast.Add: ast.Sub, ast.Eq: ast.NotEq}
 _SWAPS |= {ast.Lt: ast.GtE, ast.Gt: ast.LtE}
@@ -158,6 +159,7 @@ class Map:
 
         self.data = CoverageData(str(path))
         self.data.read()
+        self.cases = ElementTree.parse(path.with_suffix(".xml")).iter("testcase")
 
     @cached_property
     def lines(self) -> dict[str, dict[int, set[str]]]:
@@ -194,27 +196,46 @@ class Map:
             own = [*lines.values()]
         return Counter(test for tests in own for test in tests)
 
-    def tests(self, mutation: Mutation) -> list[str]:
-        """Return tests that reach a statement, those that reach few other lines first; random
-        mechanisms after the first few. Each function is asked once before any is asked again.
+    @cached_property
+    def seconds(self) -> dict[str, float]:
+        """Seconds that each test took, by its module's file and its name."""
+        return {
+            f"{case.get('classname', '').replace('.', '/')}.py::{case.get('name')}": float(
+                case.get("time", 0.0)
+            )
+            for case in self.cases
+        }
 
-        For C those are asked first that ask whether all ways agree and that reach much of the
-        module, be it not as much as others: what is small is compiled in a short time.
+    def tests(self, mutation: Mutation) -> list[str]:
+        """Return tests that reach a statement, in the order in which they are asked.
+
+        Each function is asked once before any is asked again, those first that take little time
+        and reach few other lines; of the functions that draw random mechanisms one mechanism
+        follows every two other tests. For C those are asked first that reach much of the module
+        and ask whether all ways agree: what they compile is small.
         """
         found, compiled = self.reaching(mutation), not mutation.file.endswith(".py")
         there = [test for test in found if (ROOT / test.partition("::")[0]).exists()]
         much = max(found.values(), default=0) // 2
-        size = {test: min(found[test], much) if compiled else found[test] for test in there}
-        least = sorted(there, key=lambda test: (-size[test], self.counts[test], test))
+
+        def worth(test: str) -> tuple[float, float, str]:
+            seconds = 0.2 + self.seconds.get(test, 1.0)
+            share = -min(found[test], much) if compiled else 0.0
+            return share, seconds * self.counts[test] ** 0.5, test
+
         asked, turns = Counter(), {}
-        for test in least:
+        for test in sorted(there, key=worth):
             function = test.partition("[")[0]
             turns[test] = compiled and "tests/agree/" not in test, asked[function]
             asked[function] += 1
-        ordered = sorted(least, key=turns.__getitem__)
-        drawn = [test for test in ordered if "test_random" in test][:RANDOM]
-        others = [test for test in ordered if test not in drawn]
-        return [*others[:FIRST], *drawn, *others[FIRST:]]
+        ordered = sorted(turns, key=turns.__getitem__)
+        drawn = [test for test in ordered if "test_random" in test]
+        others = [test for test in ordered if "test_random" not in test]
+        mixed: list[str] = []
+        while others or drawn:
+            mixed += [*others[:2], *drawn[:1]]
+            others, drawn = others[2:], drawn[1:]
+        return mixed[:MOST]
 
 
 def place() -> Path:
@@ -236,49 +257,47 @@ class Copy:
 
     def run(self, tests: list[str], seconds: float) -> tuple[int | None, list[str], float]:
         """Return pytest's status, None if the seconds are over; failed tests; seconds taken."""
-        options = ["-x", "-n0", "-rfE", "--tb=no", "-o", f"cache_dir={self.root / '.cache'}"]
+        options = ["-x", f"-n{PROCESSES}", "--maxschedchunk=1", "-rfE", "--tb=no"]
+        options += ["-o", f"cache_dir={self.root / '.cache'}"]
         given = {"cwd": self.root, "env": os.environ | {"PYTHONPATH": str(self.root)}}
         with tempfile.TemporaryFile("w+") as out:
             command = [sys.executable, "-m", "pytest", *options, *tests]
             process = psutil.Popen(
                 command, stdout=out, stderr=subprocess.STDOUT, start_new_session=True, **given
             )
-            spent = 0.0
-            while process.poll() is None and spent < seconds:
+            spent: dict[int, float] = {}
+            while process.poll() is None and sum(spent.values()) < seconds:
                 time.sleep(0.2)
-                spent = max(spent, _spent(process))
+                _note_spent(process, spent)
             status = process.poll()
             if status is None:
                 os.killpg(process.pid, 9)
                 process.wait()
             out.seek(0)
             failed = re.findall(r"^(?:FAILED|ERROR) (.*?)(?: - .*)?$", out.read(), re.MULTILINE)
-        return status, failed, spent
+        return status, failed, sum(spent.values())
 
     def judge(self, tests: list[str], seconds: float) -> tuple[str, str]:
-        """Return a verdict on the mutation that is applied, and the test that notices it."""
+        """Return a verdict on the mutation that is applied, and the test that notices it.
+
+        Tests that are not there, and a package that cannot be imported, are no verdict of a test.
+        """
         if not tests:
             return "unreached", ""
-        many = FIRST + RANDOM
-        batches = [tests[:many], *(tests[k : k + NEXT] for k in range(many, len(tests), NEXT))]
-        for batch in batches:
-            status, failed, spent = self.run(batch, seconds)
-            seconds -= spent
-            if status not in (0, None):
-                return "noticed", (failed or [f"pytest ends with status {status}"])[0]
-            if status is None or seconds <= 0:
-                return "unnoticed", "its time is over"
-        return "unnoticed", f"{len(tests)} tests pass"
+        status, failed, _ = self.run(tests, PROCESSES * seconds)
+        if status is None:
+            return "unnoticed", "its time is over"
+        if status == 0:
+            return "unnoticed", f"{len(tests)} tests pass"
+        return ("noticed", failed[0]) if failed else ("noticed", f"pytest ends with {status}")
 
 
-def _spent(process: psutil.Process) -> float:
-    """Return seconds of the processor that a process and its children took."""
-    spent = 0.0
+def _note_spent(process: psutil.Popen, spent: dict[int, float]) -> None:
+    """Keep the seconds of the processor that a process and each of its children took."""
     with suppress(psutil.NoSuchProcess):
         for one in (process, *process.children(recursive=True)):
             with suppress(psutil.NoSuchProcess):
-                spent += sum(one.cpu_times()[:4])
-    return spent
+                spent[one.pid] = max(spent.get(one.pid, 0.0), sum(one.cpu_times()[:2]))
 
 
 def equivalent() -> dict[str, str]:
@@ -327,7 +346,8 @@ def main() -> None:
     if asked.task == "draw":
         draw(asked.seed, asked.count, asked.seconds, Map(place()))
         return
-    options = [f"--cov={PACKAGE.name}", "--cov-context=test", "--cov-report=", "--cov-append"]
+    options = [f"--cov={PACKAGE.name}", "--cov-branch", "--cov-context=test", "--cov-report="]
+    options += ["--cov-append", f"--junitxml={place().with_suffix('.xml')}"]
     environment = os.environ | {"COVERAGE_FILE": str(place())}
     command = [sys.executable, "-m", "pytest", *options, *more]
     sys.exit(subprocess.run(command, cwd=ROOT, env=environment).returncode)
