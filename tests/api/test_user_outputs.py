@@ -6,7 +6,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from lagrange_casadi import Mechanism, Scene, derive, evaluate, motion
+from lagrange_casadi import Mechanism, Scene, derive, elements, evaluate, motion
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
 
 pytestmark = pytest.mark.usefixtures("interpreted")
@@ -165,3 +165,16 @@ def test_what_equilibrium_leaves_open_leaves_them_open():
 def test_misuse_is_told(declare, error, told):
     with pytest.raises(error, match=told):
         engine(more=declare)
+
+
+def test_an_effort_of_what_is_no_drive_is_refused():
+    """That of a cylinder which is none is zero in the cylinder's own outputs alone."""
+    m = Mechanism("lift")
+    boom = m.link("boom", length=1.0, mass=5.0)
+    m.revolute("O", m.ground, boom)
+    base = m.ground.at(0.5, -0.3)
+    ram = elements.cylinder(m, "ram", base, boom, bore=0.05, rod=0.03, closed=0.1)
+    m.output("push", m.results.effort(ram.slide))
+    scene = Scene(m, {"O": motion.polynomial(0.3)}, t=(0, 0, 1), posture={"ram_barrel": 2.5})
+    with pytest.raises(DeclarationError, match="made of effort:ram, but joint 'ram' is not a drive"):
+        evaluate(scene)

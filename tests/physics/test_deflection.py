@@ -64,6 +64,19 @@ def test_a_cantilever_with_a_load_at_its_tip(shape):
     assert series == pytest.approx(abs(found.tip["across"]), rel=1e-12)
 
 
+def test_a_tip_that_lags_behind_an_arm_that_starts():
+    """11 w l^4/120EI + w l^2/3GAs, for loads that grow from none at the hub to w at the tip."""
+    m, shape = Mechanism("starting"), SHAPES[0]
+    m.set_gravity(0.0, 0.0)
+    arm = m.link("arm", length=LENGTH, beam=beams.Beam(shape, STEEL))
+    m.revolute("O", m.ground, arm)
+    found = tool_deflection(Scene(m, {"O": polynomial(0.0, 0.0, 15.0)}, t=(0, 0, 1)), arm.tip)
+    p = shape.properties()
+    w = 30.0 * LENGTH * STEEL.density * p.area
+    lag = 11 * w * LENGTH**4 / (120 * E * p.iz) + w * LENGTH**2 / (3 * G * p.shear_y)
+    np.testing.assert_allclose(found.moved, [[0.0, -lag]], rtol=1e-10, atol=1e-10 * lag)
+
+
 def test_in_space_it_is_a_frame_s():
     """Bent both ways, pulled and twisted."""
     m, shape = SpatialMechanism("arm"), beams.rectangle(0.03, 0.05)
