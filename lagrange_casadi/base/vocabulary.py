@@ -43,5 +43,5 @@ TIME_LIMIT = 60.0
 SIMPLE = "four_bar"
 """The case that another one begins as."""
 
-LOAD_FORMATS = ("json", "csv", "inp", "nas", "beam")
+LOAD_FORMATS = ("json", "csv", "inp", "beam")
 """Formats of load cases for finite elements."""

@@ -344,8 +344,8 @@ def cache() -> Body:
 @several(
     "--format",
     None,
-    "Write this format; repeatable. inp is included by input files of CalculiX and Abaqus, nas by"
-    " Nastran's; beam is a model that CalculiX runs. Default: all.",
+    "Write this format; repeatable. inp is included by input files of CalculiX and Abaqus; beam is"
+    " a model that CalculiX runs. Default: all.",
     kind=click.Choice(LOAD_FORMATS),
     into="formats",
 )

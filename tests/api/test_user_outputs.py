@@ -176,5 +176,5 @@ def test_an_effort_of_what_is_no_drive_is_refused():
     ram = elements.cylinder(m, "ram", base, boom, bore=0.05, rod=0.03, closed=0.1)
     m.output("push", m.results.effort(ram.slide))
     scene = Scene(m, {"O": motion.polynomial(0.3)}, t=(0, 0, 1), posture={"ram_barrel": 2.5})
-    with pytest.raises(DeclarationError, match="made of effort:ram, but joint 'ram' is not a drive"):
+    with pytest.raises(DeclarationError, match="of effort:ram, but joint 'ram' is not a drive"):
         evaluate(scene)

@@ -16,13 +16,13 @@ from ...base.publish import filling
 from ...base.vocabulary import LOAD_FORMATS
 from ...errors import DeclarationError, UnknownNameError, shown
 from .beam_model import beam_model
+from .calculix import calculix
 from .loads import Load, LoadCase, nodes_of
-from .solver_text import calculix, nastran
 
 _NAME = re.compile(r"[^\s,*][^\r\n,]*")
 """Names of nodes in input files: no comma, and no beginning of a keyword or a comment."""
 
-_SOLVERS = {"inp": ("inp", calculix), "nas": ("nas", nastran), "beam": ("beam.inp", beam_model)}
+_SOLVERS = {"inp": ("inp", calculix), "beam": ("beam.inp", beam_model)}
 """Endings of files of one load case, and their lines, by format."""
 
 _FIELDS = {
@@ -61,18 +61,17 @@ def write_load_cases(
     folder
         The folder; files of other names in it stay.
     formats
-        Of ``json``, ``csv``; ``inp`` and ``nas``, which input files of CalculiX or Abaqus, and of
-        Nastran include; ``beam``, for a link with a beam an input file of CalculiX that runs.
+        Of ``json``, ``csv``; ``inp``, which input files of CalculiX or Abaqus include; ``beam``,
+        for a link with a beam an input file of CalculiX that runs.
     nodes
         Names of node sets or numbers of nodes in your mesh, by names of joints and loads; by the
-        name of a link that of its element set. Default: these names themselves, and for Nastran
-        1, 2, ...
+        name of a link that of its element set. Default: these names themselves.
 
     Returns
     -------
     tuple of str
         Names of the files: LINK.json, LINK.csv and LINK.inertia.csv, and for each load case
-        LINK_1.inp, LINK_1.nas, LINK_1.beam.inp, ...
+        LINK_1.inp, LINK_1.beam.inp, ...
 
     Raises
     ------
