@@ -285,7 +285,7 @@ COMPARISONS = (
         for e in range(5, 9)
     ),
     Comparison("designs-1000", "1000 lengths of the rod x 128 instants, all 40 outputs", "designs",
-               ("lanes", "c", "vm", *_HAND), "by hand", "ns/instant", t=128, designs=1000),
+               ("lanes", "c", *_HAND), "by hand", "ns/instant", t=128, designs=1000),
     *(
         Comparison(f"chain-{n}", f"efforts of an open chain of {n} links, 1000 instants", "efforts",
                    (*_ENGINE, "pinocchio rnea", "pinocchio native", "dynibo", "pinocchio casadi"),

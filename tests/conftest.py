@@ -122,17 +122,16 @@ def interpreted():
 
     Compiled code has the same numbers: test_codegen, test_lanes and test_every_way show that.
     """
-    compiled = backends.compiled
+    evaluator = backends.evaluator
 
-    def asked(method, build):
-        return (
-            None
-            if method.backend == "auto" and method.precision == "double"
-            else compiled(method, build)
-        )
+    def asked(program, stages, method):
+        if method.backend != "auto" or method.precision == "single":
+            return evaluator(program, stages, method)
+        interpreter = backends.Interpreter(program, stages, method.newton)
+        return interpreter, backends.provenance(method, None)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(backends, "compiled", asked)
+        patch.setattr(backends, "evaluator", asked)
         yield
 
 

@@ -13,6 +13,9 @@ import numpy.typing as npt
 Array = npt.NDArray[np.float64]
 """Numbers in double precision."""
 
+Flags = npt.NDArray[np.bool_]
+"""True or False for each of some things."""
+
 Expression: TypeAlias = Any
 """An expression of CasADi, or a number in its place. CasADi's own types have no such union: its
 functions take one or the other.

@@ -7,8 +7,12 @@ from typing import Literal
 Precision = Literal["double", "single"]
 PRECISIONS: tuple[Precision, ...] = ("double", "single")
 
-Backend = Literal["auto", "lanes", "c", "vm"]
-BACKENDS: tuple[Backend, ...] = ("auto", "lanes", "c", "vm")
+Compiled = Literal["auto", "lanes", "c"]
+COMPILED: tuple[Compiled, ...] = ("auto", "lanes", "c")
+"""Backends of designs."""
+
+Backend = Literal[Compiled, "vm"]
+BACKENDS: tuple[Backend, ...] = (*COMPILED, "vm")
 
 Keep = Literal["peaks", "laws", "histories"]
 KEEPS: tuple[Keep, ...] = ("peaks", "laws", "histories")

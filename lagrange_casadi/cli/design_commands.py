@@ -18,7 +18,7 @@ from .options import (
     PATH,
     at_values,
     axis,
-    backend,
+    backend_of_designs,
     bounds,
     choice,
     conditions,
@@ -28,6 +28,7 @@ from .options import (
     flag,
     instants,
     length,
+    method_of_designs,
     named,
     over,
     pair,
@@ -40,7 +41,6 @@ from .options import (
     share,
     table_file,
     tolerance,
-    untabled_method,
     value,
     wanted,
 )
@@ -89,7 +89,7 @@ from .options import (
     "--fluctuation",
     "Store the fluctuation of energy of each drive as well, for which a flywheel is sized.",
 )
-@untabled_method
+@method_of_designs
 @value(
     "--workers",
     click.IntRange(1, MOST_THREADS),
@@ -199,7 +199,7 @@ def table() -> Body:
 )
 @settings_by("Set a parameter that is not chosen, as l=0.25 or phi=30deg; repeatable.")
 @instants()
-@backend(" designs")
+@backend_of_designs
 @value(
     "--dask", str, "ADDRESS", "Search on the cluster of this Dask scheduler, as tcp://HOST:8786."
 )
@@ -389,7 +389,7 @@ def drive() -> Body:
 @at_values
 @wanted("Compute these outputs, as in run; repeatable. Default: those of the case.")
 @value("--samples", int, "NUMBER", "Draw this number of designs at random.", default=SAMPLES)
-@backend(" designs")
+@backend_of_designs
 @table_file("Write the peaks as CSV, one row per quantity.")
 def tolerances() -> Body:
     """Compute the scatter of the peaks of CASE within tolerances.

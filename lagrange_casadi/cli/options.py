@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 import click
 
 from ..base.numerals import real, whole
-from ..base.vocabulary import BACKENDS, PRECISIONS
+from ..base.vocabulary import BACKENDS, COMPILED, PRECISIONS
 from ..errors import DeclarationError
 from .help import Body
 
@@ -374,15 +374,16 @@ def file(name: str, says: str, *, metavar: str | None = None, required: bool = F
     return click.option(name, type=PATH, metavar=metavar, required=required, help=says)
 
 
-def backend(designs: str = "") -> Option:
-    """Backend of an evaluation, or of ``" designs"``."""
-    return choice(
-        "--backend",
-        BACKENDS,
-        "auto",
-        f"Evaluate{designs} with SIMD in C++ (lanes), with C, or with CasADi's virtual machine"
-        " (vm).",
-    )
+_BACKEND = choice(
+    "--backend",
+    BACKENDS,
+    "auto",
+    "Evaluate with SIMD in C++ (lanes), with C, or with CasADi's virtual machine (vm).",
+)
+
+backend_of_designs = choice(
+    "--backend", COMPILED, "auto", "Evaluate designs with SIMD in C++ (lanes), or with C."
+)
 
 
 _PRECISION = choice(
@@ -502,11 +503,11 @@ def conditions(rows: str) -> Option:
     )
 
 
-method = _together(backend(), _PRECISION, _NEWTON, _TABLE, _FLAGS)
+method = _together(_BACKEND, _PRECISION, _NEWTON, _TABLE, _FLAGS)
 """The options of a :class:`.EvaluationMethod`."""
 
-untabled_method = _together(backend(), _PRECISION, _NEWTON, _FLAGS)
-"""Options of an evaluation without a table."""
+method_of_designs = _together(backend_of_designs, _PRECISION, _NEWTON, _FLAGS)
+"""The options of a method that evaluates designs."""
 
 arithmetic = _together(_PRECISION, _NEWTON, _TABLE)
 """Options that do not concern the compiler."""

@@ -18,7 +18,8 @@ from ..base.quantities import AVERAGED, Output
 from ..base.streams import is_standard_output
 from ..base.table_file import TableFile
 from ..base.vocabulary import Backend
-from ..errors import DeclarationError
+from ..engine.instants.backends import peak_search
+from ..errors import CompilerError, DeclarationError
 from ..model import revolutions
 from ..model.description import beams_of, fitted_of, kinds_of_described, pieces_of, values_of
 from ..model.scene import Scene
@@ -76,6 +77,8 @@ def run(
     out = target("--out", out, str(usual), HDF5)
     folder = None if no_figures else figures or Path(f"{loaded.name}_figures")
     _check_places(out, folder, csv)
+    if refine_peaks:
+        peak_search()  # so that a compiler that lacks is named at once
     solution = evaluate(
         scene,
         wanted=wanted,
@@ -236,7 +239,7 @@ def slope_lines(solution: Solution, scene: Scene, backend: Backend) -> Iterator[
     try:
         found = sensitivities(scene, solution, backend=backend)
         changes = found.peaks(names)
-    except DeclarationError as error:  # of a table that is very rough
+    except (CompilerError, DeclarationError) as error:  # such as of a very rough table
         yield f"derivatives of peaks are not available: {error}"
         return
     units = {name: solution.description["parameters"][name]["unit"] for name in by}

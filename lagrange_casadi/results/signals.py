@@ -1,5 +1,5 @@
-"""The quantities of a scene as curves over time, at any times: what :mod:`.peak_search` searches,
-by CasADi's virtual machine.
+"""The quantities of a scene as curves over time, at any times, by CasADi's virtual machine: what
+the search for peaks is handed.
 """
 
 from __future__ import annotations
@@ -12,18 +12,13 @@ from typing import Protocol, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..base.arrays import Array, Operand
-from ..base.quantities import Output, parts_along
+from ..base.arrays import Array, Flags, Operand
+from ..base.quantities import Output
 from ..base.status import Status
-from ..base.tables import table_of
-from ..engine.codegen.search import Search
-from ..engine.instants.backends import Interpreter
-from ..engine.peak_search.between import Flags
-from ..engine.peak_search.intervals import Curves, Listed, Peaks, Samples
-from ..engine.peak_search.search import peaks
-from ..engine.peak_search.sharpness import Sharpness, bent
+from ..engine.codegen.search import Curves, Listed, Peaks, Samples
+from ..engine.instants.backends import Interpreter, peak_search
+from ..engine.sharpness import Sharpness, bent
 from ..model.density import NumericDensity
-from ..model.description import Description, density_of, in_space
 from .laws import law_of
 from .sizes import size_of
 
@@ -62,21 +57,6 @@ class SectionForce:
         return places.T, values.T
 
 
-def section_forces(
-    description: Description, link: str, rows: Mapping[Output, int]
-) -> dict[str, SectionForce]:
-    """The section forces of a link of a described mechanism by name; ``rows`` are those of all
-    outputs.
-    """
-    body = description["bodies"][link]
-    length, density = body["length"], density_of(body)
-    of_link = parts_along(rows, link)
-    return {
-        force: SectionForce(force, link, of_link, length, density)
-        for force in table_of(in_space(description)).forces
-    }
-
-
 Quantity: TypeAlias = "tuple[int, ...] | Along"
 """A column, some that are the components of a vector whose size is meant, or what is known along a
 link, as a section force.
@@ -89,7 +69,7 @@ class Signals:
     coordinates ``z`` there.
 
     ``turned`` are, by the number of an angle that loops set, its values at the instants, which show
-    its turns. ``rounding`` (watched, 1) is how far from zero each of the watched counts as zero.
+    its turns.
     """
 
     interpreter: Interpreter
@@ -99,22 +79,20 @@ class Signals:
     p: Array
     z: Array
     turned: Mapping[int, Array] = field(default_factory=dict)
-    rounding: Array | float = 0.0
 
     def peaks(
         self,
         units: Sequence[int],
         scales: Sequence[float] = (),
-        search: Search | None = None,
         listed: Listed | None = None,
-        sampled: bool = False,
     ) -> Peaks:
         """The peaks of the quantities over all times between the first instant and the last.
 
         ``units`` numbers the units of all, and ``scales`` gives for each unit how large others are
-        that have it. ``search`` is the compiled search; without it the reference serves. ``listed``
-        says which local peaks are reported too. ``sampled`` peaks are those at the instants.
+        that have it. ``listed`` says which local peaks are reported too. Raises
+        :class:`.CompilerError` where there is no compiler.
         """
+        search = peak_search()
         samples = self.samples(self.t, self.z, np.arange(self.t.size))
         first = self.columns(self.t[:1], self.z[:, :1])
         with np.errstate(all="ignore"):
@@ -125,18 +103,10 @@ class Signals:
         ]
         sharpness = self.sharpness
         watches, knots, depends = sharpness.watches, sharpness.knots, sharpness.dependence(columns)
-        curves = Curves(quantities, tuple(units), tuple(scales), watches, knots, depends)
+        curves = Curves(quantities, tuple(units), watches, depends, knots, tuple(scales))
+        hiding = bent(self.interpreter.program, sharpness, self.t, self.p)
         with np.errstate(all="ignore"):
-            find = peaks if search is None else search.peaks
-            return find(
-                self,
-                curves,
-                self.t,
-                samples,
-                bent(self.interpreter.program, self.sharpness, self.t, self.p),
-                listed,
-                sampled,
-            )
+            return search.peaks(self, curves, self.t, samples, hiding, listed)
 
     def at(self, t: Array) -> Samples:
         """All curves at times; NaN where iterated loops do not close."""
@@ -170,7 +140,6 @@ class Signals:
     def _samples(self, t: Array, z: Array, near: npt.NDArray[np.intp]) -> Samples:
         columns = self.columns(t, z)
         watched = self.sharpness.watched(*self.inputs(t, z)).full()
-        watched[np.abs(watched) <= self.rounding] = 0.0
         with np.errstate(all="ignore"):
             places, values = (
                 np.concatenate(rows) for rows in zip(*self.curves(columns, near), strict=True)

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from numpy.polynomial import chebyshev
 
 from ..base.arrays import Array
-from ..engine.peak_search.fits import interpolation
+from ..base.interpolation import interpolation
 
 _HALVINGS = 60
 _ROUNDING = 2 * float(np.finfo(float).eps)

@@ -1,8 +1,8 @@
 """Peaks between instants: where a quantity is largest over all times of a solution's span.
 
 A peak of sampled values falls short of the true one by a part that goes with the square of the
-step. :mod:`.peak_search` searches between them; here the time derivatives that automatic
-differentiation gives then say at which time a smooth peak is.
+step. The search in C (:mod:`.codegen.search`) finds peaks between the instants; here the time
+derivatives that automatic differentiation gives then say at which time a smooth peak is.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ from ..base.brief import Brief
 from ..base.quantities import Output, compared, parts_along
 from ..base.symbolic import symbolic
 from ..base.tables import LARGEST
+from ..engine.codegen.search import TOPS, Listed, Peaks
 from ..engine.codegen.stages import stages_for
 from ..engine.derive import compile_scene
-from ..engine.instants.backends import Interpreter, searching
-from ..engine.peak_search.intervals import TOPS, Listed, Peaks
-from ..engine.peak_search.sharpness import Sharpness
+from ..engine.instants.backends import Interpreter
 from ..engine.program import Program
 from ..engine.reciprocals import differentiable
+from ..engine.sharpness import Sharpness
 from ..errors import DeclarationError
 from ..model.description import values_of
 from ..model.even_points import EvenPoints, are_even
@@ -258,7 +258,6 @@ class ContinuousSolution(Brief):
     z: Array
     rows: Mapping[Output, int]
     again: Callable[[EvenPoints, Sequence[str]], ContinuousSolution]
-    backend: str
 
     @property
     def program(self) -> Program:
@@ -266,10 +265,10 @@ class ContinuousSolution(Brief):
         return self.interpreter.program
 
     @classmethod
-    def of(cls, scene: Scene, solution: Solution, backend: str = "") -> ContinuousSolution:
-        """Make it from a solution, searched as its backend does, or another one.
+    def of(cls, scene: Scene, solution: Solution) -> ContinuousSolution:
+        """Make it from a solution.
 
-        Raises :class:`.DeclarationError` where it is not one of this scene.
+        Raises :class:`.DeclarationError` where the solution is not one of this scene.
         """
         other = DeclarationError(
             f"the solution of '{solution.case}' is not one of this scene of '{scene.name}'"
@@ -287,15 +286,12 @@ class ContinuousSolution(Brief):
         guess = np.array(program.newton.guess if program.newton else ())
         z, status = np.empty((guess.size, solution.t.size)), np.empty(solution.t.size, np.int32)
         interpreter.follow(solution.t, p, guess, z, status)
-        searched = backend or solution.provenance.backend
 
         def again(t: EvenPoints, names: Sequence[str]) -> ContinuousSolution:
             asked: dict[str, Any] = {"backend": "vm", "certificate": False, "elastic": False}
-            return cls.of(
-                scene, evaluate(scene, parameters=values, t=t, wanted=names, **asked), searched
-            )
+            return cls.of(scene, evaluate(scene, parameters=values, t=t, wanted=names, **asked))
 
-        found = cls(interpreter, solution, p, z, program.outputs, again, searched)
+        found = cls(interpreter, solution, p, z, program.outputs, again)
         if not found.agrees():
             raise other
         return found
@@ -376,7 +372,7 @@ class ContinuousSolution(Brief):
         }
         signals = self.signals([self.quantity(name) for name in sought], turned)
         units, scales = self.scales(sought)
-        searched = signals.peaks(units, scales, searching(self.backend), listed)
+        searched = signals.peaks(units, scales, listed)
         there = {} if searched.tops is None else dict(zip(sought, searched.tops, strict=True))
         tops = np.array([there.get(Output.of(peak.name), nothing) for peak in sampled])
         if solution.t.size == 1:
@@ -409,17 +405,8 @@ class ContinuousSolution(Brief):
             for quantity in quantities
             for k in (quantity if isinstance(quantity, tuple) else quantity.columns.values())
         }
-        sharpness = Sharpness.of(self.program, sorted(columns))
-        signals = Signals(
-            self.interpreter,
-            sharpness,
-            quantities,
-            self.solution.t,
-            self.p,
-            self.z,
-            turned=turned,
-        )
-        return replace(signals, rounding=sharpness.rounding(*signals.inputs(signals.t, signals.z)))
+        sharpness, t = Sharpness.of(self.program, sorted(columns)), self.solution.t
+        return Signals(self.interpreter, sharpness, quantities, t, self.p, self.z, turned)
 
     def quantity(self, output: Output) -> Quantity:
         """Number of a quantity's column."""

@@ -15,9 +15,9 @@ from ..base.arrays import Array
 from ..base.brief import listed
 from ..base.quantities import Output
 from ..base.vocabulary import Backend
+from ..engine.codegen.search import Listed
 from ..engine.instants.evaluation_method import EvaluationMethod
-from ..engine.peak_search.intervals import Listed
-from ..engine.peak_search.sharpness import Sharpness
+from ..engine.sharpness import Sharpness
 from ..errors import DeclarationError, UnknownNameError
 from ..model.scene import Scene
 from ..results.sensitivity.ends import Ends

@@ -140,7 +140,7 @@ def _announce(program: Program, count: int, method: EvaluationMethod, threads: i
         return
     # Iterated loops are followed by one thread.
     shared = 1 if program.newton is not None or method.backend == "vm" else threads
-    takes = seconds(program, count, method, interpreted=method.backend == "vm") / shared
+    takes = seconds(program, count, method) / shared
     if takes > _LONG:
         many, each = (
             f"{count:,}".replace(",", " "),

@@ -18,7 +18,6 @@ from ..base.arguments import public
 from ..base.arrays import Array
 from ..base.quantities import Output, parts_along
 from ..engine.buckling import Column
-from ..engine.instants.backends import searching
 from ..model.even_points import are_even
 from ..model.scene import Scene
 from ..results.solution import Solution
@@ -188,9 +187,7 @@ class _Searched:
                 else np.abs(stress.largest(kind).value)
             )
 
-        found = self.over_time.signals([self._along(size)], {}).peaks(
-            [0], search=searching(self.over_time.backend)
-        )
+        found = self.over_time.signals([self._along(size)], {}).peaks([0])
         peak = Stress(self.at(float(found.t[0]))).peak(kind, notches=sampled.notch)
         best = max(sampled, peak, key=lambda one: abs(one.value))
         return best if found.resolved[0] else replace(best, value=math.nan, least=abs(best.value))

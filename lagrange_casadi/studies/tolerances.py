@@ -16,7 +16,7 @@ from ..base.brief import Brief
 from ..base.numerals import real
 from ..base.status import Status
 from ..base.units import Within, number, typed
-from ..base.vocabulary import SAMPLES, Backend
+from ..base.vocabulary import SAMPLES, Compiled
 from ..errors import DeclarationError, UnknownNameError
 from ..model.parts import Parameter
 from ..model.scene import Scene
@@ -108,7 +108,7 @@ def tolerances(
     t: Times | None = None,
     over: Over | None = None,
     samples: Annotated[int, Within(2, _LARGEST)] = SAMPLES,
-    backend: Backend = "auto",
+    backend: Compiled = "auto",
 ) -> Spreads:
     """Return the spread of peaks if parameters vary within tolerances.
 

@@ -244,11 +244,11 @@ def trade(
     sampled = replace(scene, wanted=scene.wanted if wanted is None else wanted)
     try:
         peaks = tuple(shortfall(sampled, COUNTS, parameters=parameters, t=t, over=over))
-    except (AssemblyError, DeclarationError):
+    except (AssemblyError, CompilerError, DeclarationError):
         peaks = ()
     try:
         searches = _peak_costs(sampled, scene.timing(t, over), values)
-    except (AssemblyError, DeclarationError):
+    except (AssemblyError, CompilerError, DeclarationError):
         searches = ()
     return Trade(
         program.data.name, INSTANTS, truth.compared.size, ordered, refused, peaks, searches

@@ -10,7 +10,7 @@ from compiled import fake_compiler
 from internals import cache, compiler
 from mechanisms import slider_crank
 
-from lagrange_casadi import evaluate
+from lagrange_casadi import evaluate, optimise, prepare, refine, sweep, tolerances
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import CompilerError
 
@@ -149,22 +149,44 @@ def test_a_changed_parameter_derives_and_compiles_nothing(fresh_cache):
     assert sorted(path.suffix for path in before) == [".c", ".graph", ".sha256", ".so"]
 
 
-def test_without_a_compiler_the_virtual_machine_serves_and_says_so(monkeypatch):
+INSTALL = r".* or the package ziglang was found; pip install 'lagrange_casadi\[compiler\]'"
+
+
+@pytest.fixture
+def no_compiler(monkeypatch):
     for variable in ("CC", "CXX"):
         monkeypatch.delenv(variable, raising=False)
     monkeypatch.setenv("PATH", "")
     monkeypatch.setattr(compiler.importlib.util, "find_spec", lambda _: None)
+
+
+def test_without_a_compiler_the_virtual_machine_serves_and_says_so(no_compiler):
     with pytest.warns(UserWarning, match=r"no C or C\+\+ compiler found"):
         solution = evaluate(slider_crank(["effort"]))
     assert solution.provenance.backend == "vm"
-    needs = r"precision 'single' needs a compiler: none of c\+\+, .*, ziglang found"
-    for method, says in (
-        ({"backend": "c"}, "backend 'c' needs a C compiler"),
-        ({"backend": "lanes"}, r"backend 'lanes' needs a C\+\+ compiler"),
-        ({"precision": "single"}, needs),
+    for method, needs in (
+        ({"backend": "c"}, r"backend 'c' needs a C compiler: none of \$CC, "),
+        ({"backend": "lanes"}, r"backend 'lanes' needs a C\+\+ compiler: none of \$CXX, "),
+        ({"precision": "single"}, r"precision 'single' needs a compiler: none of \$CXX, "),
     ):
-        with pytest.raises(CompilerError, match=says):
+        with pytest.raises(CompilerError, match=needs + INSTALL):
             evaluate(slider_crank(["effort"]), **method)
+
+
+def test_peaks_between_instants_and_designs_need_a_compiler(no_compiler, tmp_path):
+    scene, designs = slider_crank(["effort"]), "designs need a compiler: none of "
+    solution = evaluate(scene, backend="vm")
+    searched = {"minimise": "peak:effort:O", "over": {"l": (0.2, 0.3)}}
+    for ask, needs in (
+        (lambda: refine(scene, solution), "peaks between instants need a compiler: none of "),
+        (lambda: prepare(scene), designs),
+        (lambda: sweep(scene, {"l": [0.2, 0.3]}, out=tmp_path / "x.h5"), designs),
+        (lambda: optimise(scene, **searched), designs),
+        (lambda: tolerances(scene, {"l": 0.001}), designs),
+    ):
+        with pytest.raises(CompilerError, match=needs + INSTALL):
+            ask()
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_failing_cxx_compiler_is_said_and_c_serves(tmp_path, fresh_cache, monkeypatch):

@@ -72,7 +72,7 @@ def assert_is_own(scene, row, status):
         evaluate(scene, parameters=values(scene, row), certificate=False)
 
 
-@pytest.mark.parametrize("backend", ["lanes", "c", "vm"])
+@pytest.mark.parametrize("backend", ["lanes", "c"])
 @pytest.mark.parametrize("name", ROWS)
 def test_a_design_has_the_status_of_its_own_evaluation(name, backend):
     make, rows, statuses = ROWS[name]
@@ -83,7 +83,7 @@ def test_a_design_has_the_status_of_its_own_evaluation(name, backend):
 
 
 @pytest.mark.sampled(3)
-@pytest.mark.parametrize("backend", ["lanes", "c", "vm"])
+@pytest.mark.parametrize("backend", ["lanes", "c"])
 @pytest.mark.parametrize("seed", range(4))
 def test_drawn_designs_fail_as_their_own_evaluations(seed, backend):
     """Crank-rockers, double rockers, change points and what cannot be closed; and cranks that are

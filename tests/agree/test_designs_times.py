@@ -22,7 +22,7 @@ FAILS = {2: Status.NO_INSTANTS, 3: Status.NO_INSTANTS, 5: Status.INVALID}
 
 
 @pytest.mark.sampled(19)
-@pytest.mark.parametrize("backend", ["lanes", "c", "vm"])
+@pytest.mark.parametrize("backend", ["lanes", "c"])
 @pytest.mark.parametrize("law", [motion.polynomial, uneven])
 @pytest.mark.parametrize("asked", ASKED)
 def test_designs_are_their_own_evaluations(asked, law, backend):

@@ -57,7 +57,6 @@ def searched(out, **keywords):
         over={"T": (0.5, 2.0)},
         starts=3,
         screen=8,
-        backend="vm",
         out=out,
         **keywords,
     )

@@ -120,7 +120,7 @@ def swept(folder, later):
 
 
 def searched(folder, later):
-    over, words = {"T": (0.5, 2.0)}, {"starts": 2, "screen": 4, "backend": "vm"}
+    over, words = {"T": (0.5, 2.0)}, {"starts": 2, "screen": 4}
     if later:
         out = {"out": folder / "x.h5", "resume": True}
         optimise(arm(), minimise="peak:effort:O", over=over, **words, **out)

@@ -40,7 +40,7 @@ def test_slopes_of_peaks_are_those_of_their_differences(name):
     """
     strong = name == "strength"
     scene = slider() if strong else load_case(CASES / name).scene
-    f = prepare(scene, wanted=STRENGTH if strong else FORCES, backend="vm")
+    f = prepare(scene, wanted=STRENGTH if strong else FORCES)
     gradient, values = f.gradient(), scene.mechanism.values()
     assert not (gradient.kinds == UNKNOWN).any()
     bends, p = None if strong else f.curvature().bends, np.array([*values.values()])
@@ -76,7 +76,7 @@ MOMENT = 3.0 / 2 - 1.0 / 3
 """The first moment of its density, for a length of one."""
 
 
-@pytest.mark.parametrize("backend", ["auto", "c", "vm"])
+@pytest.mark.parametrize("backend", ["auto", "c"])
 def test_a_turning_link_has_the_slopes_of_its_closed_form(backend):
     m, speed, _ = rotor()
     f = prepare(
@@ -171,7 +171,7 @@ def pendulum():
     return Scene(m, {"O": harmonic(0.0, swing, 1.0)}, t=(0.0, 1.0, 38))
 
 
-@pytest.mark.parametrize("backend", ["auto", "vm"])
+@pytest.mark.parametrize("backend", ["auto", "c"])
 def test_a_pendulum_ties_where_a_bias_tells_its_sides_apart(backend):
     scene = pendulum()
     f = prepare(scene, wanted=["effort"], backend=backend)
@@ -209,7 +209,7 @@ def test_what_ties_along_a_link():
         assert abs(f.peaks(tip=value).value[k]) == pytest.approx(10.1)
 
 
-@pytest.mark.parametrize("backend", ["auto", "c", pytest.param("vm", marks=pytest.mark.long)])
+@pytest.mark.parametrize("backend", ["auto", "c"])
 def test_slopes_of_what_friction_at_rest_has_nothing_to_do_with(backend):
     """There they are no numbers only of what depends on friction: of peaks at rest, and of means
     over all instants, of an arm beside a slide that rubs and rests.

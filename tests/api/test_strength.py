@@ -169,7 +169,7 @@ def test_strength_that_is_open_has_no_number(tmp_path):
     says = "equilibrium does not determine axial, so its strength is not evaluated"
     with pytest.raises(DeclarationError, match=says):
         evaluate(scene, **QUIET).safety("a0")
-    found = sweep(scene, {"l": [1.0, 1.1]}, backend="vm", out=tmp_path / "bars.h5")
+    found = sweep(scene, {"l": [1.0, 1.1]}, out=tmp_path / "bars.h5")
     assert command("check", tmp_path / "bars.h5") == 0
     for name in ("least:safety:a0", "least:yield:a0", "least:fatigue:a0", "life:a1"):
         assert np.isnan(found[name]).all(), name
@@ -186,7 +186,7 @@ def test_fatigue_is_open_alike_in_solutions_and_sweeps(names):
     material = STEEL.but(**dict.fromkeys(lacking))
     scene = press(beams.rectangle(0.03, 0.012), material=material, t=(0, 0.2, 5))
     safety = evaluate(scene, **QUIET).safety("rod")
-    found = sweep(scene, {"r": [0.1]}, wanted=["safety:rod"], backend="vm")
+    found = sweep(scene, {"r": [0.1]}, wanted=["safety:rod"])
     why = f"material 'C45+QT' has no {' and no '.join(lacking)}"
     assert safety.not_evaluated == ((f"fatigue: {why}",) if lacking else ())
     ways = {verdict.against for verdict in safety.verdicts}
@@ -197,7 +197,7 @@ def test_fatigue_is_open_alike_in_solutions_and_sweeps(names):
         with pytest.raises(DeclarationError, match=re.escape(why)):
             optimise(scene, minimise="r", **limit)
         with pytest.raises(DeclarationError, match=r"no .*, which output 'life:rod' needs"):
-            sweep(scene, {"r": [0.1]}, wanted=["life:rod"], backend="vm")
+            sweep(scene, {"r": [0.1]}, wanted=["life:rod"])
 
 
 def test_the_lightest_that_does_not_tire_and_is_stiff_is_found():

@@ -105,7 +105,7 @@ ARM = arm()
 
 
 def swept_arm(grid, **words):
-    return sweep(ARM, grid, backend="vm", **words)
+    return sweep(ARM, grid, **words)
 
 
 @settings(max_examples=6)
@@ -360,7 +360,7 @@ def test_the_error_of_sampled_peaks_covers_what_the_instants_miss(drawn, count):
         assert (high[told] <= low[told] + found.error[told]).all()
 
 
-@pytest.mark.parametrize("backend", ["lanes", "c", "vm"])
+@pytest.mark.parametrize("backend", ["lanes", "c"])
 def test_the_error_of_a_wave_is_what_bends_it(backend):
     """An effort proportional to cos(w t): between values y it may rise by half their second
     difference.

@@ -11,12 +11,12 @@ from lagrange_casadi import Sweep
 
 
 def test_sweep_takes_options(here, capfd):
-    options = "--grid m3=0.1:10:3:log --set l=0.3 --xi 0:1:3 --keep histories --backend vm"
+    options = "--grid m3=0.1:10:3:log --set l=0.3 --xi 0:1:3 --keep histories --backend c"
     assert command(f"{ASKED} {options} --workers 1 --quiet --out x.h5") == 0
     found = Sweep.open("x.h5")
     np.testing.assert_allclose(found["m3"], [0.1, 1.0, 10.0], rtol=1e-15)
     assert found["history:section:rod:bending"].shape == (3, 21, 3)
-    assert found.identity["backend"] == "vm"
+    assert found.identity["backend"] == "c"
     assert found.identity["mechanism"]["parameters"]["l"]["value"] == 0.3
     capfd.readouterr()
     assert command(f"{ASKED} {options} --workers 1 --resume --out x.h5") == 0

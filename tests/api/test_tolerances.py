@@ -68,7 +68,7 @@ def test_designs_without_a_result_are_counted():
     ],
 )
 def test_tolerances_are_read_with_their_units(name, value, found):
-    told = tolerances(rotor(), {name: value}, samples=2, backend="vm").tolerances
+    told = tolerances(rotor(), {name: value}, samples=2).tolerances
     assert told == pytest.approx({name: found}, rel=1e-14)
 
 

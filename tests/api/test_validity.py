@@ -76,7 +76,7 @@ def test_all_programs_draw_the_same_line(name, tmp_path):
     assert len(set(expected)) == 2
     assert prepared(scene, VALUES, tmp_path) == expected
     wanted = ["effort"] if name == "plate" else ["effort", "section:arm"]
-    for backend in ("lanes", "c", "vm"):
+    for backend in ("lanes", "c"):
         found = sweep(scene, {"c": VALUES}, wanted=wanted, backend=backend)
         impossible = [found.statuses[int(k)][0] == "impossible" for k in found["status"]]
         assert [not one for one in impossible] == expected

@@ -41,7 +41,7 @@ FILES = {
 
 TYPED = {
     "run": "case.py --backend vm --no-figures --out a.h5",
-    "sweep": "case.py --backend vm --grid l=0.2:0.3:2 --want effort --quiet --out b.h5 --force",
+    "sweep": "case.py --grid l=0.2:0.3:2 --want effort --quiet --out b.h5 --force",
     "best": "sweep.h5 --minimise peak:effort:O",
     "table": "sweep.h5",
     "trade": "case.py --want effort",
@@ -51,8 +51,8 @@ TYPED = {
     "animate": "run.h5 --out f.svg",
     "info": "case.py",
     "check": "run.h5",
-    "optimise": "case.py --backend vm --minimise l --over l=0.2:0.3 --starts 1 --screen 2 --force",
-    "tolerances": "case.py --backend vm --tolerance l=0.01 --want effort --samples 4",
+    "optimise": "case.py --minimise l --over l=0.2:0.3 --starts 1 --screen 2 --force",
+    "tolerances": "case.py --tolerance l=0.01 --want effort --samples 4",
     "size": "case.py --profiles profiles.csv",
     "drive": "case.py --motors motors.csv",
     "new": "begun",
@@ -406,6 +406,7 @@ SENTENCES = [
     ),
     ("run CASE --xi 0:2:5", 2, "ratios xi/l must lie in [0, 1]"),
     ("run CASE --backend gpu", 2, "'gpu' is not one of 'auto', 'lanes', 'c', 'vm'"),
+    ("sweep CASE --grid l=1:2:3 --backend vm", 2, "'vm' is not one of 'auto', 'lanes', 'c'"),
     (
         "run CASE --out nowhere/x.h5",
         2,
@@ -646,15 +647,16 @@ def test_a_compiler_that_fails_or_lacks_is_one_line(here, capfd, monkeypatch, tm
         " from lagrange_casadi.cli import main; sys.exit(main())"
     )
     asked = [sys.executable, "-c", program, *words("run CASE --t 0:0.08:11 --no-figures")]
+    other_ways = [], ["--backend", "c"], ["--refine-peaks"]
     bare = {
         "capture_output": True,
         "text": True,
         "env": {"PATH": "", "XDG_CACHE_HOME": str(folder)},
     }
-    done = [
-        subprocess.run([*asked, *more], check=False, **bare) for more in ([], ["--backend", "c"])
-    ]
-    assert [one.returncode for one in done] == [0, 1]
+    done = [subprocess.run([*asked, *more], check=False, **bare) for more in other_ways]
+    assert [one.returncode for one in done] == [0, 1, 1]
     assert done[0].stderr.startswith("note: no C or C++ compiler found")
+    assert "backend vm; largest at the instants:" in done[0].stdout
     assert "backend 'c' needs a C compiler" in done[1].stderr
+    assert "peaks between instants need a compiler" in done[2].stderr
     assert os.listdir(here) == ["slider_crank.h5"]

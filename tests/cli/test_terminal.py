@@ -84,7 +84,7 @@ def respell(path, word, other):
                 item.attrs[name] = other.encode(errors="ignore").decode()
 
 
-ASKED = "CASE --t 0:0.08:5 --want effort --backend vm --out"
+ASKED = "CASE --t 0:0.08:5 --want effort --backend c --out"
 MADE = {
     "run": f"run {ASKED} run.h5 --xi 0:1:3 --want section:rod --no-figures",
     "sweep": f"sweep {ASKED} sweep.h5 --grid l=0.2,0.3 --grid r=0.05,0.1 --quiet",

@@ -67,11 +67,9 @@ def solved() -> SimpleNamespace:
         duty=duty,
         motor=motor,
         stress=solution.stress("arm"),
-        prepared=prepare(scene, wanted=["effort"], backend="vm"),
+        prepared=prepare(scene, wanted=["effort"]),
         sensitivities=sensitivities(scene, solution, backend="vm"),
-        swept=sweep(
-            scene, {"l": (0.2, 0.3, 2)}, wanted=["effort"], backend="vm", out="swept.h5", workers=1
-        ),
+        swept=sweep(scene, {"l": (0.2, 0.3, 2)}, wanted=["effort"], out="swept.h5", workers=1),
         plane=plane(),
     )
 
@@ -82,8 +80,7 @@ def uses(of: SimpleNamespace) -> Iterator[tuple[str, Call]]:
     peaks = importlib.import_module("lagrange_casadi.peaks")
     scene, solution, swept = of.scene, of.solution, of.swept
     both = {"scene": scene, "solution": solution}
-    lean = {"scene": scene, "wanted": ["effort"], "backend": "vm"}
-    bare = {"scene": scene, "backend": "vm"}
+    lean = {"scene": scene, "wanted": ["effort"]}
     one = {"l": (0.2, 0.3, 2)}
     t = np.linspace(0.0, 1.0, 9)
     columns = {"O": np.linspace(0.0, 1.0, 9) ** 2, "effort:O": np.ones(9)}
@@ -96,7 +93,7 @@ def uses(of: SimpleNamespace) -> Iterator[tuple[str, Call]]:
         {
             "compile_scene": {"scene": scene, "wanted": ["effort"]},
             "derive": {"scene": scene, "wanted": ["effort"]},
-            "evaluate": {**lean, "certificate": False},
+            "evaluate": {**lean, "certificate": False, "backend": "vm"},
             "prepare": lean,
             "refine": {**both, "names": ["effort:O"]},
             "sensitivities": {**both, "backend": "vm"},
@@ -106,7 +103,7 @@ def uses(of: SimpleNamespace) -> Iterator[tuple[str, Call]]:
             "vibration": {"solution": solution, "link": "arm"},
             "sweep": {**lean, "grid": one, "out": "made.h5", "force": True, "workers": 1},
             "optimise": {
-                **bare,
+                "scene": scene,
                 "minimise": "l",
                 "over": {"l": (0.2, 0.3)},
                 "starts": 1,

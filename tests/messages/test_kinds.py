@@ -134,11 +134,11 @@ WRONG = {
     "instants": (lambda s: evaluate(s, t={}), "t: expected (start, stop, count), got {}"),
     "flags": (lambda s: prepare(s, flags=None), "flags: expected options of a compiler, got None"),
     "prepared": (
-        lambda s: prepare(s, backend="vm")([0.3]),
+        lambda s: prepare(s)([0.3]),
         "expected values by name, as {'l': 0.25}, got [0.3]",
     ),
     "prepared numbers": (
-        lambda s: prepare(s, backend="vm")(0.3, 0.2),
+        lambda s: prepare(s)(0.3, 0.2),
         "expected values by name, as {'l': 0.25}, got 0.3",
     ),
     "a scene's": (

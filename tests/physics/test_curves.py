@@ -192,7 +192,7 @@ def test_an_argument_beyond_the_ends_is_refused_by_name(kind, backend):
     )
     with pytest.raises(AssemblyError, match=says):
         evaluate(scene, parameters={"swing": 0.75}, backend=backend)
-    found = prepare(scene, backend=backend).designs(np.array([[0.5, 0.5], [0.5, 0.75], [0.5, 0.6]]))
+    found = prepare(scene).designs(np.array([[0.5, 0.5], [0.5, 0.75], [0.5, 0.6]]))
     assert (found.status == 0).tolist() == [True, False, True]
     assert evaluate(scene, wanted=["motion"], parameters={"swing": 0.75}).certified
 

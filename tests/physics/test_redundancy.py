@@ -63,7 +63,7 @@ def test_what_is_open_is_decided_for_the_parameters_that_are_evaluated(backend):
     np.testing.assert_allclose(leaning.effort("G0"), torque, rtol=1e-13)
 
 
-@pytest.mark.parametrize("backend", ["lanes", "vm"])
+@pytest.mark.parametrize("backend", ["lanes", "c"])
 def test_what_the_defaults_leave_open_is_told_of_designs_that_determine_it(backend):
     """The defaults lean: alone they would say that nothing is there; upright cranks have it all the
     same.

@@ -79,7 +79,7 @@ def test_a_drawer_pushed_beside_its_guide(backend):
             evaluate(scene, parameters={"length": length}, backend=backend)
 
 
-@every
+@pytest.mark.parametrize("backend", ["lanes", "c"])
 def test_designs_that_jam_have_no_numbers(backend):
     ready = prepare(pushed_beside(), backend=backend)
     found = ready.designs(np.array([[0.2, 0.1], [0.2, 0.08], [0.2, 0.05], [0.1, 0.05]]))

@@ -86,7 +86,7 @@ def files() -> Iterator[str]:
             yield from _file(Path(folder) / f"{name}.h5")
         scene = mechanisms.slider_crank(wanted=["effort", "section:rod", "reaction:guide"])
         grid, out = {"l": (0.2, 0.3, 2)}, Path(folder) / "sweep.h5"
-        sweep(scene, grid, out=out, backend="vm", keep="histories", workers=1)
+        sweep(scene, grid, out=out, backend="c", keep="histories", workers=1)
         yield from _file(out)
 
 

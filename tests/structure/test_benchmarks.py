@@ -24,7 +24,7 @@ ARM = ("arm", "arm c", "arm x cores")
 FILLS = {
     ("instants", (*ENGINE, "by hand", "by hand, vectors", "numpy")): {"t": 21},
     ("sections", (*ENGINE, "by hand", "numpy")): {"t": 21, "xi": 9},
-    ("designs", (*ENGINE, "by hand", "numpy")): {"t": 21, "designs": 3},
+    ("designs", (*ENGINE[:3], "by hand", "numpy")): {"t": 21, "designs": 3},
     ("efforts", ENGINE): {"t": 11, "links": 3},
     ("fill", ("memcpy", "fill", "fill x cores")): {"t": 30, "xi": 9},
     ("arm_efforts", ARM): {"t": 11},

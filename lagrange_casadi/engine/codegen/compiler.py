@@ -138,6 +138,9 @@ and costs.
 _RARE = "LAGRANGE_CASADI_RARE "
 """First word of functions that are compiled for size, after ``static``."""
 
+INSTALL = "pip install 'lagrange_casadi[compiler]'"
+"""The command that installs a compiler."""
+
 _NAMES: dict[Language, tuple[str, tuple[str, ...]]] = {
     "c": ("CC", ("cc", "gcc", "clang")),
     "c++": ("CXX", ("c++", "g++", "clang++")),
@@ -166,6 +169,15 @@ def statements(source: str) -> int:
     """
     functions = source.split("\nstatic ")
     return sum(text.count(";\n") for text in functions if not text.startswith(_RARE))
+
+
+def no_compiler(needs: str, *languages: Language) -> CompilerError:
+    """Message that something needs a compiler, of one of ``languages`` or of any, and how to
+    install one.
+    """
+    tried = (_NAMES[language] for language in languages or ("c++", "c"))
+    words = ", ".join(name for variable, names in tried for name in (f"${variable}", *names))
+    return CompilerError(f"{needs}: none of {words} or the package ziglang was found; {INSTALL}")
 
 
 def find_compiler(language: Language = "c") -> Compiler | None:

@@ -14,11 +14,10 @@ import numpy.typing as npt
 from ...base.compensated import DTYPES
 from ...base.threads import in_threads
 from ...base.vocabulary import Precision
-from ..peak_search.intervals import Listed
 from .compiler import Compiler, entry_of, loaded, packed, statements
 from .emit import EVALUATE, FOLLOW, INSTANTS
 from .reduction import CALL, DESIGNS, Reduction
-from .search import Search, Tables, load_search
+from .search import Listed, Search, Tables, load_search
 
 if TYPE_CHECKING:
     from _ctypes import CFuncPtr

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from ...base.arrays import Expression
+from ...base.interpolation import interpolation
 from ...base.tables import SPACE
 from ...model.density import shifted
-from ..peak_search.fits import interpolation
 from .compiler import written
 
 

@@ -10,20 +10,19 @@ from typing import Any
 
 import numpy as np
 
+from ...base.arrays import Flags
 from ...base.compensated import DTYPES
 from ...base.status import Status
 from ...base.vocabulary import Precision
 from ...model.limits import END
 from ..dead_centres import CLOSURES, FAR, POINTS, ROUNDS, TOUCHES
-from ..peak_search.between import Flags
-from ..peak_search.intervals import TOPS
-from ..peak_search.sharpness import Watch
 from ..program import Program
+from ..sharpness import Watch
 from .calls import Call
 from .compiler import written
 from .link_curves import Along, along, turning
 from .printer import defined, function_name, print_functions
-from .search import BASE, OFF, TIP, Tables, interface
+from .search import BASE, OFF, TIP, TOPS, Tables, interface
 
 DESIGNS = "lagrange_casadi_designs"
 CALL = Call(

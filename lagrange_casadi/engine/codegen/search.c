@@ -1,9 +1,13 @@
-/* What is largest of each quantity, at the instants and between them: the same search as in engine/peak_search/search.py, which is the
-   reference: tests hold this to it.
+/* The largest size of each quantity over all times of a span, from its values at equal steps and at more times where these leave it open.
 
    A panel is a row of equal steps with the values at their ends. In each step every curve is bounded; what could rise above the largest
    size so far is looked at, a pack at once: a polynomial through seven values says where, and what it misses there says whether it is to
-   be believed. A step that this leaves open, or in which something may hide, becomes a panel of its own. */
+   be believed. A step that this leaves open, or in which something may hide, becomes a panel of its own, or two where it is known where
+   in the step a kink or a jump is, of steps a ninth as long, and so on, until all are closed, or so short that nothing but a jump, a kink
+   or a pole is left in them. Where that takes too many panels, or a quantity keeps growing slowly, its peak is not located.
+
+   Where friction at rest leaves a curve open at an instant, the steps beside it are searched by themselves from where, or up to where, it
+   is a number. */
 /* Packs that are screened at once. */
 #ifndef SEARCH_CHUNK
 #define SEARCH_CHUNK 8

@@ -1,9 +1,8 @@
-"""The search for peaks in C: one library for every scene, which is handed its curves as tables, and
-what evaluates them.
+"""The search for peaks between instants, in C (``search.c`` and its neighbours): one library for
+every scene, which takes curves as tables, and a function that evaluates the curves.
 
-It does what :mod:`.peak_search.search` does, which is the reference. The compiled code of many
-designs calls it with a pointer to its own function of times; :meth:`Search.peaks` calls it with a
-function of Python's.
+The compiled code of many designs calls the library with a pointer to its own function of times;
+:meth:`Search.peaks` calls the library with a function of Python's.
 """
 
 from __future__ import annotations
@@ -11,22 +10,17 @@ from __future__ import annotations
 import ctypes
 import functools
 import itertools
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
-from ...base.arrays import Array
+from ...base.arrays import Array, Flags
 from ...base.compensated import DTYPES
 from ...base.vocabulary import Precision
-from ..peak_search import between, intervals
-from ..peak_search import search as reference
-from ..peak_search.between import Flags
-from ..peak_search.intervals import TOPS, Curves, CurveSource, Listed, Peaks, Samples
-from ..peak_search.sharpness import Kind, Watch
+from ..sharpness import Kind, Watch
 from .calls import Call
 from .compiler import Compiler, entry_of, loaded, packed, start, written
 from .printer import defined
@@ -101,24 +95,19 @@ CALL = Call(
 )
 """Arguments of the search; the C says which members it reads and writes."""
 
-_ROUNDING: dict[Precision, float] = {"double": reference.ROUNDING, "single": 1e-6}
-"""Relative error of a peak that is worth no further refinement."""
-
-_NOISE: dict[Precision, float] = {"double": between.NOISE, "single": 1e-2}
-"""Largest relative error of a quantity by rounding."""
-
-_DEEPEST: dict[Precision, int] = {"double": reference.DEEPEST, "single": 8}
-"""Panels within each other."""
-
-_FINEST: dict[Precision, int] = {"double": reference.FINEST, "single": 5}
-"""Finest level, in whose steps nothing hides but beside a pole."""
-
-_SIDE: dict[Precision, float] = {"double": intervals.SIDE, "single": 1e-5}
+SIDE: dict[Precision, float] = {"double": 2e-13, "single": 1e-5}
 """Distance of the sides of a kink or a jump, in steps between instants."""
 
-_STRETCH: dict[Precision, float] = {"double": reference.STRETCH, "single": 1e-2}
-_LAST: dict[Precision, float] = {"double": reference.LAST, "single": 1e-5}
-_FILES = ("intervals.c", "between.c", "fits.c", "samples.c", "within.c", "search.c")
+SPACING = 4 * float(np.finfo(float).eps)
+"""Shortest step, relative to the time."""
+
+NOTHING = 1e-12
+"""Relative size, of the largest of a unit, that is zero within rounding."""
+
+TOPS = 24
+"""Largest number of local peaks of a quantity that are listed: the largest ones."""
+
+_FILES = ("numbers.c", "intervals.c", "between.c", "fits.c", "samples.c", "within.c", "search.c")
 _LINE = 16
 """Values of a cache line of either precision."""
 
@@ -135,60 +124,80 @@ def interface(precision: Precision) -> str:
 
 def source(precision: Precision) -> str:
     """The C of the search."""
-    text = start(precision) + _PRELUDE + interface(precision)
-    text += defined("SEARCH", _macros(precision))
+    macros: dict[str, object] = {
+        "SIDE": SIDE[precision],
+        "SPACING": SPACING,
+        "NOTHING": f"((search_real) {NOTHING})",
+        "TOPS": TOPS,
+        **{f"IS_{kind.name}": int(kind) for kind in Kind},
+    }
+    text = start(precision) + interface(precision) + defined("SEARCH", macros)
     return f"{text}\n{written(*_FILES)}"
 
 
-_PRELUDE = """\
-typedef lanes_real search_real;
-#ifdef LANES_SINGLE
-#define SEARCH_FABS fabsf
-#else
-#define SEARCH_FABS fabs
-#endif
-LANES_INLINE lanes_pack search_size(lanes_pack x) { return SEARCH_FABS(x); }
-LANES_INLINE lanes_pack search_larger(lanes_pack x, lanes_pack y) { return lanes_larger(x, y); }
-"""
+@dataclass(frozen=True, eq=False)
+class Curves:
+    """Curves of a search: the number of the quantity of each curve, and the number of the unit of
+    each quantity.
+
+    The peak of a quantity is that of the curve of its own that goes furthest: those of a section
+    force are the force at the link's ends and load points, and where the force turns along the
+    link. ``depends`` (watches, quantities) says which quantity depends on which watched function;
+    ``knots`` are times [s] of kinks, ``scales`` for each unit the largest size of other quantities.
+    """
+
+    quantities: tuple[int, ...]
+    units: tuple[int, ...]
+    watches: tuple[Watch, ...]
+    depends: Flags
+    knots: tuple[float, ...] = ()
+    scales: tuple[float, ...] = ()
 
 
-def _macros(precision: Precision) -> dict[str, object]:
-    """Macros for small and large numbers in the search."""
-    numbers = np.finfo(DTYPES[precision])
-    reals = {
-        "ROUNDING": _ROUNDING[precision],
-        "NOISE": _NOISE[precision],
-        "LAST": _LAST[precision],
-        "STRETCH": _STRETCH[precision],
-        "CLOSE": 8 * float(numbers.eps),
-        "LARGEST": float(numbers.max),
-        "LEAST": float(numbers.tiny),
-        "HALF": 0.5,
-        "BESIDE": reference.BESIDE,
-        "NOTHING": reference.NOTHING,
-        "ENDLESS": reference.ENDLESS,
-        "RAGGED": reference.RAGGED,
-        "TURN": math.tau,
-        "DIP": between.DIP,
-        "CHANGE": between.CHANGE,
-        "RISE": between.RISE,
-        "STRAIGHT": between.STRAIGHT,
-        "EVEN": between.EVEN,
-        "NEGLIGIBLE": between.NEGLIGIBLE,
-    }
-    return {
-        **{name: f"((search_real) {value:.17g})" for name, value in reals.items()},
-        "SPACING": f"{intervals.SPACING:.17g}",
-        "SIDE": f"{_SIDE[precision]:.17g}",
-        "RATE": f"{between.RATE:.17g}",
-        "INNER": intervals.INNER,
-        "DEEPEST": _DEEPEST[precision],
-        "FINEST": _FINEST[precision],
-        "BESIDE_REST": reference.BESIDE_REST,
-        "TOPS": TOPS,
-        "PANELS": reference.INTERVALS,
-        **{f"IS_{kind.name}": int(kind) for kind in Kind},
-    }
+@dataclass(frozen=True, eq=False)
+class Peaks:
+    """The value of each quantity (q,) that is largest in size, with its sign, its time and ratio
+    xi/l, and whether the peak is located.
+
+    A peak that is not located is the largest value that was found. ``tops``, where local peaks are
+    listed, (q, :data:`TOPS`, 4), are these in no order: the number of the curve among its
+    quantity's own, NaN where there are no more, time, ratio and value.
+    """
+
+    value: Array
+    t: Array
+    xi: Array
+    resolved: Flags
+    tops: Array | None = None
+
+
+class Listed(NamedTuple):
+    """Local peaks that are listed: those down to a ``share`` of the largest.
+
+    Where ``sign`` is 1 or -1, peaks are those of values times ``sign``, not of sizes. These are
+    counted from so far below the least at the instants that a share of little more than a half
+    takes all peaks between the least and the largest.
+    """
+
+    share: float
+    sign: int = 0
+
+
+class Samples(NamedTuple):
+    """Samples at n times: values of curves (c, n), the ratios xi/l at which they are taken (c, n),
+    and values of watched functions (w, n).
+    """
+
+    values: Array
+    places: Array
+    watched: Array
+
+
+class CurveSource(Protocol):
+    """Source of curves at any times; NaN where they have no value."""
+
+    def at(self, t: Array) -> Samples:
+        """Sample times of the span."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -282,10 +291,14 @@ class Search:
         samples: Samples,
         hiding: Flags,
         listed: Listed | None = None,
-        sampled: bool = False,
     ) -> Peaks:
-        """Find peaks as :func:`.peak_search.search.peaks` does; exceptions of ``source`` are
-        raised.
+        """Find the peaks of quantities over the span of equally spaced instants ``t`` (n,), of
+        which ``samples`` are; an exception of ``source`` is raised.
+
+        ``hiding`` (n - 1,) marks the steps in which samples are known to miss something. No peak is
+        below the largest sample. Of several peaks that are equal within rounding the first is
+        reported; otherwise rounding would choose the sign. A quantity that is NaN at all instants,
+        because of friction at rest, has no peak. ``listed`` says which local peaks are listed.
         """
         values, places, watched = samples
         t = np.ascontiguousarray(t, float)
@@ -298,7 +311,7 @@ class Search:
             curves.units,
             curves.watches,
             curves.knots,
-            curves.depending,
+            curves.depends,
         )
         # What is before the first value and beyond the last is the search's to write; packs go on
         # beyond the last.
@@ -316,7 +329,6 @@ class Search:
         located = np.zeros(quantities, np.int8)
         begin = rows.ctypes.data + _LINE * rows.itemsize
         tops = np.empty((quantities, TOPS, 4)) if listed else None
-        error = np.empty(quantities) if sampled else None
         most = np.fmax.reduce(np.abs(values), axis=1, initial=0.0)
         call, room = self.call(
             tables,
@@ -332,7 +344,6 @@ class Search:
             way=listed.sign if listed else 0,
             share=listed.share if listed else 0.0,
             tops=None if tops is None else tops.ctypes.data,
-            error=None if error is None else error.ctypes.data,
             hiding=hidden.ctypes.data,
             at=ctypes.cast(asked.entry, ctypes.c_void_p).value,
             value=found[0].ctypes.data,
@@ -344,7 +355,7 @@ class Search:
         del room  # until here the call has used it
         if asked.error is not None:
             raise asked.error
-        return Peaks(found[0], found[1], found[2], located.astype(bool), tops, error)
+        return Peaks(found[0], found[1], found[2], located.astype(bool), tops)
 
 
 _FUNCTION_OF_TIMES = ctypes.CFUNCTYPE(

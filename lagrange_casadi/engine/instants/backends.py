@@ -8,7 +8,6 @@ import functools
 import math
 import shlex
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import dataclass
 from typing import TypeVar
 
@@ -37,17 +36,6 @@ _LANGUAGES: dict[Backend, tuple[codegen.Language, ...]] = {
     "c": ("c",),
     "vm": (),
 }
-_NEEDS = {
-    "lanes": (
-        "backend 'lanes' needs a C++ compiler: none of $CXX, c++, g++, clang++ or the Python"
-        " package ziglang was found"
-    ),
-    "c": (
-        "backend 'c' needs a C compiler: none of $CC, cc, gcc, clang or the Python package ziglang"
-        " was found"
-    ),
-}
-_TRIED = "c++, g++, clang++, cc, gcc, clang, ziglang"
 _VM_BLOCK = 4096
 _FEWEST_STEPS, _MOST_STEPS = 50, 5000
 """Least and largest number of steps from the scene's start to an evaluation that begins
@@ -150,6 +138,11 @@ def evaluator(
     found = compiled(
         method, lambda compiler: _library(program, stages, method.newton, method.flags, compiler)
     )
+    if found is None and method.backend == "auto":
+        warn(
+            "no C or C++ compiler found: using CasADi's virtual machine, which is slow;"
+            f" {codegen.INSTALL}"
+        )
     made = provenance(method, found)
     return (Interpreter(program, stages, method.newton) if found is None else found[1]), made
 
@@ -158,7 +151,7 @@ def compiled(
     method: EvaluationMethod, build: Callable[[codegen.Compiler], Built]
 ) -> tuple[codegen.Compiler, Built] | None:
     """Result of ``build`` with the compiler of a method's backend, and that compiler; None for the
-    virtual machine.
+    virtual machine, and where there is no compiler and ``auto`` needs none.
     """
     backend = method.backend
     for language in _LANGUAGES[backend]:
@@ -171,27 +164,21 @@ def compiled(
             if backend != "auto" or language == "c":
                 raise
             warn(f"{error}; using scalar C")
-    if backend in _NEEDS:
-        raise CompilerError(_NEEDS[backend])
+    if backend in ("lanes", "c"):
+        (language,) = _LANGUAGES[backend]
+        needs = f"backend '{backend}' needs a {language.upper()} compiler"
+        raise codegen.no_compiler(needs, language)
     if method.precision == "single":
-        raise CompilerError(f"precision 'single' needs a compiler: none of {_TRIED} found")
-    if backend == "auto":
-        warn(
-            f"no C or C++ compiler found ({_TRIED}): using CasADi's virtual machine, which is slow"
-        )
+        raise codegen.no_compiler("precision 'single' needs a compiler")
     return None
 
 
-def searching(backend: str) -> codegen.Search | None:
-    """The compiled search for peaks of what a backend has evaluated; None for the virtual machine,
-    and without a compiler.
-    """
-    for language in () if backend == "vm" else _LANGUAGES["auto"]:
-        compiler = codegen.find_compiler(language)
-        with suppress(CompilerError):
-            if compiler is not None:
-                return codegen.load_search(compiler)
-    return None
+def peak_search() -> codegen.Search:
+    """The compiled search for peaks. Raises :class:`CompilerError` where there is no compiler."""
+    found = compiled(EvaluationMethod(), codegen.load_search)
+    if found is None:
+        raise codegen.no_compiler("peaks between instants need a compiler")
+    return found[1]
 
 
 @functools.lru_cache(maxsize=32)

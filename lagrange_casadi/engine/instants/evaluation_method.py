@@ -147,12 +147,12 @@ Time is counted before it begins, not measured, so that it is the same everywher
 """
 
 
-def seconds(
-    program: Program, instants: float, method: EvaluationMethod, *, interpreted: bool
-) -> float:
-    """Seconds that a core takes for so many instants, within a factor of three or so;
-    ``interpreted`` is by the virtual machine.
-    """
+def seconds(program: Program, instants: float, method: EvaluationMethod) -> float:
+    """Seconds that a core takes for so many instants, within a factor of three or so."""
     counts = program.instructions
     steps = counts.get("loops", 0) * ((method.newton or 1) - 1)
-    return (sum(counts.values()) + steps) * instants / (_RATE_INTERPRETED if interpreted else _RATE)
+    return (
+        (sum(counts.values()) + steps)
+        * instants
+        / (_RATE_INTERPRETED if method.backend == "vm" else _RATE)
+    )

@@ -16,9 +16,9 @@ import numpy as np
 from ...base.cache import working_folder
 from ...base.packages import check_installed
 from ...base.quantities import motion_names
-from ...engine.codegen import find_compiler
+from ...engine.codegen import find_compiler, no_compiler
 from ...engine.codegen.compiler import Compiler, broken, built
-from ...errors import CompilerError, DeclarationError, StoreError, UnknownNameError
+from ...errors import DeclarationError, StoreError, UnknownNameError
 from ..portable.golden import motions_at
 from ..portable.header import header
 from ..portable.source import Source
@@ -108,9 +108,7 @@ def _fmpy() -> Any:
 def _compiler() -> Compiler:
     found = find_compiler()
     if found is None:
-        raise CompilerError(
-            "an FMU needs a C compiler: install gcc, clang or the wheel ziglang, or set $CC"
-        )
+        raise no_compiler("an FMU needs a C compiler", "c")
     return found
 
 

@@ -20,7 +20,7 @@ from numpy.polynomial import chebyshev
 
 from ...base.arguments import Numeric, public
 from ...base.arrays import Array
-from ...engine.peak_search.fits import interpolation
+from ...base.interpolation import interpolation
 from ...errors import DeclarationError, UnknownNameError
 from ...model.end_conditions import ends_of
 from ..sizes import largest

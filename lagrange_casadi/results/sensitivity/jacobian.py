@@ -24,10 +24,10 @@ from ...base.symbolic import Graphs, symbolic
 from ...base.tables import table_of
 from ...engine.checks import Column
 from ...engine.model_data import ModelData
-from ...engine.peak_search.sharpness import Kind, Sharpness, Watch
 from ...engine.program import Program
 from ...engine.reciprocals import differentiable
 from ...engine.section_function import Place, Section
+from ...engine.sharpness import Kind, Sharpness, Watch
 from ...model.limits import END
 
 SAME_PLACE = 1e-9

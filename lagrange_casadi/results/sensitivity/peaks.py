@@ -18,11 +18,10 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 import numpy.typing as npt
 
-from ...base.arrays import Array
+from ...base.arrays import Array, Flags
 from ...base.vocabulary import Precision
-from ...engine.peak_search.intervals import SIDE, SPACING
-from ...engine.peak_search.search import NOTHING
-from ...engine.peak_search.sharpness import Kind, Watch
+from ...engine.codegen.search import NOTHING, SIDE, SPACING
+from ...engine.sharpness import Kind, Watch
 from ..statistics import counted, shares
 from .ends import Ends, implicit_bends
 from .jacobian import SAME_PLACE
@@ -65,8 +64,6 @@ _NOISE, _FAINT = 1e-9, 1e-12
 
 Peaks = tuple[Array, Array, Array]
 """Value, time and ratio xi/l of q peaks, (q,) each."""
-
-Flags = npt.NDArray[np.bool_]
 
 
 class PeakKind(enum.IntEnum):
@@ -144,7 +141,9 @@ class MovingPeaks:
     @cached_property
     def near(self) -> float:
         """Distance from a kink, a jump or an end within which a peak is at it [s]."""
-        return SIDE * self.step + 2 * SPACING * max(abs(float(self.instants[k])) for k in (0, -1))
+        return SIDE["double"] * self.step + 2 * SPACING * max(
+            abs(float(self.instants[k])) for k in (0, -1)
+        )
 
     def gradient(self, chosen: Numbers, peaks: Peaks, nothing: Flags) -> PeakSlopes:
         """The derivatives of peaks of what is ``chosen``.

@@ -21,8 +21,8 @@ from ...engine import codegen
 from ...engine.codegen.stages import plain
 from ...engine.instants.backends import Interpreter, begun, compiled, evaluator
 from ...engine.instants.evaluation_method import EvaluationMethod
-from ...engine.peak_search.sharpness import Sharpness
 from ...engine.program import Program
+from ...engine.sharpness import Sharpness
 from .jacobian import PointFunction
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from ...base.arrays import Array
 from ...base.brief import Brief
-from ...engine.peak_search.fits import interpolation
+from ...base.interpolation import interpolation
 from ...engine.stress import FORCES, CrossSections
 from ...engine.two_force_links import unaimed
 from ...errors import DeclarationError, check_kind

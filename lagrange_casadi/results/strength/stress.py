@@ -24,7 +24,7 @@ from numpy.polynomial import chebyshev
 from ...base.arguments import Share, public
 from ...base.arrays import Array, Operand
 from ...base.brief import Brief
-from ...engine.peak_search.fits import interpolation
+from ...base.interpolation import interpolation
 from ...engine.stress import KINDS, concentration, squared
 from ...errors import DeclarationError, UnknownNameError, shown
 from ...model.beams.beam import Notch

@@ -22,17 +22,17 @@ from ...base.quantities import Output, compared
 from ...base.space import cores, require
 from ...base.status import Status
 from ...base.symbolic import symbolic_property
-from ...base.vocabulary import PEAK_SEARCHES, PeakSearch
+from ...base.vocabulary import COMPILED, PEAK_SEARCHES, PeakSearch
 from ...engine import codegen
+from ...engine.codegen.search import TOPS, Listed
 from ...engine.codegen.stages import Stages
 from ...engine.derive import compile_scene
 from ...engine.instants.backends import begun, compiled, provenance
 from ...engine.instants.determinacy import undetermined
 from ...engine.instants.evaluation_method import EvaluationMethod, Provenance, seconds
 from ...engine.instants.grids import empty
-from ...engine.peak_search.intervals import TOPS, Listed
-from ...engine.peak_search.sharpness import bent, with_watched
 from ...engine.program import Program
+from ...engine.sharpness import bent, with_watched
 from ...errors import DeclarationError, UnknownNameError
 from ...model.scene import Scene
 from ...model.times import Times, Timing
@@ -40,7 +40,6 @@ from ...results.sensitivity.ends import Ends
 from ...results.sensitivity.peaks import AS_LARGE, MeanSlopes, MovingPeaks, PeakSlopes, faint
 from ...results.sensitivity.slopes import Slopes
 from ..solving import checked_span, outputs_of, unwind
-from .interpreted import InterpretedDesigns
 from .outcome import KEPT, History, Outcome, Results, outcome_of, refuse, rows_of
 from .reduction import KeptOutputs, stages_of
 from .spot_check import failures
@@ -68,7 +67,7 @@ class DesignEngine:
     kept: KeptOutputs
     program: Program
     stages: Stages
-    library: codegen.Library | InterpretedDesigns
+    library: codegen.Library
     provenance: Provenance
     sampled: bool = False
 
@@ -105,6 +104,8 @@ class DesignEngine:
         peaks: PeakSearch = "exact",
     ) -> DesignEngine:
         """Compile a graph for designs at instants that are asked for."""
+        if method.backend not in COMPILED:
+            raise UnknownNameError("backend of designs", method.backend, COMPILED)
         if peaks not in PEAK_SEARCHES:
             raise UnknownNameError("choice of peaks", str(peaks), PEAK_SEARCHES)
         sampled = peaks == "sampled"
@@ -128,9 +129,10 @@ class DesignEngine:
             return codegen.load(source, compiler, extra, designs=designs)
 
         found = compiled(method, build)
+        if found is None:
+            raise codegen.no_compiler("designs need a compiler")
         made = provenance(method, found)
-        library = found[1] if found else InterpretedDesigns(program, kept, method.newton, sampled)
-        return cls(method, times, kept, program, stages, library, made, sampled)
+        return cls(method, times, kept, program, stages, found[1], made, sampled)
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -211,7 +213,6 @@ class DesignEngine:
             self.program,
             self.count + _SAMPLES * len(self.quantities),
             self.method,
-            interpreted=self.provenance.backend == "vm",
         )
 
     @property

@@ -19,7 +19,7 @@ from ...base.brief import listed
 from ...base.status import Status
 from ...base.symbolic import symbolic_property
 from ...base.units import Number
-from ...base.vocabulary import Backend, PeakSearch, Precision
+from ...base.vocabulary import Compiled, PeakSearch, Precision
 from ...engine.instants.evaluation_method import EvaluationMethod
 from ...engine.model_data import template
 from ...errors import AssemblyError, DeclarationError, UnknownNameError, shown
@@ -479,7 +479,7 @@ def prepare(
     t: Times | None = None,
     over: Over | None = None,
     wanted: Outputs | None = None,
-    backend: Backend = "auto",
+    backend: Compiled = "auto",
     precision: Precision = "double",
     newton: Annotated[int | None, LATER] = None,
     flags: Annotated[str, LATER] = "",

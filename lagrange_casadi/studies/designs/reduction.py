@@ -22,8 +22,8 @@ from ...engine.instants.evaluation_method import EvaluationMethod
 from ...engine.instants.rules import limits
 from ...engine.mobility import load_points_of
 from ...engine.model_data import ModelData
-from ...engine.peak_search.sharpness import Sharpness
 from ...engine.program import Program
+from ...engine.sharpness import Sharpness
 from ...errors import DeclarationError
 from ...results.laws import made_of
 
@@ -54,14 +54,13 @@ class KeptOutputs:
     and means of ``efforts``, which are efforts and outputs of the user's own.
 
     Quantities are the wanted outputs, without angles that loops set, and sizes of joints'
-    reactions; the section forces of ``links`` come last. Which of them equilibrium leaves open is
+    reactions; section forces come last. Which of them equilibrium leaves open is
     decided for each design. ``reduction`` is the same in numbers of columns, as C takes it.
     """
 
     quantities: tuple[Output, ...]
     units: tuple[str, ...]
     efforts: tuple[Output, ...]
-    links: tuple[str, ...]
     reduction: Reduction
     sharpness: Sharpness
 
@@ -124,7 +123,7 @@ class KeptOutputs:
             knots=sharpness.knots,
             depends=sharpness.dependence(made_of),
         )
-        return cls(tuple(names), units, efforts, tuple(links), reduction, sharpness)
+        return cls(tuple(names), units, efforts, reduction, sharpness)
 
 
 def _along(data: ModelData, link: str, at: dict[Output, int], table: Table) -> Along:

@@ -13,7 +13,7 @@ import numpy as np
 
 from ...base.arrays import Array, Json, Operand
 from ...base.numerals import real
-from ...base.vocabulary import Backend
+from ...base.vocabulary import Compiled
 from ...engine.fingerprint import sources
 from ...engine.instants.evaluation_method import EvaluationMethod
 from ...engine.model_data import materials_of, template
@@ -161,7 +161,7 @@ class Question:
         transmission: float,
         t: Times | None,
         parameters: Mapping[str, float] | None,
-        backend: Backend,
+        backend: Compiled,
     ) -> Question:
         """Read what a user says. Raises what :func:`.optimise` does for mistakes."""
         declared = scene.parameters

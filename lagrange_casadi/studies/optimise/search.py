@@ -11,7 +11,7 @@ from ...base.arguments import public
 from ...base.methods import method
 from ...base.publish import uninterrupted
 from ...base.units import Within
-from ...base.vocabulary import POINTS, Backend
+from ...base.vocabulary import POINTS, Compiled
 from ...errors import DeclarationError
 from ...model.scene import Scene
 from ...model.times import Times
@@ -42,7 +42,7 @@ def optimise(
     transmission: float = ...,
     t: Times | None = ...,
     parameters: Mapping[str, float] | None = ...,
-    backend: Backend = ...,
+    backend: Compiled = ...,
     dask: str | None = ...,
     out: str | os.PathLike[str] | None = ...,
     resume: bool = ...,
@@ -64,7 +64,7 @@ def optimise(
     transmission: float = ...,
     t: Times | None = ...,
     parameters: Mapping[str, float] | None = ...,
-    backend: Backend = ...,
+    backend: Compiled = ...,
     dask: str | None = ...,
     out: str | os.PathLike[str] | None = ...,
     resume: bool = ...,
@@ -86,7 +86,7 @@ def optimise(
     transmission: float = 0.05,
     t: Times | None = None,
     parameters: Mapping[str, float] | None = None,
-    backend: Backend = "auto",
+    backend: Compiled = "auto",
     dask: str | None = None,
     out: str | os.PathLike[str] | None = None,
     resume: bool = False,

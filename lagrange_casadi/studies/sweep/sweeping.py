@@ -14,7 +14,7 @@ from typing import Annotated
 from ...base.arguments import LATER, Outputs, ThreadCount, public
 from ...base.methods import method
 from ...base.space import MOST_THREADS
-from ...base.vocabulary import Backend, Keep, PeakSearch, Precision
+from ...base.vocabulary import Compiled, Keep, PeakSearch, Precision
 from ...engine.instants.evaluation_method import EvaluationMethod
 from ...errors import DeclarationError
 from ...model.even_points import EvenPoints
@@ -43,7 +43,7 @@ def sweep(
     keep: Keep = "peaks",
     peaks: PeakSearch = "exact",
     fluctuation: bool = False,
-    backend: Backend = "auto",
+    backend: Compiled = "auto",
     precision: Precision = "double",
     newton: Annotated[int | None, LATER] = None,
     flags: Annotated[str, LATER] = "",

@@ -5,7 +5,7 @@ Every quantity is made of time by a graph of operations. Sums and products make 
 does is a divisor that nearly vanishes, a comparison that changes, an angle that turns far between
 two instants, or a steep function. The arguments of all such operations are smooth wherever those
 inside them are, so their values at the instants show between which of them something may rise and
-fall unseen. :mod:`.between` reads them.
+fall unseen. The search for peaks (``codegen/between.c``) reads them.
 """
 
 from __future__ import annotations
@@ -17,17 +17,15 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-import numpy.typing as npt
 
-from ...base.arrays import Array, Operand
-from ...base.interpret import Step, codes, expressed, followable, operation_of, replay
-from ...base.lookups import is_entry
-from ...base.running_errors import running_errors
-from ...base.scalars import column, graph, inputs_of
-from ...base.symbolic import symbolic
-from ...base.tables import LARGEST
-from ..checks import Check
-from ..program import Program
+from ..base.arrays import Array, Flags
+from ..base.interpret import Step, codes, expressed, followable, operation_of, replay
+from ..base.lookups import is_entry
+from ..base.scalars import column, graph, inputs_of
+from ..base.symbolic import symbolic
+from ..base.tables import LARGEST
+from .checks import Check
+from .program import Program
 
 
 class Kind(enum.IntEnum):
@@ -75,7 +73,7 @@ class Sharpness:
     watched: ca.Function
     watches: tuple[Watch, ...]
     knots: tuple[float, ...]
-    depends: npt.NDArray[np.bool_]
+    depends: Flags
 
     @classmethod
     @symbolic
@@ -121,28 +119,11 @@ class Sharpness:
             ).reshape(-1, program.instant.size1_out(0)),
         )
 
-    def dependence(self, quantities: Iterable[Iterable[int]]) -> npt.NDArray[np.bool_]:
+    def dependence(self, quantities: Iterable[Iterable[int]]) -> Flags:
         """Return which watched functions each quantity depends on, (watches, quantities), from the
         columns that each quantity is made of.
         """
         return np.stack([self.depends[:, [*columns]].any(axis=1) for columns in quantities], axis=1)
-
-    def rounding(self, *inputs: Operand) -> Array:
-        """Distance from zero by rounding of each watched function that is nothing else at any of n
-        places; zero for others (rows, 1).
-
-        Such a one changes its sign by chance, and would seem to have kinks everywhere. ``inputs``
-        are those of ``watched``, of n columns or of one.
-        """
-        given = [ca.DM(rows).full() for rows in inputs]
-        count = max(rows.shape[1] for rows in given)
-        off = _ROUNDINGS * running_errors(
-            self.watched, *(np.broadcast_to(rows, (len(rows), count)) for rows in given)
-        )
-        nothing = (np.abs(self.watched(*inputs).full()) <= off).all(axis=1) & np.isfinite(off).all(
-            axis=1
-        )
-        return np.asarray(np.where(nothing, off.max(axis=1), 0.0)[:, None])
 
 
 @symbolic
@@ -154,7 +135,7 @@ def with_watched(program: Program, sharpness: Sharpness) -> Program:
     return program.with_columns([*program.columns, *watched], out)
 
 
-def bent(program: Program, sharpness: Sharpness, t: Array, p: Array) -> npt.NDArray[np.bool_]:
+def bent(program: Program, sharpness: Sharpness, t: Array, p: Array) -> Flags:
     """Between which of the instants ``t`` a motion by samples bends more than the instants show, (t
     - 1,).
     """
@@ -175,10 +156,6 @@ def bent(program: Program, sharpness: Sharpness, t: Array, p: Array) -> npt.NDAr
 
 
 _ROUNDING = 1e-12
-_ROUNDINGS = 4.0
-"""Factor of its own rounding by which a watched function may be off zero, for iterated coordinates
-are off too.
-"""
 
 _FLAT = {ca.OP_TANH: 20.0, ca.OP_ERF: 6.0}
 """Beyond which these are one, but for less than a rounding."""

@@ -1,1 +1,0 @@
-"""Maxima between instants: bounds of curves, sharp points, and the search."""
