@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from compiled import STRICT, cc
 from exported import by_c99, compare, expected, exported, instants, solve
-from internals import compiler, cycle_table
+from internals import cycle_table
 from mechanisms import (
     bracket,
     crank_and_rod,
@@ -80,7 +80,6 @@ SMOOTH |= {
 }
 METHODS = {
     "accuracy": {"table": 1e-9},
-    "interpreted": {"table": 1e-9, "backend": "vm"},
     "nodes": {"table": 256},
     "single": {"table": 1e-6, "precision": "single"},
 }
@@ -196,19 +195,13 @@ def test_a_station_that_stands_still_is_on_no_other_side_of_a_section(place, tmp
 
 @pytest.mark.parametrize("precision", ["double", "single"])
 @pytest.mark.parametrize("name", ["slider_crank", "andrews_squeezer"])
-def test_compiled_or_not_and_however_cut_the_bits_are_the_same(name, precision, monkeypatch):
+def test_however_cut_the_bits_are_the_same(name, precision):
     """In blocks between two nodes and in others, whole blocks and not, by any number of threads."""
     method = {"table": 64, "precision": precision, "certificate": False, "wanted": ["effort"]}
     scene = replace(case(name), t=(0.0, 0.5, 1003))
     whole = evaluate(scene, **method).array(f"effort:{next(iter(scene.laws))}")
     again = evaluate(scene, threads=3, **method).array(f"effort:{next(iter(scene.laws))}")
     assert again.tobytes() == whole.tobytes()
-    if precision == "double":
-        monkeypatch.setattr(compiler, "find_compiler", lambda *_: None)
-        cycle_table._compiled.cache_clear()
-        plain = evaluate(scene, backend="vm", **method)
-        cycle_table._compiled.cache_clear()
-        assert plain.array(f"effort:{next(iter(scene.laws))}").tobytes() == whole.tobytes()
 
 
 @pytest.mark.parametrize("real", ["float", "double"])

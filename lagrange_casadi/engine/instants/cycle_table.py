@@ -3,8 +3,7 @@ rate and acceleration.
 
 Each column is  out = A(angle) acceleration + B(angle) rate^2 + D(angle) rate + C(angle) + slope
 angle,  with A, B, C and D quintic B-splines over equal distances: six coefficients a term, whose
-weights are polynomials, so that reading takes no sine. Compiled code reads where there is a
-compiler, NumPy elsewhere, with the same operations in the same order, so they give the same bits.
+weights are polynomials, so that reading takes no sine. Compiled code reads the table.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ import numpy.typing as npt
 from ...base.arrays import Array
 from ...errors import DeclarationError
 from ..codegen.calls import Call
-from ..codegen.compiler import loaded_or_none, written
+from ..codegen.compiler import find_compiler, loaded, no_compiler, written
 
 if TYPE_CHECKING:
     from _ctypes import CFuncPtr
@@ -34,7 +33,6 @@ LEAST = 8
 
 _MORE = 5
 _TILE = 32
-_BLOCK = 1 << 12
 _OPTIONS = ("-O3", "-march=native", "-fno-trapping-math")
 _FIRST_DIGITS = {"float64": 26, "float32": 12}
 _TURN = Fraction(math.tau) + Fraction(2.4492935982947064e-16)
@@ -195,37 +193,32 @@ class CycleTable:
         """Fill ``out`` (columns, n) for angles [rad], of any number of turns, rates and
         accelerations of the drive, (n) each.
 
-        ``out`` is of the table's own ``dtype``; where an angle, a rate or an acceleration is not
-        finite, neither are the columns that it goes into. Raises :class:`DeclarationError` for
-        arrays that do not fit each other, or an ``out`` of another type.
+        ``out`` is of the table's own ``dtype``, its rows contiguous; where an angle, a rate or an
+        acceleration is not finite, neither are the columns that it goes into.
+
+        Raises :class:`DeclarationError` for arrays that do not fit each other, or an ``out`` of
+        another type, and :class:`.CompilerError` where there is no compiler.
         """
         if not angle.shape == rate.shape == acceleration.shape == (angle.size,):
             raise DeclarationError(
                 f"expected three rows of one length, got {angle.shape}, {rate.shape} and"
                 f" {acceleration.shape}"
             )
-        if out.shape != (len(self.columns), angle.size) or out.dtype != self.dtype:
-            shape = (len(self.columns), angle.size)
+        shape = (len(self.columns), angle.size)
+        if (
+            out.shape != shape
+            or out.dtype != self.dtype
+            or (shape[1] > 1 and out.strides[1] != out.itemsize)
+        ):
             raise DeclarationError(
-                f"out: expected an array of {self.dtype} of shape {shape}, got {out.dtype} of"
-                f" {out.shape}"
+                f"out: expected an array of {self.dtype} of shape {shape} with contiguous rows, got"
+                f" {out.dtype} of {out.shape}"
             )
         angle, rate, acceleration = (
             np.ascontiguousarray(row, dtype=self.dtype) for row in (angle, rate, acceleration)
         )
-        plain = (
-            out.strides[1] == out.itemsize
-            and out.strides[0] > 0
-            and out.strides[0] % out.itemsize == 0
-        )
-        entry = _compiled(self.dtype.name) if plain and out.size else None
-        if entry is None:
-            for start in range(0, angle.size, _BLOCK):
-                cut = slice(start, start + _BLOCK)
-                self._read(angle[cut], rate[cut], acceleration[cut], out[:, cut])
-            return
         layout = self.layout
-        entry(
+        _compiled(self.dtype.name)(
             INTERPOLATE.made(
                 n=angle.size,
                 stride=out.strides[0] // out.itemsize,
@@ -244,29 +237,6 @@ class CycleTable:
                 out=out.ctypes.data,
             )
         )
-
-    def _read(self, angle: Reals, rate: Reals, acceleration: Reals, out: Reals) -> None:
-        """Read the table as the compiled code does."""
-        inverse, first, rest, turn = self.cell
-        nodes = self.dtype.type(self.nodes)
-        with np.errstate(invalid="ignore", over="ignore"):
-            whole = np.floor(angle * inverse)
-            u = ((angle - whole * first) - whole * rest) * inverse
-            at = whole - nodes * np.floor(whole * turn)
-            at += np.where(at < 0, nodes, 0)
-            at -= np.where(at >= nodes, nodes, 0)
-            node = np.where((at >= 0) & (at < nodes), at, 0).astype(np.intp)
-            w = weights(u)
-            values = w[0][:, None] * self.coefficients[node]
-            for k in range(1, 6):
-                values += w[k][:, None] * self.coefficients[node + k]
-            factors = (np.ones_like(rate), rate, rate * rate, acceleration)
-            out[:] = 0
-            for value, (factor, k) in zip(values.T, self.layout.terms, strict=True):
-                out[k] += factors[factor] * value
-            for place, k in enumerate(self.layout.order):
-                if self.slopes[place]:
-                    out[k] += self.slopes[place] * angle
 
     @functools.cached_property
     def layout(self) -> Layout:
@@ -358,9 +328,9 @@ def source() -> str:
 
 
 @functools.cache
-def _compiled(dtype: str) -> CFuncPtr | None:
-    """The C function for numbers of a type, or None where there is no compiler that takes it."""
-    options = (*_OPTIONS, f"-DREAL={_REAL[dtype]}")
-    instead = "NumPy evaluates the tables of the cycle, more slowly"
-    library = loaded_or_none(source(), options, instead)
-    return None if library is None else INTERPOLATE.declare(library.lagrange_casadi_interpolate)
+def _compiled(dtype: str) -> CFuncPtr:
+    """The C function for numbers of a type. Raises :class:`CompilerError` without a compiler."""
+    if (compiler := find_compiler()) is None:
+        raise no_compiler("a table needs a compiler", "c")
+    library = loaded(source(), compiler, (*_OPTIONS, f"-DREAL={_REAL[dtype]}"))
+    return INTERPOLATE.declare(library.lagrange_casadi_interpolate)
