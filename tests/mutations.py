@@ -29,6 +29,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import psutil
+import pytest
 
 TESTS = Path(__file__).parent
 ROOT, MAPS, EQUIVALENT = TESTS.parent, TESTS / "maps", TESTS / "equivalent.txt"
@@ -45,8 +46,8 @@ NUMBERS = (
 PROCESSES, SECONDS = 2, 30.0
 """Processes that run tests of one mutation, and seconds of a processor that each may take."""
 
-MOST = 400
-"""Tests that are asked at most: more take longer than there is."""
+MOST = 100
+"""Tests that are asked at most: more take longer than there is, and to collect them takes time."""
 
 _SWAPS: dict[type[ast.AST], type[ast.AST]] = {ast.Add: ast.Sub, ast.Eq: ast.NotEq}
 _SWAPS |= {ast.Lt: ast.GtE, ast.Gt: ast.LtE}
@@ -166,7 +167,7 @@ class Map:
         """Tests by file and line; a line that runs while modules are imported has none."""
         return {
             Path(file).relative_to(PACKAGE).as_posix(): {
-                line: {context.partition("|")[0] for context in contexts} - {""}
+                line: {context.rpartition("|")[0] for context in contexts} - {""}
                 for line, contexts in self.data.contexts_by_lineno(file).items()
             }
             for file in self.data.measured_files()
@@ -280,7 +281,7 @@ class Copy:
     def judge(self, tests: list[str], seconds: float) -> tuple[str, str]:
         """Return a verdict on the mutation that is applied, and the test that notices it.
 
-        Tests that are not there, and a package that cannot be imported, are no verdict of a test.
+        Raises :class:`RuntimeError` where pytest runs no test.
         """
         if not tests:
             return "unreached", ""
@@ -289,7 +290,9 @@ class Copy:
             return "unnoticed", "its time is over"
         if status == 0:
             return "unnoticed", f"{len(tests)} tests pass"
-        return ("noticed", failed[0]) if failed else ("noticed", f"pytest ends with {status}")
+        if status in (pytest.ExitCode.USAGE_ERROR, pytest.ExitCode.NO_TESTS_COLLECTED):
+            raise RuntimeError(f"pytest ran no test of {' '.join(tests)}")
+        return "noticed", failed[0] if failed else f"pytest ends with status {status}"
 
 
 def _note_spent(process: psutil.Popen, spent: dict[int, float]) -> None:

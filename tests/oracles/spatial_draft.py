@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from arithmetic import DOUBLE
@@ -95,24 +96,29 @@ class Drawn:
         return solve(self.mechanism, self.drives(t, digits), guess, digits, self.pushed)
 
     def followed(self, t) -> dict:
-        """The posture at t in doubles as a guess, followed from the one at 0; none of an open tree,
+        """The nearest of the postures that are followed from the one at 0; none of an open tree,
         which needs none.
         """
-        return [posture for posture, _ in self.traced(t)][-1] if self.guess else {}
+        if not self.guess:
+            return {}
+        step = round(self.steps * float(t) / self.span) if self.span else 0
+        return self.path[min(max(step, 0), self.steps)][0]
 
-    def traced(self, t):
-        """The postures, each a guess, at 0 and after every step to t, with the factored slope of
-        the motion there.
+    @cached_property
+    def path(self) -> list:
+        """The postures in doubles, each a guess, at 0 and after every step to the end, with the
+        factored slope of the motion there.
         """
-        guess = self.guess
+        guess, found = self.guess, []
         for k in range(self.steps + 1):
             motion = Motion(self.mechanism, self.laws, DOUBLE, self.pushed or ())
             poses, coordinates, slope = solve_motion(
-                motion, self.drives(float(t) * k / self.steps), guess
+                motion, self.drives(self.span * k / self.steps), guess
             )
             guess = {b.name: (poses[b.name].r, poses[b.name].R) for b in self.mechanism.bodies}
             guess |= {key: q for key, (q, *_) in coordinates.items()}
-            yield guess, slope
+            found.append((guess, slope))
+        return found
 
     @property
     def rods(self) -> list[str]:

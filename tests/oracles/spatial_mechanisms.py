@@ -49,7 +49,7 @@ def steady(draw: Callable[..., Drawn], name: str = "", *told) -> Callable[[int],
         for attempt in range(100):
             try:
                 drawn = draw(np.random.default_rng([seed, attempt]), *told)
-                slopes = [slope for _, slope in drawn.traced(drawn.span)]
+                slopes = [slope for _, slope in drawn.path]
             except OpenLoopError:
                 continue
             if all(

@@ -56,7 +56,7 @@ def test_all_is_as_the_oracle_has_it_and_certified(name, seed):
     reactions = np.array([x for one in true.values() for x in one.reactions.values()], float)
     force = max(1.0, np.abs(reactions[:, :3]).max())
     moment = max(1.0, np.abs(reactions[:, 3:]).max(), force * drawn.solve(0.0).size)
-    steadiness = min(slope.least for _, slope in drawn.traced(drawn.span))
+    steadiness = min(slope.least for _, slope in drawn.path)
     blur = 64 * EPS / steadiness**2
     for k, one in true.items():
         compare_motion(drawn, solution, k, one)
