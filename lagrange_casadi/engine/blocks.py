@@ -19,11 +19,9 @@ import numpy as np
 
 from ..base.arrays import Array, Expression
 from ..base.scalars import column
-from ..base.vectors import cross, dot
 from ..errors import MobilityError
-from ..model.joints import Joint
-from .legs import in_fewest, solve_leg
-from .loops import ClosedForm, Verified, solve_in_turn, solve_loop, solves
+from .legs import solve_leg
+from .loops import ClosedForm, solve_loop, solves
 from .multibody import Coordinate, LoopEquations, Multibody
 from .released_loops import ReleasedLoops, rank_of
 from .residuals import extent, units
@@ -315,13 +313,12 @@ def _forms(
     forms: tuple[ClosedForm, ...] = (form,) if form is not None else ()
     if (
         not forms
-        and unknown
+        and len(unknown) in (2, 3)
+        and len(rows) >= len(unknown)
         and len({equation.loop for equation in rows}) == 1
         and (joint := rows[0].loop.joint) is not None
     ):
-        forms = solve_line(joint, rows, unknown, multibody, verified)
-        if not forms and len(unknown) in (2, 3) and len(rows) >= len(unknown):
-            forms = solve_leg(joint, unknown, multibody, verified)
+        forms = solve_leg(joint, unknown, multibody, verified)
     # An angle whose turns some constraint counts must not come back from its cosine and sine.
     if any(form.branches for form in forms) and any(
         ca.depends_on(counted, c.value) for c in unknown
@@ -382,44 +379,3 @@ def _require_freedom(
         f"mechanism '{multibody.mechanism.name}' has {freedom} degree(s) of freedom ({how}) and"
         f" {driven} drive(s); {advice}"
     )
-
-
-def solve_line(
-    joint: Joint,
-    rows: Sequence[Equation],
-    unknown: Sequence[Coordinate],
-    multibody: Multibody,
-    verified: Verified,
-) -> tuple[ClosedForm, ...]:
-    """The closed forms, one after another, of equations of a joint, given in the plane in which its
-    line moves.
-
-    A slot or a cylindrical joint that closes a loop holds its points together along two lines
-    across its own, and its directions as well. What moves in a plane has one of them for each: that
-    across the line in the plane. Out of the plane nothing may be off, and the two lines lie anyhow
-    to it. So each two equations are summed to the one in the plane, with weights that no motion
-    changes.
-
-    None where it does not close a loop along a line, where what is unknown does not turn in a plane
-    with it, or none were ``verified``.
-    """
-    if joint.directions is None or sum(freedom.move == "slide" for freedom in joint.freedoms) != 1:
-        return ()
-    turn = next((c.name for c in unknown if c.name in multibody.axes), None)
-    numbers = [equation.row for equation in rows]
-    pairs = [(k, k + 1) for k in numbers if k % 2 == 0]
-    if turn is None or [k for pair in pairs for k in pair] != numbers:
-        return ()
-    line, first, second = joint.triad
-    across = cross(
-        multibody.frames[joint.parent.body.name].rotation.resolve(multibody.axes[turn]), line
-    )
-    weights = in_fewest(
-        ca.vertcat(dot(across, first), dot(across, second)), (), multibody.coordinates
-    )
-    if weights is None:
-        return ()
-    phi = column(equation.residual for equation in rows)
-    equations = [weights.T @ phi[2 * k : 2 * k + 2] for k in range(len(pairs))]
-    forms = solve_in_turn(equations, unknown, multibody.coordinates)
-    return forms if forms and verified(forms) else ()

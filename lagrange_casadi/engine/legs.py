@@ -60,7 +60,7 @@ def _leg(
         return ()
     if len(later) == 1:
         head, target = cross(axis, head), cross(axis, target)
-    squares = in_fewest(dot(head, head), later, multibody.coordinates), dot(target, target)
+    squares = _in_fewest(dot(head, head), later, multibody.coordinates), dot(target, target)
     # One of the two is a length that nothing changes: beside it the gap is one in metres.
     fixed = next(
         (square for square in squares if square is not None and not held((square,), later)), None
@@ -71,7 +71,7 @@ def _leg(
     near, far = (length if square is fixed else square / length for square in squares)
     equations = [(near - far) / 2]
     if len(later) == 2:
-        height = in_fewest(dot(axis, head), later, multibody.coordinates)
+        height = _in_fewest(dot(axis, head), later, multibody.coordinates)
         if height is None:
             return ()
         equations.append(height - dot(axis, target))
@@ -79,7 +79,7 @@ def _leg(
     return (*forms, _turned(first, axis, head, target, across=len(later) == 1)) if forms else ()
 
 
-def in_fewest(
+def _in_fewest(
     expression: Expression, later: Sequence[Coordinate], coordinates: Sequence[Coordinate]
 ) -> Expression | None:
     """An expression with all coordinates at rest but as few of the ``later`` ones as change it;

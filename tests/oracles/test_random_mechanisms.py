@@ -96,6 +96,7 @@ def test_exported_c_has_the_same(several, tmp_path):
         assert off < 1e-13, drawn.describe()
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("seed", range(1000, 1020, 2))
 def test_peaks_of_one_way_forces_are_those_of_many_instants(seed):
     drawn = draw(seed, "one_way")

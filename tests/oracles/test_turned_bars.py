@@ -132,6 +132,7 @@ def exported_c(scene, folder):
     return rows[:, : len(names)][:, chosen]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     "asked",
     [evaluated, wanted, swept, sized, written, exported_c],
