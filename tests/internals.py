@@ -37,5 +37,4 @@ from lagrange_casadi.results.verification.reference import arithmetic, reference
 from lagrange_casadi.results.verification.roundings import rounding_error
 from lagrange_casadi.studies.designs.engine import DesignEngine
 from lagrange_casadi.studies.designs.outcome import Outcome
-from lagrange_casadi.studies.optimise.sobol import sobol
 from lagrange_casadi.studies.peaks import rates

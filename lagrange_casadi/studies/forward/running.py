@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from ...base.arguments import Count, NotNegative, Outputs, Positive, public
-from ...base.packages import check_installed
 from ...base.units import within
 from ...engine.free_equation import free_equation
 from ...errors import DeclarationError
@@ -184,7 +183,6 @@ def _machine(
     parameters: Mapping[str, float] | None,
     accuracy: float,
 ) -> Machine:
-    check_installed("scipy", "a free machine", "free")
     within("accuracy", accuracy, 1e-13, 1e-3)
     values = scene.values(parameters)
     scene.checked(values)

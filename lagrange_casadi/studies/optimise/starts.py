@@ -12,7 +12,6 @@ from ...base.units import Within
 from ...errors import DeclarationError, NoDesignError, UnknownNameError
 from .problem import Problem
 from .sampled_design import EvaluatedDesign
-from .sobol import sobol
 from .solver import Solver
 
 _APART = 0.15
@@ -46,9 +45,15 @@ def named(solver: Solver, starts: Sequence[Mapping[str, float]]) -> list[Evaluat
 
 
 def screen(solver: Solver, count: int) -> list[EvaluatedDesign]:
-    """Designs spread evenly over the bounds, after the parameters' own values."""
+    """Designs spread evenly over the bounds, after the parameters' own values.
+
+    They are the points of the sequence of Sobol after its origin.
+    """
+    from scipy.stats import qmc  # takes a second, and only searches need it
+
     box = solver.question.box
-    shares = np.vstack([np.clip(box.share(box.p), 0.0, 1.0)[None], sobol(count, len(box.names))])
+    points = qmc.Sobol(len(box.names), scramble=False, bits=32).fast_forward(1).random(count)
+    shares = np.vstack([np.clip(box.share(box.p), 0.0, 1.0)[None], points])
     return solver.evaluator.screen(np.array([box.all(x) for x in shares]))
 
 
