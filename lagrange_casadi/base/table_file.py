@@ -13,8 +13,7 @@ from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from io import TextIOWrapper
 from pathlib import Path
-from typing import IO, Any, BinaryIO
-from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
+from typing import Any, BinaryIO
 
 from ..errors import DeclarationError, StoreError
 from .packages import check_installed
@@ -27,8 +26,6 @@ _ROWS, _COLUMNS = 1_048_576, 16_384
 _OTHER_BOOKS = (".xls", ".xlsb", ".xlsm", ".ods")
 """Suffixes of workbooks that are not written."""
 _WIDTH = 12
-_TIMES = re.compile(rb"(<dcterms:\w+[^>]*>)[^<]*")
-_NO_TIME = (1980, 1, 1, 0, 0, 0)
 _UNPRINTABLE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f]")
 
 
@@ -139,9 +136,7 @@ class TableFile:
                 f"cannot write {self.path}: the temporary folder {tempfile.gettempdir()}:"
                 f" {os.strerror(code)}"
             ) from None
-        with tempfile.TemporaryFile() as draft:
-            book.save(draft)
-            _copy_without_times(draft, file)
+        book.save(file)
         return count
 
 
@@ -158,13 +153,3 @@ def _cell_maker(sheet: Any, cell_of: Callable[..., Any]) -> Callable[[Cell], Any
         return found
 
     return made
-
-
-def _copy_without_times(draft: IO[bytes], file: BinaryIO) -> None:
-    """Copy a workbook, so that the same table has the same bytes at any time."""
-    with ZipFile(draft) as source, ZipFile(file, "w", ZIP_DEFLATED) as target:
-        for entry in source.infolist():
-            content = source.read(entry)
-            if entry.filename == "docProps/core.xml":
-                content = _TIMES.sub(rb"\g<1>2000-01-01T00:00:00Z", content)
-            target.writestr(ZipInfo(entry.filename, _NO_TIME), content, ZIP_DEFLATED)

@@ -91,10 +91,15 @@ def full():
     raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
 
+def is_told(path):
+    """Whether the bytes of a file are told; a workbook states when it was written."""
+    return path.is_file() and path.suffix != ".xlsx"
+
+
 def contents(folder):
     """All files by name, drafts and those of folders too."""
     return {
-        str(path.relative_to(folder)): path.read_bytes() if path.is_file() else None
+        str(path.relative_to(folder)): path.read_bytes() if is_told(path) else None
         for path in folder.rglob("*")
     }
 
