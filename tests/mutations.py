@@ -171,6 +171,7 @@ class Map:
                 for line, contexts in self.data.contexts_by_lineno(file).items()
             }
             for file in self.data.measured_files()
+            if Path(file).exists()
         }
 
     @cached_property
