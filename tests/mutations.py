@@ -208,6 +208,13 @@ class Map:
             for case in self.cases
         }
 
+    @cached_property
+    def collected(self) -> set[str]:
+        """Tests that there are."""
+        command = [sys.executable, "-m", "pytest", "--collect-only", "-q", "-n0"]
+        found = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+        return {line for line in found.stdout.splitlines() if "::" in line}
+
     def tests(self, mutation: Mutation) -> list[str]:
         """Return tests that reach a statement, in the order in which they are asked.
 
@@ -217,7 +224,7 @@ class Map:
         and ask whether all ways agree: what they compile is small.
         """
         found, compiled = self.reaching(mutation), not mutation.file.endswith(".py")
-        there = [test for test in found if (ROOT / test.partition("::")[0]).exists()]
+        there = [test for test in found if test in self.collected]
         much = max(found.values(), default=0) // 2
 
         def worth(test: str) -> tuple[float, float, str]:
