@@ -211,7 +211,7 @@ class Map:
     @cached_property
     def collected(self) -> set[str]:
         """Tests that there are."""
-        command = [sys.executable, "-m", "pytest", "--collect-only", "-q", "-n0"]
+        command = [sys.executable, "-m", "pytest", "--collect-only", "-n0"]
         found = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
         return {line for line in found.stdout.splitlines() if "::" in line}
 
