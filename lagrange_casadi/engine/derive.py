@@ -5,7 +5,7 @@ nothing that is not wanted.
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
@@ -13,7 +13,7 @@ from typing import Any
 import casadi as ca
 
 from ..base import cache
-from ..base.arguments import Outputs, public, texts
+from ..base.arguments import Outputs, public
 from ..base.arrays import Expression
 from ..base.quantities import Output
 from ..base.scalars import column, graph
@@ -23,11 +23,10 @@ from ..errors import AssemblyError, DeclarationError, MobilityError, PostureErro
 from ..model.density import Density
 from ..model.description import describe
 from ..model.end_conditions import effective_lengths, ends_of
-from ..model.limits import END, parameters_note
+from ..model.limits import END
 from ..model.parts import Link
 from ..model.results import Asked
-from ..model.scene import STRENGTH, Scene, Wanted
-from ..model.wanted_names import among
+from ..model.scene import Scene, Wanted
 from .checks import Check, Column
 from .deflections import deflections
 from .drives import closure
@@ -40,12 +39,12 @@ from .mobility import internal_forces
 from .model_data import ModelData
 from .moving import Moving
 from .multibody import Multibody
+from .normalise import Model, normalise
 from .program import Program
 from .reciprocals import share_reciprocals
 from .rounding import nearest
 from .section_function import Place, Section
 from .strength import stresses, utilisation
-from .two_force_links import find_two_force_links, unaimed
 
 _FITS = 2e-14
 """Largest residual of redundant equations that count as consistent, relative to the links'
@@ -93,27 +92,9 @@ def compile_scene(
     MobilityError, DeclarationError, AssemblyError
         If the loops cannot be solved.
     """
-    return compiled_for(scene, wanted, None if parameters is None else scene.values(parameters))
-
-
-@symbolic
-def compiled_for(
-    scene: Scene, wanted: Outputs | None, values: Mapping[str, float] | None
-) -> Program:
-    """Compile a scene as :func:`compile_scene` does, for ``values`` of all parameters, checked."""
-    names = scene.wanted if wanted is None else wanted
-    if values is not None:
-        scene = assembled(scene, values, names)
-    listed = texts(names)
-    want = Wanted.of(scene.mechanism, names) if listed is None else _wanted(scene, tuple(listed))
-    try:
-        found = _kept(scene, want)
-    except PostureError as error:
-        error.scene = scene
-        raise
-    if isinstance(found, _Derived):
-        return found.program
-    raise type(found)(str(found))
+    values = None if parameters is None else scene.values(parameters)
+    program, _ = derived(normalise(scene, wanted, values))
+    return program
 
 
 derive = compile_scene
@@ -121,47 +102,32 @@ derive = compile_scene
 
 
 @symbolic
-def as_derived(scene: Scene, wanted: Outputs, parameters: Mapping[str, float]) -> Scene:
-    """Return the scene that :func:`compile_scene` makes a graph of, as it is assembled, its rounded
-    axes corrected.
+def derived(model: Model) -> tuple[Program, Scene]:
+    """Derive a model, assembled with its scene's own parameters, else with its values; and the
+    scene as it was assembled, its rounded axes corrected.
+
+    Where redundant equations hold with the scene's own parameters but not with the values, axes in
+    space are corrected for the values.
+
+    Raises :class:`.AssemblyError` and :class:`.MobilityError` if it can be assembled with neither,
+    and :class:`.PostureError` for a posture that leaves branches open.
     """
-    scene = assembled(scene, scene.values(parameters), wanted)
-    compile_scene(scene, wanted)
-    found = _kept(scene, Wanted.of(scene.mechanism, wanted))
-    assert isinstance(found, _Derived)
-    return found.scene
-
-
-@symbolic
-def assembled(
-    scene: Scene, values: Mapping[str, float], wanted: Sequence[str] | None = None
-) -> Scene:
-    """The scene; or where its loops cannot be assembled with its own parameters, the same assembled
-    with ``values`` of all.
-
-    So it is too where loops close with its own parameters but not with ``values``, and axes are
-    corrected for one or the other.
-
-    Raises what :func:`compile_scene` does, where they can be assembled with neither.
-    """
+    scene, want, values = model.scene, model.want, model.values
+    if values is None or values == scene.mechanism.values(scene.assembly):
+        return _assembled(scene, want)
+    there = _at(scene, tuple(values.items()))
     try:
-        program = compile_scene(scene, wanted)
+        program, near = _assembled(scene, want)
     except (AssemblyError, MobilityError):
-        if values == scene.mechanism.values(scene.assembly):
-            raise
-        there = _at(scene, tuple(values.items()))
-        compile_scene(there, wanted)
-        return there
+        return _assembled(there, want)
     if (
         scene.mechanism.space
         and scene.rounding
         and _misses(program, values, iterated=False) > _SERVES
     ):
         with suppress(AssemblyError, MobilityError):
-            there = _at(scene, tuple(values.items()))
-            if compile_scene(there, wanted).data.rounding or program.data.rounding:
-                return there
-    return scene
+            return _assembled(there, want)
+    return program, near
 
 
 @functools.lru_cache(maxsize=32)
@@ -169,57 +135,46 @@ def _at(scene: Scene, values: tuple[tuple[str, float], ...]) -> Scene:
     return replace(scene, assembly=dict(values))
 
 
-@functools.lru_cache(maxsize=64)
-def _wanted(scene: Scene, names: tuple[str, ...]) -> Wanted:
-    want = Wanted.of(scene.mechanism, names)
-    _check_aimed(scene, names)
-    return want
-
-
 @functools.lru_cache(maxsize=32)
-def _nearest(scene: Scene) -> Scene | None:
-    return None if scene.mechanism.rounded else nearest(scene)
-
-
-@dataclass(frozen=True, eq=False)
-class _Derived:
-    """A graph, and the scene of which it is: one whose rounded axes are corrected, where loops do
-    not close as declared.
+def _assembled(scene: Scene, want: Wanted) -> tuple[Program, Scene]:
+    """Derive a scene as it is declared; if its loops do not close, with the nearest axes with which
+    they do.
     """
+    try:
+        program = _program(scene, want)
+    except (AssemblyError, MobilityError):
+        if (near := _corrected(scene, want)) is None:
+            raise
+        return near
+    except PostureError as error:
+        error.scene = scene
+        raise
+    own = scene.mechanism.values(scene.assembly)
+    near = _corrected(scene, want) if _misses(program, own, iterated=True) > _FITS else None
+    return near or (program, scene)
 
-    program: Program
-    scene: Scene
+
+def _corrected(scene: Scene, want: Wanted) -> tuple[Program, Scene] | None:
+    """Derive a scene with corrected axes; None if no correction within its rounding is enough."""
+    if (near := nearest(scene)) is not None:
+        with suppress(AssemblyError, MobilityError):
+            program = _program(near, want)
+            return replace(program, identity=fingerprint(scene, want)), near
+    return None
 
 
-@functools.lru_cache(maxsize=32)
-def _kept(scene: Scene, want: Wanted) -> _Derived | AssemblyError | MobilityError:
-    """The graph from the cache, or derived and kept there; or why there is none."""
+def _program(scene: Scene, want: Wanted) -> Program:
+    """Read the Program of a scene from the cache folder, or derive it and keep it there."""
     identity = fingerprint(scene, want)
     text = cache.read(f"{identity}.graph") if identity else None
     if text is not None:
         program = Program.loads(text)
         # Scenes of one name may differ in what follows from nothing that is derived.
-        return _Derived(replace(program, data=program.data.asked_by(scene)), scene)
-    try:
-        program = replace(_derive(scene, want), identity=identity)
-    except (AssemblyError, MobilityError) as error:
-        near = _nearest(scene)
-        found = None if near is None else _kept(near, want)
-        if isinstance(found, _Derived):
-            return replace(found, program=replace(found.program, identity=identity))
-        if isinstance(error, AssemblyError):
-            return AssemblyError(f"{error}{parameters_note(scene.mechanism, scene.assembly)}")
-        return MobilityError(str(error))
-    if (
-        _misses(program, scene.mechanism.values(scene.assembly), iterated=True) > _FITS
-        and (near := _nearest(scene)) is not None
-    ):
-        found = _kept(near, want)
-        if isinstance(found, _Derived):
-            return replace(found, program=replace(found.program, identity=identity))
+        return replace(program, data=program.data.asked_by(scene))
+    program = replace(_derive(scene, want), identity=identity)
     if identity:
         cache.write(f"{identity}.graph", program.dumps())
-    return _Derived(program, scene)
+    return program
 
 
 def _misses(program: Program, values: Mapping[str, float], *, iterated: bool) -> float:
@@ -336,22 +291,6 @@ def _least_energy(
         if indeterminate
         else None
     )
-
-
-def _check_aimed(scene: Scene, names: Sequence[str]) -> None:
-    """Raise :class:`DeclarationError` for a bar whose strength is asked for by name, and which has
-    no direction for it.
-    """
-    named = [name for name in names if name != "all"]
-    for two_force_link in find_two_force_links(scene.guided, scene.laws) if named else ():
-        asked = any(among(kind, [two_force_link.link.name], named) for kind in STRENGTH)
-        if (
-            asked
-            and not two_force_link.aimed
-            and two_force_link.link.beam is not None
-            and not two_force_link.link.beam.round
-        ):
-            raise DeclarationError(unaimed(two_force_link.link.name))
 
 
 def _strength(

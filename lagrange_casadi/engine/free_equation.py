@@ -24,7 +24,7 @@ from ..errors import DeclarationError
 from ..model.parts import Friction
 from ..model.scene import Scene
 from ..model.torques import Law, torque_of
-from .derive import compiled_for
+from .derive import compile_scene
 from .friction import SLIP
 from .program import Program
 from .reflected_inertia import reflected_inertia
@@ -78,7 +78,7 @@ def free_equation(scene: Scene, drive: Law, load: Law, values: Mapping[str, floa
     :func:`.compile_scene` does.
     """
     joint = one_drive(scene)
-    program = compiled_for(scene, ["effort"], values)
+    program = compile_scene(scene, ["effort"], parameters=values)
     t, d, rate, acceleration, z, p = program.instant.sx_in()
     symbols = scene.mechanism.symbols
     pushed, resisting = (

@@ -44,11 +44,15 @@ _READ = {"angle": 12, "slide": 15}
 
 @dataclass(frozen=True)
 class Start:
-    """Numbers at the start of the motion: time, driven coordinates, parameters."""
+    """Numbers at the start of the motion: time, driven coordinates, parameters.
+
+    ``note`` names the parameters, to end a message with.
+    """
 
     t: float
     driven: Sequence[float]
     parameters: Sequence[float]
+    note: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -260,7 +264,8 @@ class _Solver:
                 else "cannot be closed"
             )
             raise AssemblyError(
-                f"the loop closed by {block.joints} {what} at the start of the motion{self.where()}"
+                f"the loop closed by {block.joints} {what} at the start of the"
+                f" motion{self.where()}{self.start.note}"
             )
         distance = {signs: self._distance(form, found) for signs, found in values.items()}
         least = min(distance.values())
@@ -391,7 +396,7 @@ class _Solver:
                 return
         raise AssemblyError(
             f"the loops closed by {loop.joints} cannot be assembled from the given posture at the"
-            f" start of the motion{self.where()}"
+            f" start of the motion{self.where()}{self.start.note}"
         )
 
     def where(self) -> str:

@@ -19,6 +19,7 @@ from ..base.vectors import ZERO, dot
 from ..model.description import kinds_of_described
 from ..model.ends import beyond_ends
 from ..model.laws import Laws
+from ..model.limits import parameters_note
 from ..model.mechanism import Mechanism
 from ..model.scene import Scene, Wanted
 from ..model.spatial import reference_posture
@@ -181,7 +182,8 @@ def solved_motion(scene: Scene, body: Multibody) -> tuple[Laws, Start, kinematic
     laws = scene.prescribed.only([c.name for c in body.coordinates if c.driven])
     values = list(scene.mechanism.values(scene.assembly).values())
     first = [float(x) for x in ca.DM(laws.motion(scene.span[0], values)[0]).full().ravel()]
-    start = Start(scene.span[0], first, values)
+    note = parameters_note(scene.mechanism, scene.assembly)
+    start = Start(scene.span[0], first, values, note)
     posture = reference_posture(scene.mechanism) | dict(scene.posture)
     return laws, start, kinematics.solve(body, posture, start)
 

@@ -18,9 +18,10 @@ from ..base.scalars import column, entries, graph
 from ..model.scene import Scene, Wanted
 from .assembly import assemble
 from .checks import Column
-from .derive import assembled
+from .derive import derived
 from .model_data import ModelData
 from .moving import instant_inputs, solved_motion
+from .normalise import normalise
 from .program import Program
 from .tree import span
 
@@ -41,7 +42,7 @@ def reflected_inertia(scene: Scene, parameters: Mapping[str, float]) -> Reflecte
 
     Raises as that does.
     """
-    scene = assembled(scene, parameters, ["motion"])
+    _, scene = derived(normalise(scene, ["motion"], parameters))
     mechanism = scene.mechanism
     drives = scene.needs_drives if scene.weights is None else tuple(scene.weights)
     body = assemble(scene.guided, span(scene.guided, scene.laws), scene.laws, ())

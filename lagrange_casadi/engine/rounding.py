@@ -16,6 +16,7 @@ link between two spherical joints is a bar where rounding alone puts these besid
 from __future__ import annotations
 
 import copy
+import functools
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
@@ -64,6 +65,7 @@ _LEFT = 1e-14
 _FAINT = 1e-17
 
 
+@functools.lru_cache(maxsize=32)
 def nearest(scene: Scene) -> Scene | None:
     """The scene with axes and places of joints moved within its ``rounding``, so that loops close;
     None if that is not enough.

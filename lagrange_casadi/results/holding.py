@@ -29,13 +29,14 @@ from ..base.arguments import public
 from ..base.arrays import Array
 from ..base.quantities import Output
 from ..engine.checks import Check
-from ..engine.derive import as_derived, compile_scene
+from ..engine.derive import derived
 from ..engine.friction import SLIP
 from ..engine.held_efforts import HeldEfforts, held_efforts
 from ..engine.instants.backends import run
 from ..engine.instants.beyond_equilibrium import Holding
 from ..engine.instants.evaluation_method import EvaluationMethod
 from ..engine.instants.rules import OPEN
+from ..engine.normalise import normalise
 from ..engine.program import Program
 from ..model.description import values_of
 from ..model.scene import Scene
@@ -81,9 +82,9 @@ def holding(scene: Scene, solution: Solution) -> dict[str, Holding]:
             for name, values in efforts.items()
         }
     values = values_of(solution.description)
-    program = compile_scene(scene, ["effort"], parameters=values)
-    held = held_efforts(as_derived(scene, ["effort"], values))
-    tried, why = _tried(held, _inputs(program, solution.t, np.array([*values.values()]), at))
+    program, near = derived(normalise(scene, ["effort"], values))
+    held, p = held_efforts(near), np.array([*values.values()])
+    tried, why = _tried(held, _inputs(program, solution.t, p, at))
     ranges = {}
     for name, effort in efforts.items():
         output, reasons = Output("effort", name), list(why)

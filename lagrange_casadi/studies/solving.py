@@ -12,7 +12,7 @@ import numpy as np
 from ..base.arrays import Array
 from ..base.quantities import Output
 from ..base.space import cores, in_words, require
-from ..engine.derive import compiled_for
+from ..engine.derive import compile_scene
 from ..engine.instants.backends import Evaluated
 from ..engine.instants.determinacy import completed, determinate, undetermined
 from ..engine.instants.evaluation_method import EvaluationMethod, seconds
@@ -71,7 +71,7 @@ def solve(
             "elastic: a table cannot hold statically indeterminate forces; evaluate without a table"
         )
     names = scene.wanted if request.wanted is None else request.wanted
-    program = compiled_for(scene, names, values)
+    program = compile_scene(scene, names, parameters=values)
     method.check(program)
     checked_laws(program.data, checked_span(program.laws, timing, values), tuple(values.values()))
     require(

@@ -112,7 +112,7 @@ def test_wrong_formulas_raise_the_estimates(monkeypatch):
     names = [program.instant.name_in(k) for k in range(program.instant.n_in())]
     wrong = replace(program, instant=ca.Function("instant", inputs, [out], names, ["out"]))
     solving = importlib.import_module("lagrange_casadi.studies.solving")
-    monkeypatch.setattr(solving, "compiled_for", lambda *arguments, **keywords: wrong)
+    monkeypatch.setattr(solving, "compile_scene", lambda *_, **__: wrong)
     with pytest.warns(CertificateWarning, match="balance"):
         after = evaluate(scene)
     assert np.max(after.certificate["balance"]) > 1e-4

@@ -12,11 +12,12 @@ from typing import Any
 
 import numpy as np
 
-from ...engine.derive import as_derived, compile_scene
+from ...engine.derive import derived
 from ...engine.fingerprint import declaration
 from ...engine.instants.determinacy import determinate
 from ...engine.instants.evaluation_method import EvaluationMethod
 from ...engine.instants.from_table import drive_of, table_of
+from ...engine.normalise import normalise
 from ...errors import CertificateError, DeclarationError
 from ...model.description import fitted_of
 from ...model.expressions import check_line
@@ -53,7 +54,7 @@ def sourced(
     named, values = () if wanted is None else wanted, scene.values(parameters)
     without_life(named, "exports")
     names, p = scene.wanted if wanted is None else wanted, np.array(list(values.values()))
-    compiled = compile_scene(scene, names, parameters=values)
+    compiled, near = derived(normalise(scene, names, values))
     data = compiled.data
     name, by, wanted = name or data.name, by_parameters(data.parameters, names), others(names)
     check_line("name", name)
@@ -61,7 +62,7 @@ def sourced(
     if by:
         check_method(method)
     precision, newton, table = method.precision, method.newton, method.table
-    declared = declaration(as_derived(scene, wanted, values), compiled.wanted) or compiled.dumps()
+    declared = declaration(near, compiled.wanted) or compiled.dumps()
     method.check(compiled)
     if not compiled.driven:
         raise DeclarationError(

@@ -13,7 +13,7 @@ from ...base.arguments import Outputs, public
 from ...base.arrays import Array
 from ...base.quantities import Output
 from ...base.symbolic import symbolic
-from ...engine.derive import compiled_for
+from ...engine.derive import compile_scene
 from ...errors import CertificateWarning, DeclarationError, LagrangeCasadiError, warn
 from ...model.description import coordinates_of
 from ...model.even_points import EvenPoints, points
@@ -230,7 +230,7 @@ def _posture(scene: Scene, machine: Machine, t: float, start: Start) -> dict[str
     if start.angle == machine.law(t)[0]:
         return {}
     program, p = (
-        compiled_for(scene, ["motion"], machine.values),
+        compile_scene(scene, ["motion"], parameters=machine.values),
         np.array([*machine.values.values()]),
     )
     out = program.instant(t, start.angle, 0.0, 0.0, machine.z, p).full().ravel()
