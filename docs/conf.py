@@ -69,7 +69,7 @@ UNLISTED = [
         "IN_SPACE",
         "check_picture",
         "elastic.deflection.deflection",
-        "fingerprint",
+        "identity",
         "outputs",
         "read_rows",
         "time",

@@ -29,8 +29,9 @@ from .model.scene import Scene
 from .model.shaking import shaking
 from .model.spatial import SpatialMechanism
 from .results.elastic.vibration import vibration
+from .results.histories import Peak
 from .results.holding import holding
-from .results.solution import Peak, Solution
+from .results.solution import Solution
 from .results.store.runs import check, load, save
 from .results.strength.bearings import BearingLoads, bearing_loads
 from .studies.case import Case, load_case

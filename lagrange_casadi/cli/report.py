@@ -12,8 +12,9 @@ import numpy as np
 
 from ..base.quantities import Output
 from ..model.description import bends_of
+from ..results.histories import Peak
 from ..results.ordering import error_of, ordered
-from ..results.solution import Peak, Solution
+from ..results.solution import Solution
 from ..results.statistics import Statistics
 
 _ROUNDING = 5e-7

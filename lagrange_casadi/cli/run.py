@@ -88,7 +88,7 @@ def run(
     )
     place = folder or (Path(f"{loaded.name}_figures") if out == usual else None)
     replaced, before, drawn = out.exists(), figures_in(place), set[str]()
-    heads = columns(solution) if csv else {}
+    heads = columns(solution, solution.sensitivities) if csv else {}
     written = (
         csv.written([TIME, *heads], _rows([solution.t, *heads.values()])) if csv else nullcontext()
     )

@@ -5,7 +5,7 @@ nothing that is not wanted.
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
@@ -13,7 +13,7 @@ from typing import Any
 import casadi as ca
 
 from ..base import cache
-from ..base.arguments import Outputs, public
+from ..base.arguments import Outputs, public, texts
 from ..base.arrays import Expression
 from ..base.quantities import Output
 from ..base.scalars import column, graph
@@ -21,30 +21,31 @@ from ..base.symbolic import symbolic
 from ..base.tables import Table, table_of
 from ..errors import AssemblyError, DeclarationError, MobilityError, PostureError
 from ..model.density import Density
-from ..model.description import describe
+from ..model.description import filled
 from ..model.end_conditions import effective_lengths, ends_of
 from ..model.limits import END
 from ..model.parts import Link
 from ..model.results import Asked
-from ..model.scene import Scene, Wanted
+from ..model.scene import STRENGTH, Scene, Wanted
+from ..model.wanted_names import among
 from .checks import Check, Column
 from .deflections import deflections
 from .drives import closure
-from .fingerprint import fingerprint
+from .identity import identity_of
 from .indeterminate import Forces
 from .kinematics import Kinematics
 from .least_energy import Completion, LeastEnergy, feeling, least_energy
 from .load_points import gathered
 from .mobility import internal_forces
-from .model_data import ModelData
+from .model_data import ModelData, template
 from .moving import Moving
 from .multibody import Multibody
-from .normalise import Model, normalise
 from .program import Program
 from .reciprocals import share_reciprocals
 from .rounding import nearest
 from .section_function import Place, Section
 from .strength import stresses, utilisation
+from .two_force_links import find_two_force_links, unaimed
 
 _FITS = 2e-14
 """Largest residual of redundant equations that count as consistent, relative to the links'
@@ -93,7 +94,7 @@ def compile_scene(
         If the loops cannot be solved.
     """
     values = None if parameters is None else scene.values(parameters)
-    program, _ = derived(normalise(scene, wanted, values))
+    program, _ = derived(scene, wanted, values)
     return program
 
 
@@ -102,9 +103,11 @@ derive = compile_scene
 
 
 @symbolic
-def derived(model: Model) -> tuple[Program, Scene]:
-    """Derive a model, assembled with its scene's own parameters, else with its values; and the
-    scene as it was assembled, its rounded axes corrected.
+def derived(
+    scene: Scene, wanted: Outputs | None, values: Mapping[str, float] | None
+) -> tuple[Program, Scene]:
+    """Derive a scene, assembled with its own parameters, else with ``values`` of all, checked; and
+    the scene as it was assembled, its rounded axes corrected.
 
     Where redundant equations hold with the scene's own parameters but not with the values, axes in
     space are corrected for the values.
@@ -112,22 +115,46 @@ def derived(model: Model) -> tuple[Program, Scene]:
     Raises :class:`.AssemblyError` and :class:`.MobilityError` if it can be assembled with neither,
     and :class:`.PostureError` for a posture that leaves branches open.
     """
-    scene, want, values = model.scene, model.want, model.values
+    names = scene.wanted if wanted is None else wanted
+    listed = texts(names)
+    want = Wanted.of(scene.mechanism, names) if listed is None else _wanted(scene, tuple(listed))
     if values is None or values == scene.mechanism.values(scene.assembly):
         return _assembled(scene, want)
-    there = _at(scene, tuple(values.items()))
     try:
         program, near = _assembled(scene, want)
     except (AssemblyError, MobilityError):
-        return _assembled(there, want)
+        return _assembled(_at(scene, tuple(values.items())), want)
     if (
         scene.mechanism.space
         and scene.rounding
         and _misses(program, values, iterated=False) > _SERVES
     ):
         with suppress(AssemblyError, MobilityError):
-            return _assembled(there, want)
+            return _assembled(_at(scene, tuple(values.items())), want)
     return program, near
+
+
+@functools.lru_cache(maxsize=64)
+def _wanted(scene: Scene, names: tuple[str, ...]) -> Wanted:
+    want = Wanted.of(scene.mechanism, names)
+    _check_aimed(scene, names)
+    return want
+
+
+def _check_aimed(scene: Scene, names: Sequence[str]) -> None:
+    """Raise :class:`DeclarationError` for a bar whose strength is asked for by name, and which has
+    no direction for it.
+    """
+    named = [name for name in names if name != "all"]
+    for two_force_link in find_two_force_links(scene.guided, scene.laws) if named else ():
+        asked = any(among(kind, [two_force_link.link.name], named) for kind in STRENGTH)
+        if (
+            asked
+            and not two_force_link.aimed
+            and two_force_link.link.beam is not None
+            and not two_force_link.link.beam.round
+        ):
+            raise DeclarationError(unaimed(two_force_link.link.name))
 
 
 @functools.lru_cache(maxsize=32)
@@ -159,13 +186,13 @@ def _corrected(scene: Scene, want: Wanted) -> tuple[Program, Scene] | None:
     if (near := nearest(scene)) is not None:
         with suppress(AssemblyError, MobilityError):
             program = _program(near, want)
-            return replace(program, identity=fingerprint(scene, want)), near
+            return replace(program, identity=identity_of(scene, want)), near
     return None
 
 
 def _program(scene: Scene, want: Wanted) -> Program:
     """Read the Program of a scene from the cache folder, or derive it and keep it there."""
-    identity = fingerprint(scene, want)
+    identity = identity_of(scene, want)
     text = cache.read(f"{identity}.graph") if identity else None
     if text is not None:
         program = Program.loads(text)
@@ -301,7 +328,7 @@ def _strength(
     for name in want.stressed:
         found |= stresses(scene.mechanism, name, columns)
     if want.used or want.bent:
-        description = describe(scene.mechanism, scene.mechanism.values(scene.assembly), scene.laws)
+        description = filled(template(scene), scene.mechanism.values(scene.assembly))
         for name in want.used:
             beam = scene.mechanism.links[name].beam
             assert beam is not None

@@ -18,6 +18,7 @@ from ..base.quantities import Kinds
 from ..base.scalars import column, graph
 from ..base.symbolic import Graphs, symbolic
 from ..base.tables import table_of
+from ..base.tree import Template
 from ..base.vocabulary import PRECISIONS, Precision
 from ..errors import UnknownNameError
 from ..model.beams.beam import Beam, beam_of
@@ -27,11 +28,11 @@ from ..model.declared import Declared
 from ..model.density import Density
 from ..model.description import (
     Description,
-    Template,
     beams_of,
+    described,
+    filled,
     in_space,
     kinds_of_described,
-    template_of,
 )
 from ..model.laws import Laws
 from ..model.mass_properties import ALL, masses_of
@@ -71,25 +72,16 @@ def template(scene: Scene) -> Template:
     taken to be none, and the coordinates that are ``unmeasured``.
     """
     mechanism = scene.mechanism
-    found = template_of(
-        mechanism, tuple(scene.laws), None if scene.weights is None else tuple(scene.weights)
-    )
-    if not mechanism.space:
-        return found
-    tree = span(scene.guided, scene.laws)
-    unmeasured = [
-        name
-        for name, (joint, axis) in mechanism.coordinates.items()
-        if not tree.measures(joint, axis)
-    ]
-    return replace(
-        found,
-        content=found.content
-        | {
-            "bars": [one.link.name for one in tree.two_force_links],
-            "unmeasured": unmeasured,
-        },
-    )
+    content = described(mechanism, scene.laws, scene.weights)
+    if mechanism.space:
+        tree = span(scene.guided, scene.laws)
+        content["bars"] = [one.link.name for one in tree.two_force_links]
+        content["unmeasured"] = [
+            name
+            for name, (joint, axis) in mechanism.coordinates.items()
+            if not tree.measures(joint, axis)
+        ]
+    return Template.of(content, mechanism.symbols)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -104,8 +96,8 @@ class ModelData(Graphs, Brief):
     together [kg]. ``margins`` are what a precision demands of the parameters; motions and
     constraints may have kinks at ``corners``. The loads ``partial`` act along a part of their link;
     ``jumps`` are the ratios at which the mass along a link jumps. ``stated`` are the constraints,
-    rows, motions and laws of loads as they were declared, for certificates, and ``template`` is the
-    description but for the numbers.
+    rows, motions and laws of loads as they were declared, for certificates (:class:`.Stated`), and
+    ``template`` is the description but for the numbers.
     """
 
     rounding: float
@@ -119,7 +111,7 @@ class ModelData(Graphs, Brief):
     masses: ca.Function
     partial: tuple[str, ...]
     jumps: Mapping[str, tuple[float, ...]]
-    stated: Stated
+    stated: Template
     template: Template
 
     @classmethod
@@ -187,13 +179,13 @@ class ModelData(Graphs, Brief):
 
     def at(self, p: Sequence[float] | Array) -> Description:
         """Describe the mechanism in plain numbers, for parameters ``p``."""
-        return self.template.filled(self.values(p))
+        return filled(self.template, self.values(p))
 
     def declared(self, p: Sequence[float] | Array) -> Declared:
         """Return what certificates read of the mechanism, for parameters ``p``: nothing of it is
         derived.
         """
-        return Declared.of(self.at(p), self.stated, p)
+        return Declared.of(self.at(p), self.stated.at(p))
 
     @property
     @symbolic

@@ -13,19 +13,18 @@ import numpy as np
 
 from ..base.arrays import Array, Expression
 from ..base.brief import listed
-from ..base.graph_text import dumps, loads
 from ..base.quantities import Output
 from ..base.scalars import graph, inputs_of
 from ..base.symbolic import Graphs, symbolic, symbolic_property
+from ..base.tree import Place, Template, dumps, loads
 from ..errors import PickleError
 from ..model.corners import Corners
-from ..model.description import Place, Template
 from ..model.kinks import Smooth
 from ..model.laws import Laws
 from ..model.limits import END
 from ..model.parts import Parameter
 from ..model.scene import Wanted
-from ..model.stated import Entries, EquationGraph, LoadGraph, Stated
+from ..model.stated import Entry, Equation, LoadLaw, Stated, Touch
 from ..model.times import Timing
 from ..model.validity import Margins
 from .checks import Check, Column, Kind
@@ -52,7 +51,7 @@ class Program(Graphs):
     sum of directions of bodies that are known modulo 2 pi, and the revolutions of joints that count
     them, which the columns leave out. ``completion`` is there if least strain energy determines
     what equilibrium does not. ``identity`` is the hash of everything that the Program follows from
-    (see :func:`.fingerprint`), or None if the declaration holds something without a stable content.
+    (see :func:`.identity_of`), or None if the declaration holds something without a stable content.
     """
 
     data: ModelData
@@ -253,7 +252,7 @@ class Program(Graphs):
 
 
 _PARTS = (
-    *(Check, Completion, Corners, Entries, EquationGraph, Laws, LoadGraph, Margins, ModelData),
-    *(NewtonLoop, Output, Parameter, Place, Smooth, Stated, Template, Timing, Wanted),
+    *(Check, Completion, Corners, Entry, Equation, Laws, LoadLaw, Margins, ModelData, NewtonLoop),
+    *(Output, Parameter, Place, Smooth, Stated, Template, Timing, Touch, Wanted),
 )
 """Kinds of what a program is made of."""

@@ -21,7 +21,6 @@ from .checks import Column
 from .derive import derived
 from .model_data import ModelData
 from .moving import instant_inputs, solved_motion
-from .normalise import normalise
 from .program import Program
 from .tree import span
 
@@ -42,7 +41,7 @@ def reflected_inertia(scene: Scene, parameters: Mapping[str, float]) -> Reflecte
 
     Raises as that does.
     """
-    _, scene = derived(normalise(scene, ["motion"], parameters))
+    _, scene = derived(scene, ["motion"], parameters)
     mechanism = scene.mechanism
     drives = scene.needs_drives if scene.weights is None else tuple(scene.weights)
     body = assemble(scene.guided, span(scene.guided, scene.laws), scene.laws, ())

@@ -9,14 +9,14 @@ expressions, constraints, motions and laws of loads, stands beside the numbers a
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
 
 import numpy as np
 
-from ..base.arrays import Array, Expression
+from ..base.arrays import Expression
 from .description import Description, density_of, drives_of, in_space, motions_of, slices_of
 from .stated import Equation, LoadLaw, Stated, Triple
 
@@ -111,14 +111,9 @@ class Declared:
     laws: tuple[LoadLaw, ...] = ()
 
     @classmethod
-    def of(
-        cls, description: Description, stated: Stated | None = None, p: Sequence[float] | Array = ()
-    ) -> Declared:
-        """The numbers of a description, which a file holds too; and what was ``stated``, for values
-        of all parameters.
-        """
-        known, stated = tuple(map(float, p)), stated or Stated((), (), ())
-        space = in_space(description)
+    def of(cls, description: Description, stated: Stated | None = None) -> Declared:
+        """The numbers of a description, which a file holds too; and what was ``stated``."""
+        space, stated = in_space(description), stated or Stated()
         return cls(
             gravity=_triple(description["gravity"]),
             bodies={name: _body(body, space) for name, body in description["bodies"].items()},
@@ -133,9 +128,9 @@ class Declared:
                 for name, direction in description.get("beside", {}).items()
             },
             multipliers=(*description["constraints"], *description["rows"]),
-            equations=tuple(equation.at(known) for equation in stated.equations),
-            motions=tuple(motion.at(known) for motion in stated.motions),
-            laws=tuple(law.at(known) for law in stated.laws),
+            equations=stated.equations,
+            motions=stated.motions,
+            laws=stated.laws,
         )
 
     @cached_property

@@ -4,20 +4,14 @@ made from.
 
 from __future__ import annotations
 
-import functools
-import marshal
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Collection, Iterable, Mapping
 from typing import Any
 
 import casadi as ca
-import numpy as np
 
-from ..base.arrays import Expression, Json
+from ..base.arrays import Expression
 from ..base.quantities import Kinds
-from ..base.scalars import column
-from ..base.symbolic import Graphs, symbolic
+from ..base.tree import Template
 from ..base.vectors import cross
 from .beams.beam import beam_to_numbers
 from .density import Density, NumericDensity
@@ -251,105 +245,15 @@ def parts_of(description: Description) -> list[str]:
     )
 
 
-class Place(int):
-    """The number of a number of a template among all of them."""
-
-
-@dataclass(frozen=True, eq=False)
-class Template(Graphs):
-    """A description but for its numbers, in whose stead are :class:`Place`; ``numbers(p)`` is all
-    of them.
-    """
-
-    content: Description
-    numbers: ca.Function
-
-    def filled(self, values: Mapping[str, float]) -> Description:
-        """The description for values of all parameters."""
-        numbers = self.numbers(np.array([*values.values()], float)).full().ravel().tolist()
-        blank, places = self._blank
-        found: Description = marshal.loads(blank)
-        for place, (*path, last) in places:
-            part: Any = found
-            for key in path:
-                part = part[key]
-            part[last] = numbers[place]
-        for name, value in values.items():
-            found["parameters"][name]["value"] = value
-        for body in found["bodies"].values():
-            if "density" in body:
-                body["mass"] = density_of(body).mass
-        return found
-
-    @cached_property
-    def _blank(self) -> tuple[bytes, list[tuple[int, tuple[str | int, ...]]]]:
-        """The content without its numbers, as bytes of which a copy is made fastest, and its places
-        with the keys that lead there.
-        """
-        return marshal.dumps(_with(self.content, lambda _: None)), [*_places(self.content)]
-
-    def placed(self, content: Description, p: Expression) -> Description:
-        """A part of the content, with expressions of parameters ``p`` at its places, and numbers
-        where these are constant.
-        """
-        numbers = [float(x) if x.is_constant() else x for x in ca.vertsplit(ca.SX(self.numbers(p)))]
-        found: Description = _with(content, lambda place: numbers[place])
-        return found
-
-
-def _places(
-    content: Json | Place, path: tuple[str | int, ...] = ()
-) -> Iterator[tuple[int, tuple[str | int, ...]]]:
-    """Numbers of the places in a description, each with the keys that lead there."""
-    if isinstance(content, Place):
-        yield int(content), path
-    elif isinstance(content, dict | list):
-        items = content.items() if isinstance(content, dict) else enumerate(content)
-        for key, part in items:
-            yield from _places(part, (*path, key))
-
-
-def _with(content: Json | Place, number: Callable[[Place], object]) -> Any:
-    """A copy of a description with something else for each of its places."""
-    if isinstance(content, dict):
-        return {name: _with(part, number) for name, part in content.items()}
-    if isinstance(content, list):
-        return [_with(part, number) for part in content]
-    return number(content) if isinstance(content, Place) else content
-
-
-@symbolic
-def describe(
-    mechanism: Mechanism,
-    values: Mapping[str, float],
-    driven: Collection[str],
-    drives: Collection[str] | None = None,
-) -> Description:
-    """Bodies with their length [m] (None for a point mass) and mass [kg], and joints with the
-    places they join.
-
-    ``driven`` are the coordinates whose motion is given, ``drives`` those whose efforts make it,
-    where these are others. A joint in space has its coordinates in sequence, with their kinds;
-    their ``axes`` and how the child's axes are ``turned``, both where all coordinates are zero; and
-    its own axes, the ``triad``. Directions are in the parent's axes, a row each.
-    """
-    return template_of(mechanism, tuple(driven), None if drives is None else tuple(drives)).filled(
-        values
-    )
-
-
-@functools.lru_cache(maxsize=32)
-def template_of(
-    mechanism: Mechanism, driven: tuple[str, ...], drives: tuple[str, ...] | None
-) -> Template:
-    """The template of what :func:`describe` gives, made once."""
-    content, asked = _numbered(mechanism, driven)
-    if drives is not None:
-        motions = {name: _kind(mechanism, name) for name in driven}
-        content |= {"drives": list(drives), "motions": motions}
-    numbers = ca.densify(column(ca.SX(expression) for expression in asked))
-    function = ca.Function("numbers", [mechanism.symbols], [numbers], ["p"], ["numbers"])
-    return Template(content, function)
+def filled(template: Template, values: Mapping[str, float]) -> Description:
+    """The description that a template is of, for values of all parameters."""
+    found: Description = template.at([*values.values()])
+    for name, value in values.items():
+        found["parameters"][name]["value"] = value
+    for body in found["bodies"].values():
+        if "density" in body:
+            body["mass"] = density_of(body).mass
+    return found
 
 
 def _lies_by_default(joint: Joint) -> bool:
@@ -377,49 +281,47 @@ def motions_of(description: Description) -> dict[str, str]:
     return driven | {str(name): str(kind) for name, kind in description.get("motions", {}).items()}
 
 
-@symbolic
-def _numbered(
-    mechanism: Mechanism, driven: Collection[str]
-) -> tuple[Description, list[Expression]]:
-    """A description with places in the place of its numbers, and the expressions of the parameters
-    that stand at these places.
+def described(
+    mechanism: Mechanism, driven: Collection[str], drives: Collection[str] | None
+) -> Description:
+    """Bodies with their length [m] (None for a point mass) and mass [kg], and joints with the
+    places they join; in place of numbers expressions of the parameters.
 
-    The mass of a link that has a density is no such place, for it follows from the density; nor are
-    values of parameters.
+    ``driven`` are the coordinates whose motion is given, ``drives`` those whose efforts make it,
+    where these are others. A joint in space has its coordinates in sequence, with their kinds;
+    their ``axes`` and how the child's axes are ``turned``, both where all coordinates are zero; and
+    its own axes, the ``triad``. Directions are in the parent's axes, a row each. The mass of a link
+    that has a density is no expression, for it follows from the density; nor are values of
+    parameters.
     """
-    asked: list[Any] = []
-
-    def number(expression: Expression) -> Place:
-        asked.append(expression)
-        return Place(len(asked) - 1)
 
     def place(point: Point) -> Description:
-        found = {"body": point.body.name, "x": number(point.x), "y": number(point.y)}
-        return found | {"z": number(point.z)} if mechanism.space else found
+        found = {"body": point.body.name, "x": ca.SX(point.x), "y": ca.SX(point.y)}
+        return found | {"z": ca.SX(point.z)} if mechanism.space else found
 
-    def vector(components: Iterable[Expression]) -> list[float]:
-        return [number(component) for component in components]
+    def vector(components: Iterable[Expression]) -> list[ca.SX]:
+        return [ca.SX(component) for component in components]
 
     def centre(mass: RigidMass) -> Description:
         found = dict(zip("xyz", vector(mass.centre), strict=False))
         return found | {
             "inertia": [vector(row) for row in mass.inertia]
             if mechanism.space
-            else number(mass.inertia)
+            else ca.SX(mass.inertia)
         }
 
     def mass_properties(body: Link | PointMass) -> Description:
         if isinstance(body, PointMass):
-            return {"length": None, "mass": number(body.mass)}
-        length = number(body.length)
+            return {"length": None, "mass": ca.SX(body.mass)}
+        length = ca.SX(body.length)
         if isinstance(body.mass, RigidMass):
-            return {"length": length, "mass": number(body.mass.mass), "centre": centre(body.mass)}
+            return {"length": length, "mass": ca.SX(body.mass.mass), "centre": centre(body.mass)}
         entry = along(body, body.mass)
         if body.mass.slices is not None:
             names = zip(("yy", "zz", "yz"), body.mass.slices.each, strict=True)
             entry["slices"] = {name: along(body, moment) for name, moment in names}
         found = {"length": length, "mass": None, "density": entry}
-        return found if body.beam is None else found | {"beam": beam_to_numbers(body.beam, number)}
+        return found if body.beam is None else found | {"beam": beam_to_numbers(body.beam, ca.SX)}
 
     def along(link: Link, density: Density) -> Description:
         scale = link.length if density.per_length else 1.0
@@ -431,14 +333,14 @@ def _numbered(
     def fitted(joint: Joint) -> Description:
         parts = mechanism.fitted.get(joint.name)
         turning = mechanism.turning.get(joint.name)
-        found: Description = {"fitted": parts_to_numbers(parts, number)} if parts else {}
+        found: Description = {"fitted": parts_to_numbers(parts, ca.SX)} if parts else {}
         return found | {"turning": turning} if turning else found
 
     def freedoms(joint: Joint) -> Description:
         if joint.turned is None:
             entry: Description = {"coordinate": joint.coordinate, "driven": joint.name in driven}
             ends = {"parent": place(joint.parent), "child": place(joint.child)}
-            return entry | ends | {"axis": vector(joint.axis), "angle": number(joint.angle)}
+            return entry | ends | {"axis": vector(joint.axis), "angle": ca.SX(joint.angle)}
         x, y = joint.turned
         return {
             "coordinates": {axis.coordinate: axis.kind for axis in joint.axes},
@@ -448,7 +350,7 @@ def _numbered(
             "axes": [vector(axis.direction) for axis in joint.axes],
             "triad": [vector(direction) for direction in joint.triad],
             "turned": [vector(direction) for direction in (x, y, cross(x, y))],
-            "pitch": number(joint.pitch),
+            "pitch": ca.SX(joint.pitch),
         }
 
     def load_of(load: Load) -> Description:
@@ -459,7 +361,7 @@ def _numbered(
         if mechanism.space:
             found["turning"] = getattr(load, "turning", False)
         if isinstance(load, Friction):
-            numbers = {word: number(value) for word, value in load.numbers.items()}
+            numbers = {word: ca.SX(value) for word, value in load.numbers.items()}
             found["friction"] = {"coordinate": load.axis.coordinate, "numbers": numbers}
         return found
 
@@ -484,7 +386,7 @@ def _numbered(
         for body, found in mechanism.outlines.items()
     }
     rollers = {
-        name: place(roller.centre) | {"radius": number(roller.radius)}
+        name: place(roller.centre) | {"radius": ca.SX(roller.radius)}
         for name, roller in mechanism.rollers.items()
     }
     lossy = [
@@ -503,6 +405,8 @@ def _numbered(
         ("outputs", {name: output.unit for name, output in mechanism.outputs.items()}),
         ("rounded", {name: list(by) for name, by in mechanism.rounded.items()}),
         ("snapped", {name: list(by) for name, by in mechanism.snapped.items()}),
+        ("drives", list(drives or ())),
+        ("motions", {name: _kind(mechanism, name) for name in driven} if drives else {}),
     )
     content: Description = {
         "name": mechanism.name,
@@ -514,4 +418,4 @@ def _numbered(
         "rows": {name: row.replaces for name, row in mechanism.rows.items()},
         "constraints": list(mechanism.constraints),
     }
-    return content | {name: found for name, found in optional if found}, asked
+    return content | {name: found for name, found in optional if found}

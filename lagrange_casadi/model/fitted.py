@@ -157,7 +157,7 @@ def positive(name: str, number: float) -> bool:
 
 
 def parts_to_numbers(
-    parts: Mapping[str, Fitted], number: Callable[[Expression], float]
+    parts: Mapping[str, Fitted], number: Callable[[Expression], Expression]
 ) -> dict[str, Json]:
     """Parts in plain numbers, as a file keeps them."""
 

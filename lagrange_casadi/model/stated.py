@@ -16,8 +16,9 @@ import numpy as np
 from ..base.arrays import Array, Expression
 from ..base.scalars import column
 from ..base.symbolic import Graphs, symbolic
+from ..base.tree import Template
 from .mechanism import Mechanism
-from .meshes import Mesh, Transmission, Wrench
+from .meshes import Transmission, Wrench
 from .motion import Motion
 from .parts import Constraint, Force, Friction, LineLoad, Point, Row, Spring, Torque
 
@@ -32,9 +33,6 @@ _ORIGIN = (0.0, 0.0, 0.0)
 
 _COMPONENTS: tuple[EntryKind, ...] = ("x", "y", "z")
 
-_WRENCHES = 8
-"""The vectors of a mesh: two places, and force and couple of three wrenches."""
-
 
 @dataclass(frozen=True)
 class Entry:
@@ -44,7 +42,7 @@ class Entry:
 
     kind: EntryKind
     part: str
-    point: Triple
+    point: Triple = _ORIGIN
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,82 +69,49 @@ class Touch:
 
 @dataclass(frozen=True, eq=False)
 class _Measured:
-    """A number that is measured: its kind and part, the place on a body, and the symbols of its
-    place and rate.
-    """
+    """An entry, and the symbols of its place and rate."""
 
-    kind: EntryKind
-    part: str
-    point: tuple[Any, ...] = _ORIGIN
+    entry: Entry
     place: Any = field(default_factory=lambda: ca.SX.sym("place"))
     rate: Any = field(default_factory=lambda: ca.SX.sym("rate"))
 
 
 @dataclass(frozen=True, eq=False)
-class Entries(Graphs):
-    """Numbers that are measured, by kind and part; ``points(p)`` are their places on bodies, a
-    column each.
-    """
-
-    each: tuple[tuple[EntryKind, str], ...]
-    points: ca.Function
-
-    @classmethod
-    def of(cls, found: Sequence[_Measured], p: Expression) -> Entries:
-        """Make it from symbols."""
-        points = ca.horzcat(ca.SX(3, 0), *(ca.vertcat(*one.point) for one in found))
-        return cls(
-            tuple((one.kind, one.part) for one in found),
-            ca.Function("points", [p], [ca.densify(points)]),
-        )
-
-    def at(self, p: Sequence[float]) -> tuple[Entry, ...]:
-        """Evaluate it for values of all parameters."""
-        points = self.points(list(p)).full().T.tolist()
-        return tuple(
-            Entry(*one, tuple(point)) for one, point in zip(self.each, points, strict=True)
-        )
-
-
-@dataclass(frozen=True, eq=False)
-class EquationGraph(Graphs):
-    """A constraint Phi = 0, or a row A q' + b = 0 where ``row``, over what it measures, for any
-    parameters.
+class Equation(Graphs):
+    """A constraint Phi = 0, or a row A q' + b = 0 where ``row``, over what it measures, for values
+    ``p`` of all parameters; of a transmission, ``touches`` say how its multiplier acts.
 
     ``values(places, rates, accelerations, t, p)`` gives the equation and, of a constraint, its
     first and second total time derivative; ``slopes(places, rates, t, p)`` what it changes by an
-    entry: by its place, or of a row by its rate. ``meshes`` name the bodies of a transmission, and
-    ``wrenches(p)`` are the numbers of a :class:`Touch`, a column each.
+    entry: by its place, or of a row by its rate.
     """
 
     name: str
     row: bool
-    entries: Entries
+    p: tuple[float, ...]
+    entries: tuple[Entry, ...]
+    touches: tuple[Touch, ...]
     values: ca.Function
     slopes: ca.Function
-    meshes: tuple[tuple[str, str, str], ...]
-    rotations: tuple[tuple[int, str], ...]
-    wrenches: ca.Function
 
     @classmethod
-    def of(cls, mechanism: Mechanism, declared: Constraint | Row) -> EquationGraph:
-        """The graph of one equation of a mechanism, from the expressions as they were declared."""
+    def of(cls, mechanism: Mechanism, declared: Constraint | Row) -> Equation:
+        """One equation of a mechanism, from the expressions as they were declared."""
         row = isinstance(declared, Row)
         expression = ca.SX(declared.expression if isinstance(declared, Row) else declared.phi)
         transmission = None if isinstance(declared, Row) else declared.transmission
-        return cls._over(
-            mechanism, declared.name, expression, _seen(mechanism, expression), row, transmission
-        )
+        found = _seen(mechanism, expression)
+        return cls._over(mechanism, declared.name, expression, found, row, _touches(transmission))
 
     @classmethod
     def driven(
         cls, mechanism: Mechanism, coordinate: str, moved: _Measured, law: Motion
-    ) -> EquationGraph:
+    ) -> Equation:
         """A prescribed motion, of a joint, a point or a body, as the equation that what is
         ``moved`` is where its law says.
         """
         gap = moved.place - law.graph(mechanism.time)
-        return cls._over(mechanism, coordinate, gap, [moved], False, None)
+        return cls._over(mechanism, coordinate, gap, [moved], False, ())
 
     @classmethod
     def _over(
@@ -156,8 +121,8 @@ class EquationGraph(Graphs):
         expression: ca.SX,
         found: Sequence[_Measured],
         row: bool,
-        transmission: Transmission | None,
-    ) -> EquationGraph:
+        touches: tuple[Touch, ...],
+    ) -> Equation:
         places, rates = _columns(found)
         accelerations = ca.SX.sym("accelerations", len(found))
         t, p = mechanism.time, mechanism.symbols
@@ -166,90 +131,33 @@ class EquationGraph(Graphs):
         for _ in range(0 if row else 2):
             changes.append(ca.jtimes(changes[-1], moving, speed))
         slopes = ca.densify(ca.jacobian(expression, rates if row else places).T)
-        meshes = transmission.meshes if transmission else ()
-        wrenches = ca.horzcat(
-            ca.SX(3 * _WRENCHES + 3, 0),
-            *(_numbers(transmission, mesh) for mesh in meshes if transmission),
-        )
-        rotations = (
-            transmission.loss.rotations
-            if transmission is not None and transmission.loss is not None
-            else ()
-        )
         return cls(
             name=name,
             row=row,
-            entries=Entries.of(found, p),
+            p=_parameters(mechanism),
+            entries=tuple(one.entry for one in found),
+            touches=touches,
             values=ca.Function(
                 "values", [places, rates, accelerations, t, p], [ca.densify(ca.vertcat(*changes))]
             ),
             slopes=ca.Function("slopes", [places, rates, t, p], [slopes]),
-            meshes=tuple(
-                (mesh.first.body.name, mesh.second.body.name, mesh.carrier.name) for mesh in meshes
-            ),
-            rotations=tuple((sign, joint.name) for sign, joint in rotations),
-            wrenches=ca.Function("wrenches", [p], [ca.densify(wrenches)]),
         )
-
-    def at(self, p: tuple[float, ...]) -> Equation:
-        """The equation for values of all parameters."""
-        touches = (
-            self._touch(names, row)
-            for names, row in zip(
-                self.meshes, self.wrenches(list(p)).full().T.tolist(), strict=True
-            )
-        )
-        return Equation(self, p, self.entries.at(p), tuple(touches))
-
-    def _touch(self, names: tuple[str, str, str], row: list[float]) -> Touch:
-        centre, reach, *parts = (
-            (row[k], row[k + 1], row[k + 2]) for k in range(0, 3 * _WRENCHES, 3)
-        )
-        along, apart, braking = ((parts[k], parts[k + 1]) for k in (0, 2, 4))
-        slack, arm, lean = row[3 * _WRENCHES :]
-        return Touch(
-            *names, centre, reach, along, apart, braking, slack, (arm, lean), self.rotations
-        )
-
-
-@dataclass(frozen=True, eq=False)
-class Equation:
-    """An equation for values ``p`` of all parameters; of a transmission, ``touches`` say how its
-    multiplier acts.
-    """
-
-    graph: EquationGraph
-    p: tuple[float, ...]
-    entries: tuple[Entry, ...]
-    touches: tuple[Touch, ...]
-
-    @property
-    def name(self) -> str:
-        """The name of the constraint or row."""
-        return self.graph.name
-
-    @property
-    def row(self) -> bool:
-        """True if it is a non-holonomic row."""
-        return self.graph.row
 
     def at(self, places: Array, rates: Array, accelerations: Array, t: Array) -> Array:
         """The equation over instants and, of a constraint, its derivatives: a row each, from
         entries (entries, t).
         """
-        return np.asarray(
-            self.graph.values(places, rates, accelerations, t[None], list(self.p)).full()
-        )
+        return np.asarray(self.values(places, rates, accelerations, t[None], list(self.p)).full())
 
     def slopes_at(self, places: Array, rates: Array, t: Array) -> Array:
         """Derivatives by each entry, (entries, t)."""
-        return np.asarray(self.graph.slopes(places, rates, t[None], list(self.p)).full())
+        return np.asarray(self.slopes(places, rates, t[None], list(self.p)).full())
 
 
 @dataclass(frozen=True, eq=False)
-class LoadGraph(Graphs):
-    """The law of a load over what it measures, for any parameters: its numbers are ``values(places,
-    rates, t, p)``.
+class LoadLaw(Graphs):
+    """The law of a load over what it measures, for values ``p`` of all parameters: its numbers are
+    ``values(places, rates, t, p)``.
 
     A force and a torque have three; a spring its stiffness, length and damping; a load along a link
     the length on which it acts, and three for each power of its polynomial. They are on the body's
@@ -259,46 +167,29 @@ class LoadGraph(Graphs):
     name: str
     kind: LoadKind
     turning: bool
-    entries: Entries
+    p: tuple[float, ...]
+    entries: tuple[Entry, ...]
     values: ca.Function
 
     @classmethod
-    def of(cls, mechanism: Mechanism, load: Force | Torque | Spring | LineLoad) -> LoadGraph:
+    def of(cls, mechanism: Mechanism, load: Force | Torque | Spring | LineLoad) -> LoadLaw:
         """The law of a load, from the expressions as they were declared."""
         kind, coefficients = _kind_and_numbers(load)
         numbers = ca.densify(ca.vertcat(*map(ca.SX, coefficients)))
         found = _seen(mechanism, numbers)
         given = [*_columns(found), mechanism.time, mechanism.symbols]
-        turning = getattr(load, "turning", False)
         return cls(
             load.name,
             kind,
-            turning,
-            Entries.of(found, mechanism.symbols),
+            getattr(load, "turning", False),
+            _parameters(mechanism),
+            tuple(one.entry for one in found),
             ca.Function("values", given, [numbers]),
         )
 
-    def at(self, p: tuple[float, ...]) -> LoadLaw:
-        """The law for values of all parameters."""
-        return LoadLaw(self, p, self.entries.at(p))
-
-
-@dataclass(frozen=True, eq=False)
-class LoadLaw:
-    """The law of a load for values ``p`` of all parameters."""
-
-    graph: LoadGraph
-    p: tuple[float, ...]
-    entries: tuple[Entry, ...]
-
-    @property
-    def name(self) -> str:
-        """The load's name."""
-        return self.graph.name
-
     def at(self, places: Array, rates: Array, t: Array) -> Array:
         """Numbers over instants, a row each, from entries (entries, t)."""
-        return np.asarray(self.graph.values(places, rates, t[None], list(self.p)).full())
+        return np.asarray(self.values(places, rates, t[None], list(self.p)).full())
 
 
 @dataclass(frozen=True, eq=False)
@@ -307,36 +198,42 @@ class Stated:
     laws of its loads.
     """
 
-    equations: tuple[EquationGraph, ...]
-    motions: tuple[EquationGraph, ...]
-    laws: tuple[LoadGraph, ...]
+    equations: tuple[Equation, ...] = ()
+    motions: tuple[Equation, ...] = ()
+    laws: tuple[LoadLaw, ...] = ()
 
     @classmethod
     @symbolic
-    def of(cls, mechanism: Mechanism, motions: Mapping[str, Motion]) -> Stated:
-        """Declared facts of a mechanism whose coordinates, those of guides too, have ``motions``.
+    def of(cls, mechanism: Mechanism, motions: Mapping[str, Motion]) -> Template:
+        """Declared facts of a mechanism whose coordinates, those of guides too, have ``motions``,
+        for any parameters.
 
         Friction has a law of its own.
         """
-        stated: tuple[Constraint | Row, ...] = (
+        declared: tuple[Constraint | Row, ...] = (
             *mechanism.constraints.values(),
             *mechanism.rows.values(),
         )
         coordinates = mechanism.coordinates
-        return cls(
-            equations=tuple(EquationGraph.of(mechanism, one) for one in stated),
+        found = cls(
+            equations=tuple(Equation.of(mechanism, one) for one in declared),
             motions=tuple(
-                EquationGraph.driven(
+                Equation.driven(
                     mechanism, name, _moved(mechanism, name, joint=name in coordinates), law
                 )
                 for name, law in motions.items()
             ),
             laws=tuple(
-                LoadGraph.of(mechanism, load)
+                LoadLaw.of(mechanism, load)
                 for load in mechanism.loads.values()
                 if not isinstance(load, Friction)
             ),
         )
+        return Template.of(found, mechanism.symbols)
+
+
+def _parameters(mechanism: Mechanism) -> tuple[Any, ...]:
+    return tuple(parameter.symbol for parameter in mechanism.parameters.values())
 
 
 def _seen(mechanism: Mechanism, expression: ca.SX) -> list[_Measured]:
@@ -350,33 +247,29 @@ def _seen(mechanism: Mechanism, expression: ca.SX) -> list[_Measured]:
 
 def _measured(mechanism: Mechanism) -> Iterator[_Measured]:
     for measure in mechanism.measures.asked:
-        of = measure.of
-        if isinstance(of, Point):
-            for component, place, rate in zip(
-                _COMPONENTS, measure.places, measure.rates, strict=False
-            ):
-                yield _Measured(component, of.body.name, of.place, place, rate)
+        if isinstance(measure.of, Point):
+            body, place = measure.of.body.name, measure.of.place
+            entries = [Entry(component, body, place) for component in _COMPONENTS]
         elif measure.axis is not None:
-            yield _Measured(
-                "coordinate", measure.axis.coordinate, _ORIGIN, measure.places[0], measure.rates[0]
-            )
+            entries = [Entry("coordinate", measure.axis.coordinate)]
         else:
-            yield _Measured("direction", of.name, _ORIGIN, measure.places[0], measure.rates[0])
+            entries = [Entry("direction", measure.of.name)]
+        yield from map(_Measured, entries, measure.places, measure.rates)
 
 
 def _moved(mechanism: Mechanism, coordinate: str, *, joint: bool) -> _Measured:
     """Coordinate that a motion moves: of a joint, or, for a guide, of a point or of a body."""
     if joint:
-        return _Measured("coordinate", coordinate)
+        return _Measured(Entry("coordinate", coordinate))
     name, _, what = coordinate.rpartition(".")
     if what == "angle":
-        return _Measured("direction", name)
+        return _Measured(Entry("direction", name))
     point = (
         mechanism.paths[name].point
         if name in mechanism.paths
         else Point(mechanism.bodies[name], 0.0, 0.0)
     )
-    return _Measured("x" if what == "x" else "y", point.body.name, point.place)
+    return _Measured(Entry("x" if what == "x" else "y", point.body.name, point.place))
 
 
 def _columns(found: Iterable[_Measured]) -> tuple[ca.SX, ca.SX]:
@@ -400,15 +293,29 @@ def _kind_and_numbers(
     return ("force" if isinstance(load, Force) else "torque"), load.components
 
 
-def _numbers(transmission: Transmission, mesh: Mesh) -> ca.SX:
-    """The numbers of a mesh as one column, for :meth:`EquationGraph._touch`."""
-    wrenches = (wrench or Wrench() for wrench in (mesh.along, mesh.apart, mesh.braking))
-    vectors = [
-        mesh.centre,
-        mesh.reach,
-        *(vector for wrench in wrenches for vector in (wrench.force, wrench.couple)),
-    ]
-    loss = (
-        (0.0, 0.0) if transmission.loss is None else (transmission.loss.arm, transmission.loss.lean)
+def _touches(transmission: Transmission | None) -> tuple[Touch, ...]:
+    """The meshes of a transmission in expressions."""
+    if transmission is None:
+        return ()
+    loss = transmission.loss
+    rotations = () if loss is None else loss.rotations
+    return tuple(
+        Touch(
+            first=mesh.first.body.name,
+            second=mesh.second.body.name,
+            carrier=mesh.carrier.name,
+            centre=mesh.centre,
+            reach=mesh.reach,
+            along=_pair(mesh.along),
+            apart=_pair(mesh.apart),
+            braking=_pair(mesh.braking),
+            slack=transmission.slack,
+            loss=(0.0, 0.0) if loss is None else (loss.arm, loss.lean),
+            rotations=tuple((sign, joint.name) for sign, joint in rotations),
+        )
+        for mesh in transmission.meshes
     )
-    return ca.vertcat(*(ca.SX(x) for vector in vectors for x in vector), transmission.slack, *loss)
+
+
+def _pair(wrench: Wrench | None) -> tuple[Any, Any]:
+    return (_ORIGIN, _ORIGIN) if wrench is None else (wrench.force, wrench.couple)

@@ -43,6 +43,11 @@ Bound = float | str
 and sent.
 """
 
+_ENDS = 1e-12
+"""Part of the requested time by which rounding may put an end of it beyond samples: a motion is
+inverted to find the times of ``over=``.
+"""
+
 TURNS = 4.0 * math.pi
 """Angles beyond these [rad], without a unit, were meant in degrees: the directions of a posture,
 and whole numbers over a drive.
@@ -230,6 +235,22 @@ def span_of(laws: Laws, timing: Timing, values: Mapping[str, float]) -> tuple[fl
         return start, stop
     passage = _way(laws, timing, values)
     return float(passage.first[0]), float(passage.last[0])
+
+
+def checked_span(laws: Laws, timing: Timing, values: Mapping[str, float]) -> tuple[float, float]:
+    """The first and the last of instants [s].
+
+    Raises :class:`DeclarationError` where there are none, or samples of a motion end.
+    """
+    start, stop = span_of(laws, timing, values)
+    slack = _ENDS * (stop - start)
+    for joint, (low, high) in zip(laws.joints, laws.spans, strict=True):
+        if start < low - slack or stop > high + slack:
+            raise DeclarationError(
+                f"the samples of the motion of joint '{joint}' cover t from {low:g} to {high:g} s,"
+                f" but t from {start:g} to {stop:g} s was requested"
+            )
+    return start, stop
 
 
 def instants_of(laws: Laws, timing: Timing, values: Mapping[str, float]) -> Instants:

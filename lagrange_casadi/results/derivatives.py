@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,9 +11,7 @@ from ..base.arrays import Array, Instants, during
 from ..base.quantities import Output, quotient
 from ..errors import UnknownNameError
 from ..model.wanted_names import SENSITIVITY
-
-if TYPE_CHECKING:
-    from .solution import Solution
+from .histories import Histories
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,13 +88,13 @@ class Derivative:
     attributes: dict[str, str]
 
 
-def derivatives(solution: Solution) -> Iterator[Derivative]:
-    """All of a solution."""
-    parameters = solution.description["parameters"]
-    for name, found in solution.sensitivities.by.items():
+def derivatives(histories: Histories, sensitivities: Derivatives) -> Iterator[Derivative]:
+    """All derivatives of histories."""
+    parameters = histories.description["parameters"]
+    for name, found in sensitivities.by.items():
         for output, values in found.items():
-            unit = quotient(solution.unit(output), str(parameters[name]["unit"]))
-            quantity = output.meant(solution.table)
+            unit = quotient(histories.unit(output), str(parameters[name]["unit"]))
+            quantity = output.meant(histories.table)
             words = quantity.attributes | {
                 "long_name": f"{quantity.long_name}: derivative by {name}"
             }

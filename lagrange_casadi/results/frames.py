@@ -1,4 +1,4 @@
-"""A solution in the containers of other libraries, and as rows: an instant each, with units in the
+"""Histories in the containers of other libraries, and as rows: an instant each, with units in the
 head.
 """
 
@@ -9,19 +9,18 @@ from typing import TYPE_CHECKING
 from ..base.arrays import Array
 from ..base.table_file import head
 from ..errors import LagrangeCasadiError
-from .derivatives import derivatives
+from .derivatives import Derivatives, derivatives
+from .histories import Histories
 
 if TYPE_CHECKING:
     import pandas
     import xarray
 
-    from .solution import Solution
-
 TIME = "t [s]"
 """The head of the instants."""
 
 
-def dataset(solution: Solution) -> xarray.Dataset:
+def dataset(histories: Histories, sensitivities: Derivatives) -> xarray.Dataset:
     """All quantities as an ``xarray.Dataset`` over t and xi.
 
     Raises :class:`.LagrangeCasadiError` without xarray.
@@ -35,31 +34,31 @@ def dataset(solution: Solution) -> xarray.Dataset:
     data = {
         str(q): (
             q.quantity.axes,
-            solution.array(q),
-            {"units": solution.unit(q)} | q.meant(solution.table).attributes,
+            histories.array(q),
+            {"units": histories.unit(q)} | q.meant(histories.table).attributes,
         )
-        for q in solution.quantities()
+        for q in histories.quantities()
     }
-    for found in derivatives(solution):
+    for found in derivatives(histories, sensitivities):
         data[found.name] = (
             found.output.quantity.axes,
             found.values,
             {"units": found.unit} | found.attributes,
         )
     coordinates = {
-        "t": ("t", solution.t, {"units": "s"}),
-        "xi": ("xi", solution.xi, {"units": "1", "long_name": "ratio xi/l"}),
+        "t": ("t", histories.t, {"units": "s"}),
+        "xi": ("xi", histories.xi, {"units": "1", "long_name": "ratio xi/l"}),
     }
-    if solution.over:
+    if histories.over:
         coordinates["over"] = (
             "t",
-            solution.over.values,
-            {"units": solution.over.unit, "long_name": solution.over.long_name},
+            histories.over.values,
+            {"units": histories.over.unit, "long_name": histories.over.long_name},
         )
-    return xarray.Dataset(data, coordinates, {"case": solution.case})
+    return xarray.Dataset(data, coordinates, {"case": histories.case})
 
 
-def frame(solution: Solution) -> pandas.DataFrame:
+def frame(histories: Histories, sensitivities: Derivatives) -> pandas.DataFrame:
     """All quantities as a ``pandas.DataFrame``, a row an instant.
 
     Raises :class:`.LagrangeCasadiError` without pandas.
@@ -70,29 +69,32 @@ def frame(solution: Solution) -> pandas.DataFrame:
         raise LagrangeCasadiError(
             "to_pandas needs pandas; install it with: pip install pandas"
         ) from None
-    return pandas.DataFrame(columns(solution), index=pandas.Index(solution.t, name=TIME))
+    return pandas.DataFrame(
+        columns(histories, sensitivities), index=pandas.Index(histories.t, name=TIME)
+    )
 
 
-def columns(solution: Solution) -> dict[str, Array]:
+def columns(histories: Histories, sensitivities: Derivatives) -> dict[str, Array]:
     """All quantities over the instants, (t,), by a head with the unit: ``effort:O [N m]``.
 
-    A section force has a column for each ratio of the solution: ``section:LINK:bending xi/l=0.25 [N
-    m]``.
+    A section force has a column for each ratio: ``section:LINK:bending xi/l=0.25 [N m]``.
     """
     found: dict[str, Array] = {}
-    if solution.over:
-        found[head(f"over:{solution.over.joint}", solution.over.unit)] = solution.over.values
+    if histories.over:
+        found[head(f"over:{histories.over.joint}", histories.over.unit)] = histories.over.values
     named = [
-        (str(output), solution.unit(output), solution.array(output))
-        for output in solution.quantities()
+        (str(output), histories.unit(output), histories.array(output))
+        for output in histories.quantities()
     ]
-    named += [(found.name, found.unit, found.values) for found in derivatives(solution)]
+    named += [
+        (found.name, found.unit, found.values) for found in derivatives(histories, sensitivities)
+    ]
     for output, unit, values in named:
         if values.ndim == 1:
             found[head(output, unit)] = values
         else:
             found |= {
                 head(f"{output} xi/l={xi:.10g}", unit): column
-                for xi, column in zip(solution.xi, values.T, strict=True)
+                for xi, column in zip(histories.xi, values.T, strict=True)
             }
     return found

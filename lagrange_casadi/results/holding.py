@@ -36,10 +36,10 @@ from ..engine.instants.backends import run
 from ..engine.instants.beyond_equilibrium import Holding
 from ..engine.instants.evaluation_method import EvaluationMethod
 from ..engine.instants.rules import OPEN
-from ..engine.normalise import normalise
 from ..engine.program import Program
 from ..model.description import values_of
 from ..model.scene import Scene
+from .histories import Histories
 from .solution import Solution
 
 _MOST = 10
@@ -69,22 +69,35 @@ def holding(scene: Scene, solution: Solution) -> dict[str, Holding]:
     DeclarationError
         For what is no scene or no solution.
     """
+    return _ranges(scene, solution)
+
+
+def held_at_rest(scene: Scene, histories: Histories) -> dict[str, Holding]:
+    """The ranges of those efforts that friction at rest leaves open at some instant."""
+    if not histories.resting.any():
+        return {}
+    ranges = _ranges(scene, histories)
+    return {name: held for name, held in ranges.items() if np.isnan(histories.effort(name)).any()}
+
+
+def _ranges(scene: Scene, histories: Histories) -> dict[str, Holding]:
+    """The ranges of :func:`holding`."""
     efforts = {
         output.part: values
-        for output, values in solution.outputs.items()
+        for output, values in histories.outputs.items()
         if output.group == "effort"
     }
-    indeterminate = {name: solution.resting & np.isnan(values) for name, values in efforts.items()}
+    indeterminate = {name: histories.resting & np.isnan(values) for name, values in efforts.items()}
     at = np.flatnonzero(np.any([*indeterminate.values()], axis=0)) if efforts else np.zeros(0, int)
     if not at.size:
         return {
-            name: Holding(values, values, solution.unit(Output("effort", name)))
+            name: Holding(values, values, histories.unit(Output("effort", name)))
             for name, values in efforts.items()
         }
-    values = values_of(solution.description)
-    program, near = derived(normalise(scene, ["effort"], values))
+    values = values_of(histories.description)
+    program, near = derived(scene, ["effort"], values)
     held, p = held_efforts(near), np.array([*values.values()])
-    tried, why = _tried(held, _inputs(program, solution.t, p, at))
+    tried, why = _tried(held, _inputs(program, histories.t, p, at))
     ranges = {}
     for name, effort in efforts.items():
         output, reasons = Output("effort", name), list(why)
@@ -104,7 +117,7 @@ def holding(scene: Scene, solution: Solution) -> dict[str, Holding]:
             ends.append(effort.copy())
             ends[-1][at[there]] = np.where(known, end, np.nan)[there]
         reason = next((words for wrong, words in reasons if wrong[there].any()), "")
-        ranges[name] = Holding(ends[0], ends[1], solution.unit(output), reason)
+        ranges[name] = Holding(ends[0], ends[1], histories.unit(output), reason)
     return ranges
 
 

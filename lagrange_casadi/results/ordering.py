@@ -7,22 +7,13 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING
 
 from ..base.arrays import Array
 from ..base.quantities import Output
-from ..base.tables import LARGEST, Table, table_of
+from ..base.tables import LARGEST, table_of
 from ..model.description import Description, in_space, parts_of
-
-if TYPE_CHECKING:
-    from .solution import Solution
-
-
-def table_of_described(description: Description) -> Table:
-    """The table of the quantities of a described mechanism: that of planar ones, or that of spatial
-    ones, whose gravity has a z.
-    """
-    return table_of(in_space(description))
+from .histories import Histories
+from .solution import Solution
 
 
 def in_order(outputs: Mapping[Output, Array], description: Description) -> dict[Output, Array]:
@@ -61,16 +52,16 @@ def _order(outputs: tuple[Output, ...], parts: tuple[str, ...], space: bool) -> 
 _GROUPS = ("effort", "reaction", "friction", "section", *LARGEST, "output")
 
 
-def ordered(solution: Solution) -> Iterator[Output]:
+def ordered(histories: Histories) -> Iterator[Output]:
     """Efforts, reactions with their resultants, section forces, what is largest along links, and
     own outputs.
     """
-    for output in solution.quantities():
+    for output in histories.quantities():
         if output.group in _GROUPS:
             yield output
-            for member in solution.table.reactions:
+            for member in histories.table.reactions:
                 resultant = Output("reaction", output.part, member)
-                if output == solution.made_of(resultant)[-1]:
+                if output == histories.made_of(resultant)[-1]:
                     yield resultant
 
 

@@ -34,10 +34,11 @@ from ..model.description import values_of
 from ..model.even_points import EvenPoints, are_even
 from ..model.scene import Scene
 from ..model.times import Over, Times, span_of
+from ..results.histories import Peak
 from ..results.section_law import SectionLaw, Side
 from ..results.signals import Quantity, SectionForce, Signals
 from ..results.sizes import size_of
-from ..results.solution import Peak, Solution
+from ..results.solution import Solution
 from .evaluate import evaluate
 
 _SAME = 1e-6

@@ -15,11 +15,12 @@ from ..base.arguments import Positive, public
 from ..base.brief import Brief
 from ..base.numerals import readable
 from ..base.scalars import column
+from ..base.tree import Template
 from ..engine.model_data import beam_at, template
 from ..engine.two_force_links import unaimed
 from ..errors import DeclarationError, LagrangeCasadiError, NoDesignError, UnknownNameError
 from ..model.beams.profiles import Profile
-from ..model.description import Template, beams_of, values_of
+from ..model.description import beams_of, values_of
 from ..model.end_conditions import ends_of
 from ..model.parts import Parameter
 from ..model.scene import Scene

@@ -11,7 +11,7 @@ import time
 import casadi as ca
 import numpy as np
 import pytest
-from internals import Wanted, cache, fingerprint
+from internals import Wanted, cache, identity_of
 from mechanisms import slider_crank
 from outside import doubled
 from places import FOLDERS
@@ -164,7 +164,7 @@ def test_nothing_is_built_where_others_may_change_it(fresh_cache, tmp_path, monk
 
 
 def name_of(scene):
-    return fingerprint(scene, Wanted.of(scene.mechanism, scene.wanted))
+    return identity_of(scene, Wanted.of(scene.mechanism, scene.wanted))
 
 
 def test_a_second_process_derives_nothing(fresh_cache, tmp_path):

@@ -6,5 +6,5 @@ from internals import Declared, Stated
 def declaration(scene, solution):
     """The mechanism in plain numbers as a solution has them, and what was stated of it."""
     values = [one["value"] for one in solution.description["parameters"].values()]
-    stated = Stated.of(scene.mechanism, scene.laws)
-    return Declared.of(solution.description, stated, values)
+    stated = Stated.of(scene.mechanism, scene.laws).at(values)
+    return Declared.of(solution.description, stated)

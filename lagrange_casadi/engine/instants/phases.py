@@ -43,3 +43,34 @@ def phases(program: Program, out: Array, t: Array, p: Array) -> dict[Output, Arr
             )
             rows[Output("motion", name)] = np.asarray(whole)
     return {angle: np.array(row, float) for angle, row in rows.items()}
+
+
+def outputs_of(program: Program, out: Array) -> dict[Output, Array]:
+    """The outputs among the columns ``out`` (columns, ..., t) of a graph; angles go on where they
+    would jump by a turn.
+
+    They are those columns, not copies: in ``out`` too angles go on after this.
+    """
+    unwind(program, out)
+    return {output: out[k] for output, k in program.outputs.items()}
+
+
+def unwind(program: Program, out: Array) -> None:
+    """Let angles go on where they would jump by a turn, in the columns ``out`` (columns, ..., t)
+    of a graph.
+    """
+    parts, angles = program.loop_rows
+    revolutions = [
+        math.tau * (out[k] - out[k][..., :1]) if whole else _jumps(out[k]) for k, whole in parts
+    ]
+    for k, signs in angles:
+        angle = out[k]
+        for number, sign in signs:
+            angle += sign * revolutions[number]
+        angle -= math.tau * np.ceil(angle[..., :1] / math.tau - 0.5)
+
+
+def _jumps(angle: Array) -> Array | float:
+    """Addition that lets an angle (..., t) go on where it jumps by a turn."""
+    jumps = not (np.abs(angle[..., 1:] - angle[..., :-1]) < math.pi).all()
+    return np.unwrap(angle) - angle if jumps else 0.0

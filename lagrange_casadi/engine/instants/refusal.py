@@ -16,11 +16,12 @@ from ...base.arrays import Array
 from ...base.compensated import DTYPES
 from ...base.status import Status
 from ...base.vocabulary import Precision
-from ...errors import AssemblyError
-from ...model.ends import share_beyond, words_beyond
+from ...errors import AssemblyError, DeclarationError
+from ...model.ends import BEYOND, share_beyond, words_beyond
 from ..codegen.stages import plain
 from ..iteration import LARGEST_STEP
 from ..kinematics import where
+from ..model_data import ModelData
 from ..program import Program
 from ..status import Bound, Rule
 from .backends import Evaluated, Interpreter
@@ -33,6 +34,7 @@ _JAM = (
     " closer to its axis"
 )
 _TRIALS, _WIDE = 100, 0.1
+_SAMPLED = 4001
 
 
 @dataclass(frozen=True)
@@ -43,6 +45,27 @@ class Refusal:
 
     status: Status
     message: str
+
+
+@functools.lru_cache(maxsize=64)
+def refuse_laws(data: ModelData, span: tuple[float, float], p: tuple[float, ...]) -> None:
+    """Raise :class:`DeclarationError` for a motion whose rate jumps within a span of time, for
+    values of the parameters.
+
+    Also where it puts into a curve what is beyond the curve's ends.
+    """
+    data.corners.refuse_laws(span, p)
+    laws = data.laws
+    if laws.beyond is None:
+        return
+    t = np.linspace(*span, _SAMPLED)
+    beyond = np.argwhere(~(laws.beyond(t[None], list(p)).full() <= BEYOND["double"]).T)
+    if beyond.size:
+        at, joint = beyond[0]
+        raise DeclarationError(
+            f"the motion of joint '{laws.joints[joint]}': the argument of its curve is outside the"
+            f" curve's range at t = {t[at]:.6g} s"
+        )
 
 
 def refuse(

@@ -13,20 +13,18 @@ from typing import Any
 import numpy as np
 
 from ...engine.derive import derived
-from ...engine.fingerprint import declaration
+from ...engine.identity import declaration
 from ...engine.instants.determinacy import determinate
 from ...engine.instants.evaluation_method import EvaluationMethod
 from ...engine.instants.from_table import drive_of, table_of
-from ...engine.normalise import normalise
 from ...errors import CertificateError, DeclarationError
 from ...model.description import fitted_of
 from ...model.expressions import check_line
 from ...model.scene import Scene
-from ...model.times import instants_of
+from ...model.times import checked_span, instants_of
 from ...model.wanted_names import by_parameters, others, without_fitted, without_life
 from ...results.verification.certificate import failure
 from ...studies.evaluate import evaluate
-from ...studies.solving import checked_span
 from .contract import contract
 from .data import check_size
 from .exported_program import exported
@@ -54,7 +52,7 @@ def sourced(
     named, values = () if wanted is None else wanted, scene.values(parameters)
     without_life(named, "exports")
     names, p = scene.wanted if wanted is None else wanted, np.array(list(values.values()))
-    compiled, near = derived(normalise(scene, names, values))
+    compiled, near = derived(scene, names, values)
     data = compiled.data
     name, by, wanted = name or data.name, by_parameters(data.parameters, names), others(names)
     check_line("name", name)

@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass, fields, replace
 from typing import Annotated, Any, TypeAlias
 
 from ...base.arguments import Share, public
-from ...base.arrays import Json, Operand
+from ...base.arrays import Expression, Json, Operand
 from ...base.brief import Brief
 from ...base.units import Within
 from ...errors import DeclarationError
@@ -125,7 +125,7 @@ class Beam(Brief):
         return found
 
 
-def beam_to_numbers(beam: Beam, number: Callable[[Operand], float]) -> dict[str, Json]:
+def beam_to_numbers(beam: Beam, number: Callable[[Operand], Expression]) -> dict[str, Json]:
     """A beam, its expressions as numbers."""
     course, shapes = beam.course, list(beam.course.shapes())
     known: list[Json] = [

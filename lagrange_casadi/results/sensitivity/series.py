@@ -1,4 +1,4 @@
-"""Derivatives of all that a solution has by parameters: of series over time, of section forces over
+"""Derivatives of all histories by parameters: of series over time, of section forces over
 time and xi/l.
 """
 
@@ -17,8 +17,8 @@ from ...base.symbolic import symbolic
 from ...engine.instants.evaluation_method import EvaluationMethod
 from ...engine.program import Program
 from ...engine.reciprocals import differentiable
+from ..histories import Histories
 from ..laws import made_of
-from ..solution import Solution
 from .jacobian import section_slopes, total
 from .slopes import Batch, Loops
 
@@ -27,32 +27,32 @@ _BLOCK = 1 << 20
 
 
 def series_slopes(
-    program: Program, solution: Solution, p: Array, by: Sequence[str], method: EvaluationMethod
+    program: Program, histories: Histories, p: Array, by: Sequence[str], method: EvaluationMethod
 ) -> dict[str, dict[Output, Array]]:
-    """The derivatives by each of some parameters of all that equilibrium determines of a solution
-    of a graph, by output.
+    """The derivatives by each of some parameters of all that equilibrium determines of the
+    histories of a graph, by output.
 
     Series have (t,), section forces (t, xi); instants and ratios stand still. They are always made
     in doubles, by the compiler of a method, at loops that are closed. Where a quantity is NaN, so
     are they. Raises :class:`.SizeError` where they do not fit into memory.
     """
-    series = [o for o in solution.quantities() if o.group != "section" and solution.determined(o)]
-    rows = [o for o in solution.outputs if (o in series or o.along) and o in program.outputs]
-    sections = len(solution.table.forces) * len(solution.links_with_sections)
+    series = [o for o in histories.quantities() if o.group != "section" and histories.determined(o)]
+    rows = [o for o in histories.outputs if (o in series or o.along) and o in program.outputs]
+    sections = len(histories.table.forces) * len(histories.links_with_sections)
     require(
-        "the sensitivities", (len(by), solution.t.size, len(rows) + sections * solution.xi.size)
+        "the sensitivities", (len(by), histories.t.size, len(rows) + sections * histories.xi.size)
     )
     numbers = [list(program.data.parameters).index(name) for name in by]
     found: dict[Output, Array] = {}
     for output, column in zip(
         rows,
-        np.moveaxis(at_instants(program, rows, solution.t, p, numbers, method), 1, 0),
+        np.moveaxis(at_instants(program, rows, histories.t, p, numbers, method), 1, 0),
         strict=True,
     ):
-        found[output] = np.where(np.isnan(solution.outputs[output])[:, None], np.nan, column)
+        found[output] = np.where(np.isnan(histories.outputs[output])[:, None], np.nan, column)
     changes = {output: found[output][:, 1:] for output in series}
-    for link in solution.links_with_sections:
-        changes |= dict(_along(program, solution, link, found, p, numbers, method))
+    for link in histories.links_with_sections:
+        changes |= dict(_along(program, histories, link, found, p, numbers, method))
     return {
         name: {output: np.ascontiguousarray(values[..., k]) for output, values in changes.items()}
         for k, name in enumerate(by)
@@ -87,7 +87,7 @@ def at_instants(
 
 def _along(
     program: Program,
-    solution: Solution,
+    histories: Histories,
     link: str,
     found: Mapping[Output, Array],
     p: Array,
@@ -95,16 +95,16 @@ def _along(
     method: EvaluationMethod,
 ) -> Iterator[tuple[Output, Array]]:
     """Derivatives of the section forces of a link that are determined, each (t, xi, parameters)."""
-    table, indeterminate = solution.table, solution.indeterminate
-    columns = [*parts_along(solution.outputs, link)]
+    table, indeterminate = histories.table, histories.indeterminate
+    columns = [*parts_along(histories.outputs, link)]
     function = section_slopes(program.data, link, columns, by)
-    batch, xi, forces = Batch.of(function, method), solution.xi, table.forces
-    grids = np.empty((solution.t.size, xi.size, len(forces), len(by)))
-    unknown = np.full((solution.t.size, 1 + len(by)), np.nan)
+    batch, xi, forces = Batch.of(function, method), histories.xi, table.forces
+    grids = np.empty((histories.t.size, xi.size, len(forces), len(by)))
+    unknown = np.full((histories.t.size, 1 + len(by)), np.nan)
     both = np.stack([found.get(column, unknown) for column in columns], axis=1)
     values, changes = both[:, :, 0], both[:, :, 1:]
     height = max(1, _BLOCK // (xi.size * function.numel_in("slopes")))
-    for start in range(0, solution.t.size, height):
+    for start in range(0, histories.t.size, height):
         some = slice(start, start + height)
         many = values[some].shape[0]
         given = {

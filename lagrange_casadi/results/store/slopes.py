@@ -25,7 +25,7 @@ def add_slopes(
     create: Callable[[str, tuple[int, ...]], h5py.Dataset],
 ) -> None:
     """Write all; ``create`` makes an empty dataset at a place, of a shape."""
-    for found in derivatives(solution):
+    for found in derivatives(solution, solution.sensitivities):
         dataset = create(_place(found.name), found.values.shape)
         dataset[...] = found.values
         say(dataset, found.unit, found.attributes)
@@ -67,7 +67,7 @@ def check_slopes(file: h5py.File, solution: Solution) -> Iterator[str]:
     """Faults of a file's sensitivities: they must be finite where their quantities are, in their
     units, on their axes.
     """
-    for found in derivatives(solution):
+    for found in derivatives(solution, solution.sensitivities):
         place, rests = (
             _place(found.name),
             solution.resting.reshape(-1, *[1] * (found.values.ndim - 1)),

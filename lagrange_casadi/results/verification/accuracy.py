@@ -23,8 +23,8 @@ from ...engine.instants.backends import Evaluated
 from ...engine.instants.cycle_table import CycleTable
 from ...engine.instants.refusal import resting
 from ...engine.program import Program
+from ..histories import Histories
 from ..sizes import largest
-from ..solution import Solution
 from .digits import blur
 from .disturbed import Instants, effects, openness
 
@@ -50,17 +50,17 @@ ALONG = np.linspace(0.0, 1.0, 5)
 
 
 def estimate(
-    program: Program, evaluated: Evaluated, solution: Solution, p: Array
+    program: Program, evaluated: Evaluated, histories: Histories, p: Array
 ) -> dict[Output, float]:
-    """Largest error over the instants of each quantity of a solution, in its unit.
+    """Largest error over the instants of each quantity of histories, in its unit.
 
-    ``evaluated`` has the columns that the solution was made of. Section forces are looked at from
+    ``evaluated`` has the columns that the histories were made of. Section forces are looked at from
     base to tip, either side of a station by itself, and so is either side of a jump. Empty where
     the graphs call functions that cannot be followed.
     """
     if evaluated.cycle is not None:
-        return _of_cycle(program, evaluated.cycle, solution)
-    instants = Instants(evaluated.stages, solution.t, p, np.asarray(evaluated.iterated, float))
+        return _of_cycle(program, evaluated.cycle, histories)
+    instants = Instants(evaluated.stages, histories.t, p, np.asarray(evaluated.iterated, float))
     if not instants.followable:
         return {}
     found, angles = [], np.array([column in program.loop_angles for column in program.columns])
@@ -68,7 +68,7 @@ def estimate(
         found.append(
             _worst(
                 program,
-                solution,
+                histories,
                 *effects(instants.at(some), np.asarray(evaluated.out[:, some], float), angles),
             )
         )
@@ -80,16 +80,16 @@ def estimate(
     once = ROUNDING[evaluated.stages.precision]
     least = float(np.finfo(DTYPES[evaluated.stages.precision]).tiny)
     return {
-        output: max(least, error or once * abs(solution.peak(output).value))
+        output: max(least, error or once * abs(histories.peak(output).value))
         for output, error in worst.items()
     }
 
 
 def _worst(
-    program: Program, solution: Solution, changes: Array, columns: Array
+    program: Program, histories: Histories, changes: Array, columns: Array
 ) -> dict[Output, float]:
-    """The largest changes, (columns, trials, n), of columns (columns, n) by the quantities of a
-    solution.
+    """The largest changes, (columns, trials, n), of columns (columns, n) by the quantities of
+    histories.
 
     A trial that came to nothing, as a root of less than zero does, says nothing.
     """
@@ -97,8 +97,8 @@ def _worst(
         {output: rows[k] for output, k in program.outputs.items()} for rows in (changes, columns)
     )
     errors = {output: most(values) for output, values in change.items()}
-    for link in solution.links_with_sections:
-        law = solution.section(link).law
+    for link in histories.links_with_sections:
+        law = histories.section(link).law
         for force, (residuals, sizes) in (
             law.of(link, at).changed(law.of(link, change), ALONG).items()
         ):
@@ -106,7 +106,7 @@ def _worst(
             errors[Output("section", link, force)] = max(
                 most(residuals), ROUNDING["double"] * most(sizes)
             )
-    return {output: error for output, error in errors.items() if solution.determined(output)}
+    return {output: error for output, error in errors.items() if histories.determined(output)}
 
 
 def most(values: Array) -> float:
@@ -115,7 +115,7 @@ def most(values: Array) -> float:
 
 
 def explained(
-    solution: Solution, residuals: Mapping[str, Array], errors: Mapping[Output, float]
+    histories: Histories, residuals: Mapping[str, Array], errors: Mapping[Output, float]
 ) -> dict[Output, float]:
     """The estimates, made larger where the certificate's residuals are far above what they explain.
 
@@ -123,25 +123,25 @@ def explained(
     but something is wrong.
     """
     worst = max((float(np.max(values)) for values in residuals.values()), default=0.0)
-    sizes = {output: most(values) for output, values in solution.outputs.items()}
+    sizes = {output: most(values) for output, values in histories.outputs.items()}
     relative = [
         error / sizes[o]
         for o, error in errors.items()
         if o.group in _FORCES and sizes.get(o, 0.0) > error
     ]
-    if not errors or worst <= _UNEXPLAINED * max([*relative, blur(solution)]):
+    if not errors or worst <= _UNEXPLAINED * max([*relative, blur(histories)]):
         return dict(errors)
     forces = [
         output
-        for output in solution.quantities()
-        if output.group in _FORCES and solution.determined(output)
+        for output in histories.quantities()
+        if output.group in _FORCES and histories.determined(output)
     ]
     return dict(errors) | {
-        output: max(errors[output], worst * abs(solution.peak(output).value)) for output in forces
+        output: max(errors[output], worst * abs(histories.peak(output).value)) for output in forces
     }
 
 
-def _of_cycle(program: Program, cycle: CycleTable, solution: Solution) -> dict[Output, float]:
+def _of_cycle(program: Program, cycle: CycleTable, histories: Histories) -> dict[Output, float]:
     """Measured interpolation error of a table's splines, and the rounding of their sums; for a
     section force, the sum over its parts.
     """
@@ -151,15 +151,15 @@ def _of_cycle(program: Program, cycle: CycleTable, solution: Solution) -> dict[O
     missed = cycle.errors * cycle.peaks
     sizes: dict[str, float] = {}
     for output, k in program.outputs.items():
-        reached = max(float(cycle.peaks[k]), most(solution.outputs[output]))
-        sizes[solution.unit(output)] = max(sizes.get(solution.unit(output), 0.0), reached)
+        reached = max(float(cycle.peaks[k]), most(histories.outputs[output]))
+        sizes[histories.unit(output)] = max(sizes.get(histories.unit(output), 0.0), reached)
     errors = {
-        output: float(missed[k]) + rounding * sizes[solution.unit(output)]
+        output: float(missed[k]) + rounding * sizes[histories.unit(output)]
         for output, k in program.outputs.items()
     }
-    nothing = {output: np.zeros(1) for output in solution.indeterminate}
+    nothing = {output: np.zeros(1) for output in histories.indeterminate}
     bounds = replace(
-        solution, outputs=nothing | {output: np.array([error]) for output, error in errors.items()}
+        histories, outputs=nothing | {output: np.array([error]) for output, error in errors.items()}
     )
     for link in bounds.links_with_sections:
         law = bounds.section(link).law
@@ -167,7 +167,7 @@ def _of_cycle(program: Program, cycle: CycleTable, solution: Solution) -> dict[O
         errors |= {
             output: law.bound(output.member, ALONG)
             for output in forces
-            if solution.determined(output)
+            if histories.determined(output)
         }
     return errors
 

@@ -21,6 +21,7 @@ from ...base.tables import SPACE
 from ...errors import CertificateError
 from ...model.declared import Declared
 from ...model.scene import kinds
+from ..histories import Histories
 from ..section_law import SectionLaw
 from ..solution import Solution
 from .balance import balance, forces_reported
@@ -43,7 +44,7 @@ _EDGE = 1e-9
 
 
 def certify(
-    solution: Solution,
+    histories: Histories,
     declared: Declared | None = None,
     hidden: Mapping[Output, Array] | None = None,
     phases: Mapping[Output, Array] | None = None,
@@ -58,8 +59,8 @@ def certify(
     which takes some value all the same. ``phases`` are angles that are known up to whole turns more
     closely than they are reported.
     """
-    declared = declared or Declared.of(solution.description)
-    resting = solution.resting
+    declared = declared or Declared.of(histories.description)
+    resting = histories.resting
     if resting.any() and not resting.all():
         merged: dict[str, Array] = {}
         for some in (~resting, resting):
@@ -67,12 +68,12 @@ def certify(
                 {output: values[some] for output, values in (more or {}).items()}
                 for more in (hidden, phases)
             )
-            for name, distances in certify(solution.during(some), declared, *pick).items():
-                merged.setdefault(name, np.zeros_like(solution.t))[some] = distances
+            for name, distances in certify(histories.during(some), declared, *pick).items():
+                merged.setdefault(name, np.zeros_like(histories.t))[some] = distances
         return merged
-    whole = replace(solution, outputs={**solution.outputs, **(hidden or {})}, indeterminate=())
+    whole = replace(histories, outputs={**histories.outputs, **(hidden or {})}, indeterminate=())
     reported = reported_of(whole, phases or {})
-    digits = Digits.of(solution)
+    digits = Digits.of(histories)
     found: dict[tuple[str, int], list[Array]] = {}
     scales: dict[tuple[str, int], float] = {}
     for start in range(0, whole.t.size, _BLOCK):
@@ -90,12 +91,12 @@ def certify(
     return residuals
 
 
-def tolerance(solution: Solution) -> float:
+def tolerance(histories: Histories) -> float:
     """Limit of residuals."""
-    exact = solution.provenance.precision == "double" and not any(
-        word in solution.provenance.method for word in ("--newton", "--table")
+    exact = histories.provenance.precision == "double" and not any(
+        word in histories.provenance.method for word in ("--newton", "--table")
     )
-    return min(COARSE, max(TOLERANCE, _TURNED * blur(solution))) if exact else COARSE
+    return min(COARSE, max(TOLERANCE, _TURNED * blur(histories))) if exact else COARSE
 
 
 def failure(solution: Solution) -> str:
@@ -141,25 +142,25 @@ def summary(residuals: Mapping[str, Array]) -> str:
     )
 
 
-def reported_of(solution: Solution, phases: Mapping[Output, Array]) -> Reported:
+def reported_of(histories: Histories, phases: Mapping[Output, Array]) -> Reported:
     """Read a solution as vectors; ``phases`` as in :func:`certify`."""
-    description = solution.description
+    description = histories.description
     return Reported(
-        t=solution.t,
-        outputs=solution.outputs,
+        t=histories.t,
+        outputs=histories.outputs,
         phases=phases,
-        laws={link: _law_at_base(solution, link) for link in solution.links_with_sections},
-        space=solution.table is SPACE,
+        laws={link: _law_at_base(histories, link) for link in histories.links_with_sections},
+        space=histories.table is SPACE,
         two_force_links=description.get("bars", ()),
         unmeasured=frozenset(description.get("unmeasured", ())),
     )
 
 
-def _law_at_base(solution: Solution, link: str) -> SectionLaw:
+def _law_at_base(histories: Histories, link: str) -> SectionLaw:
     """The law of a link, for its section at the base: what slides over the base just now counts as
     at the base.
     """
-    law = solution.section(link).law
+    law = histories.section(link).law
     return replace(law, slack=max(_EDGE, law.slack))
 
 

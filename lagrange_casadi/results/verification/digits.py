@@ -1,4 +1,4 @@
-"""Uncertainty of a solution's residuals by its finite number of digits."""
+"""Uncertainty of residuals by its finite number of digits."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ...base.compensated import DTYPES, ROUNDING
 from ...base.quantities import Output
 from ...base.vocabulary import Precision
 from ...model.description import coordinates_of
-from ..solution import Solution
+from ..histories import Histories
 
 ROUNDINGS = 4.0
 NEARBY = 32.0
@@ -22,16 +22,16 @@ where less was asked for.
 """
 
 
-def blur(solution: Solution) -> float:
+def blur(histories: Histories) -> float:
     """Uncertainty of a phase by the reported angles: one rounding of the largest of them [rad]."""
     angles = [
         Output("motion", name)
-        for name, kind in coordinates_of(solution.description).items()
+        for name, kind in coordinates_of(histories.description).items()
         if kind == "angle"
     ]
-    angles += [Output("pose", name, "angle") for name in solution.description["bodies"]]
-    reported = (solution.outputs[angle] for angle in angles if angle in solution.outputs)
-    return Digits.of(solution).rounding * max(
+    angles += [Output("pose", name, "angle") for name in histories.description["bodies"]]
+    reported = (histories.outputs[angle] for angle in angles if angle in histories.outputs)
+    return Digits.of(histories).rounding * max(
         (float(np.max(np.abs(values))) for values in reported), default=0.0
     )
 
@@ -61,9 +61,9 @@ class Digits:
         return ROUNDINGS * self.rounding / self.tolerance
 
     @classmethod
-    def of(cls, solution: Solution) -> Digits:
-        """The digits that a solution was made with."""
-        single = solution.provenance.precision == "single"
+    def of(cls, histories: Histories) -> Digits:
+        """The digits that histories were made with."""
+        single = histories.provenance.precision == "single"
         precision: Precision = "single" if single else "double"
         rounding = ROUNDING[precision]
         least = float(np.finfo(DTYPES[precision]).tiny) / rounding

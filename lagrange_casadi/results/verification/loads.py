@@ -68,7 +68,7 @@ def _apart(placed: Placed, one: Acts, other: Acts) -> Array:
 
 def _acting(placed: Placed, law: LoadLaw, load: LoadNumbers, numbers: Array) -> Acts:
     """Load by a law of numbers (numbers, t)."""
-    kind, turning = law.graph.kind, law.graph.turning
+    kind, turning = law.kind, law.turning
     if kind == "spring":
         stiffness, length, damping = numbers
         apart, closing = _stretched(placed, load)
@@ -167,7 +167,7 @@ def _open(
                 rows[k] = kept
         for numbers in evaluated:
             found += np.nan_to_num(_apart(placed, _acting(placed, law, load, numbers), acts))
-    if law.graph.kind == "spring":
+    if law.kind == "spring":
         stiffness, _, damping = np.abs(law.at(places, rates, t))
         apart, closing = _stretched(placed, load)
         found += off * (stiffness * declared.extent + damping * fastest)

@@ -31,15 +31,15 @@ from ...engine.instants.backends import begun, compiled, provenance
 from ...engine.instants.determinacy import undetermined
 from ...engine.instants.evaluation_method import EvaluationMethod, Provenance, seconds
 from ...engine.instants.grids import empty
+from ...engine.instants.phases import outputs_of, unwind
 from ...engine.program import Program
 from ...engine.sharpness import bent, with_watched
 from ...errors import DeclarationError, UnknownNameError
 from ...model.scene import Scene
-from ...model.times import Times, Timing
+from ...model.times import Times, Timing, checked_span
 from ...results.sensitivity.ends import Ends
 from ...results.sensitivity.peaks import AS_LARGE, MeanSlopes, MovingPeaks, PeakSlopes, faint
 from ...results.sensitivity.slopes import Slopes
-from ..solving import checked_span, outputs_of, unwind
 from .outcome import KEPT, History, Outcome, Results, outcome_of, refuse, rows_of
 from .reduction import KeptOutputs, stages_of
 from .spot_check import failures

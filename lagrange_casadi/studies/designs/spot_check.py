@@ -19,12 +19,12 @@ from ...base.compensated import ROUNDING
 from ...base.quantities import Output
 from ...engine.instants.backends import run
 from ...engine.instants.evaluation_method import EvaluationMethod
-from ...engine.instants.phases import phases
+from ...engine.instants.phases import outputs_of, phases
 from ...engine.program import Program
-from ...results.solution import Solution
+from ...results.histories import Histories
 from ...results.verification.accuracy import estimate
 from ...results.verification.certificate import COARSE, tolerance
-from ..solving import outputs_of, residuals_of
+from ...results.verification.evidence import residuals_of
 
 INSTANTS = 5
 _WANTED = {"stress": "stress", "utilisation": "safety", "deflection": "deflection"}
@@ -66,7 +66,7 @@ def failures(
     rows = table.out[:, some] if program.newton is not None else table.out
     within = phases(program, rows, t[some], p)
     found_there, description = outputs_of(program, rows), program.data.at(p)
-    whole = Solution(program.data.name, t[some], np.zeros(0), found_there, description, provenance)
+    whole = Histories(program.data.name, t[some], np.zeros(0), found_there, description, provenance)
     limit = tolerance(whole) if method.newton is None else COARSE
     found = {
         name: float(np.max(gaps))
@@ -94,9 +94,9 @@ def failures(
 
 
 def _agreement(
-    whole: Solution, found: Mapping[Output, Array], rounded: Mapping[Output, float]
+    whole: Histories, found: Mapping[Output, Array], rounded: Mapping[Output, float]
 ) -> float:
-    """Distance of outputs from those of a solution, beyond what is ``rounded``, relative to the
+    """Distance of outputs from those of histories, beyond what is ``rounded``, relative to the
     largest of their unit.
     """
     largest: dict[str, float] = {}

@@ -14,7 +14,7 @@ import numpy as np
 from ...base.arrays import Array, Json, Operand
 from ...base.numerals import real
 from ...base.vocabulary import Compiled
-from ...engine.fingerprint import sources
+from ...engine.identity import sources
 from ...engine.instants.evaluation_method import EvaluationMethod
 from ...engine.model_data import materials_of, template
 from ...errors import DeclarationError, UnknownNameError, check_kind

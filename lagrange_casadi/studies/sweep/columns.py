@@ -25,7 +25,7 @@ from ...base.scalars import column
 from ...base.status import Status
 from ...base.tables import table_of
 from ...base.vocabulary import KEEPS, Keep, PeakSearch
-from ...engine.fingerprint import sources
+from ...engine.identity import sources
 from ...engine.instants.evaluation_method import EvaluationMethod
 from ...engine.model_data import ModelData
 from ...engine.program import Program

@@ -13,14 +13,13 @@ import numpy as np
 from ...base.arrays import Array
 from ...base.quantities import Kinds, Output, quotient
 from ...base.status import Status
-from ...base.tables import ANGLE, LENGTH, Table
+from ...base.tables import ANGLE, LENGTH, Table, table_of
 from ...engine.model_data import ModelData
-from ...model.description import Description, kinds_of_described, motions_of
+from ...model.description import Description, in_space, kinds_of_described, motions_of
 from ...model.even_points import points
 from ...model.mass_properties import ALL
 from ...model.times import Timing, instants_of
 from ...model.wanted_names import SENSITIVITY
-from ...results.ordering import table_of_described
 from .axes import DESIGN
 
 OVER, CYCLE = "over", "cycle"
@@ -163,7 +162,7 @@ class Meanings:
             "" if not joint else LENGTH if motions_of(description)[joint] == "slide" else ANGLE
         )
         return cls(
-            table_of_described(description),
+            table_of(in_space(description)),
             kinds_of_described(description),
             units,
             axis,

@@ -10,9 +10,8 @@ from typing import TypeVar
 import numpy as np
 
 from ...base.quantities import Output
-from ...base.tables import SPACE
 from ...errors import DeclarationError, NoDesignError, UnknownNameError
-from ...results.ordering import table_of_described
+from ...model.description import in_space
 from ...studies.sweep.axes import DESIGN
 from ...studies.sweep.reading import Sweep
 from .designs import Along, Front, Peaks, Scatter, Spec
@@ -138,7 +137,7 @@ def _over(sweep: Sweep, over: tuple[str, ...], at: Mapping[str, float]) -> tuple
 def _groups(sweep: Sweep) -> dict[str, list[str]]:
     """The columns that are drawn together, by what the file's name says."""
     groups: dict[str, list[str]] = {}
-    space = table_of_described(sweep.description) is SPACE
+    space = in_space(sweep.description)
     for name, output in _of_kind(sweep, "peak").items():
         if group := _group(output, space):
             groups.setdefault(group, []).append(name)

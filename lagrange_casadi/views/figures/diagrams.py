@@ -15,9 +15,10 @@ import numpy as np
 from ...base.arrays import Array
 from ...base.quantities import Output
 from ...base.tables import SPACE
+from ...results.histories import Peak
 from ...results.ordering import vanishes
 from ...results.section_law import SectionLaw, Side
-from ...results.solution import Peak, Solution
+from ...results.solution import Solution
 from ..shapes.readable import scale_for
 
 if TYPE_CHECKING:

@@ -20,8 +20,9 @@ from ...base.quantities import Output
 from ...base.tables import PLANE, SPACE
 from ...errors import DeclarationError, PathError, UnknownNameError, shown
 from ...model.description import bends_of, parts_of, shaft_bearings_of
+from ...results.histories import Peak
 from ...results.ordering import vanishes
-from ...results.solution import Peak, Solution
+from ...results.solution import Solution
 from ...results.strength.parts import NEEDED, bending_of, fitted_in, strong_of
 from ..shapes.pictures import ending_of, one_at_a_time, save
 from ..shapes.readable import scale_for

@@ -185,7 +185,7 @@ def series_of(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) 
             arrays.add(values[chosen], *of),
             along,
         )
-    for slope in derivatives(solution):
+    for slope in derivatives(solution, solution.sensitivities):
         if slope.values.ndim == 1 and slope.output.group in _CHARTED:
             words = (
                 f"{what(slope.output, solution.table) or slope.output.part}, by"

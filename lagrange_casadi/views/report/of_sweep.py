@@ -19,10 +19,10 @@ import numpy.typing as npt
 
 from ...base.arrays import Array
 from ...engine.derive import compile_scene
-from ...engine.fingerprint import fingerprint, sources
+from ...engine.identity import identity_of, sources
 from ...engine.model_data import template
 from ...errors import DeclarationError, shown
-from ...model.description import values_of
+from ...model.description import filled, values_of
 from ...model.scene import Scene, Wanted
 from ...model.wanted_names import SENSITIVITY
 from ...results.store.untrusted import check_shape, reported_as
@@ -78,10 +78,10 @@ def is_of(sweep: Sweep, scene: Scene) -> bool:
     values = values_of(swept)
     if (
         values.keys() != scene.parameters.keys()
-        or json.loads(json.dumps(template(scene).filled(values))) != swept
+        or json.loads(json.dumps(filled(template(scene), values))) != swept
     ):
         return False
-    known = fingerprint(scene, _wanted(sweep))
+    known = identity_of(scene, _wanted(sweep))
     return (
         known is None or sweep.identity["sources"] != sources() or known == sweep.identity["scene"]
     )

@@ -1,0 +1,130 @@
+"""Trees of dataclasses, mappings and sequences: their leaves replaced, their expressions made
+numbers, and their one form as text.
+
+A text names only dataclasses that its reader lists, so reading one calls nothing else.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields, is_dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from .arrays import Array, Expression, Json
+from .scalars import column
+from .symbolic import Graphs, symbolic
+
+
+def mapped(tree: Any, leaf: Callable[[Any], object]) -> Any:
+    """Return a tree with ``leaf(value)`` for each value that has no parts."""
+    kind = type(tree)
+    if kind is dict:
+        return {key: mapped(part, leaf) for key, part in tree.items()}
+    if kind is tuple or kind is list:
+        return kind([mapped(part, leaf) for part in tree])
+    if hasattr(kind, "__dataclass_fields__"):
+        return kind(*[mapped(getattr(tree, name), leaf) for name in kind.__dataclass_fields__])
+    return leaf(tree)
+
+
+class Place(int):
+    """The number of an expression of a tree among all of them."""
+
+
+@dataclass(frozen=True, eq=False)
+class Template(Graphs):
+    """A tree for any parameters: ``content`` has a :class:`Place` for each expression, and
+    ``numbers(p)`` is a column of all expressions.
+    """
+
+    content: Any
+    numbers: ca.Function
+
+    @classmethod
+    @symbolic
+    def of(cls, tree: object, symbols: ca.SX) -> Template:
+        """Make the template of a tree with expressions of the ``symbols`` of parameters."""
+        found: list[ca.SX] = []
+
+        def place(leaf: object) -> object:
+            if not isinstance(leaf, ca.SX):
+                return leaf
+            found.append(leaf)
+            return Place(len(found) - 1)
+
+        content, numbers = mapped(tree, place), ca.densify(column(found))
+        return cls(content, ca.Function("numbers", [symbols], [numbers], ["p"], ["numbers"]))
+
+    def at(self, p: Sequence[float] | Array) -> Any:
+        """Return the tree of numbers for parameters ``p``."""
+        numbers = self.numbers(np.asarray(p, float)).full().ravel().tolist()
+        return mapped(self.content, lambda leaf: numbers[leaf] if type(leaf) is Place else leaf)
+
+    def placed(self, content: Any, p: Expression) -> Any:
+        """Return a part of the content with expressions of parameters ``p``, and with numbers for
+        constant ones.
+        """
+        numbers = [float(x) if x.is_constant() else x for x in ca.vertsplit(ca.SX(self.numbers(p)))]
+        return mapped(content, lambda leaf: numbers[leaf] if type(leaf) is Place else leaf)
+
+
+_READ: dict[str, Callable[[Any], object]] = {
+    "tuple": tuple,
+    "mapping": dict,
+    "flags": lambda values: np.array(values, bool),
+    "function": ca.Function.deserialize,
+    "symbol": ca.SX.sym,
+}
+"""Readers of values that JSON does not know, by the one key that an object of JSON has here."""
+
+
+def graphs(leaf: object) -> Json:
+    """Write functions, symbols by their names, and arrays of bools."""
+    if isinstance(leaf, ca.Function):
+        return {"function": leaf.serialize()}
+    if isinstance(leaf, ca.SX):
+        return {"symbol": leaf.name()}
+    if isinstance(leaf, np.ndarray) and leaf.dtype == bool:
+        return {"flags": leaf.tolist()}
+    raise TypeError(f"{type(leaf).__name__} cannot be written as text")
+
+
+def dumps(tree: object, leaf: Callable[[object], Json] = graphs) -> str:
+    """Write a tree; ``leaf`` writes values that are no plain data, or raises ``TypeError``."""
+    return json.dumps(_plain(tree, leaf))
+
+
+def loads(text: str, kinds: tuple[type[Any], ...]) -> Any:
+    """Read a text of :func:`dumps`, whose dataclasses, and numbers of kinds of their own, are of
+    ``kinds``.
+    """
+    known = {kind.__name__: kind for kind in kinds}
+
+    def read(written: dict[str, Any]) -> object:
+        ((name, content),) = written.items()
+        return known[name](*content) if name in known else _READ[name](content)
+
+    return json.loads(text, object_hook=read)
+
+
+def _plain(tree: Any, leaf: Callable[[object], Json]) -> Json:
+    kind = type(tree)
+    if tree is None or kind in (bool, int) or isinstance(tree, str | float):
+        plain: Json = tree
+        return plain
+    if isinstance(tree, int):
+        return {kind.__name__: [int(tree)]}
+    if isinstance(tree, tuple | list):
+        parts = [_plain(part, leaf) for part in tree]
+        return parts if isinstance(tree, list) else {"tuple": parts}
+    if isinstance(tree, frozenset | set):
+        return {"set": sorted(tree)}
+    if isinstance(tree, Mapping):
+        return {"mapping": [[_plain(part, leaf) for part in item] for item in tree.items()]}
+    if is_dataclass(tree) and not isinstance(tree, type):
+        return {kind.__name__: [_plain(getattr(tree, e.name), leaf) for e in fields(tree)]}
+    return leaf(tree)
