@@ -11,7 +11,7 @@ import click
 from ..engine.derive import compile_scene
 from ..engine.model_data import template
 from ..engine.scene_lines import scene_lines
-from ..model.description import Description, coordinates_of, filled
+from ..model.description import Description, coordinates_of
 from ..model.scene import Scene, kinds
 from ..results.solution import Solution
 from ..results.store import runs as store
@@ -46,7 +46,7 @@ def info(target: Path, wanted: Sequence[str] | None) -> None:
 
 def _describe_case(scene: Scene, wanted: Sequence[str] | None) -> None:
     program = compile_scene(scene, wanted)
-    _describe_mechanism(filled(template(scene), scene.values()))
+    _describe_mechanism(template(scene).at([*scene.values().values()]))
     echo(*scene_lines(scene))
     timing = scene.timing()
     echo(asked_line(timing.words(program.data.symbols)[:4], timing.slides))

@@ -21,7 +21,6 @@ from ..base.symbolic import symbolic
 from ..base.tables import Table, table_of
 from ..errors import AssemblyError, DeclarationError, MobilityError, PostureError
 from ..model.density import Density
-from ..model.description import filled
 from ..model.end_conditions import effective_lengths, ends_of
 from ..model.limits import END
 from ..model.parts import Link
@@ -118,20 +117,28 @@ def derived(
     names = scene.wanted if wanted is None else wanted
     listed = texts(names)
     want = Wanted.of(scene.mechanism, names) if listed is None else _wanted(scene, tuple(listed))
-    if values is None or values == scene.mechanism.values(scene.assembly):
+    return _chosen(scene, want, None if values is None else tuple(values.items()))
+
+
+@functools.lru_cache(maxsize=32)
+def _chosen(
+    scene: Scene, want: Wanted, values: tuple[tuple[str, float], ...] | None
+) -> tuple[Program, Scene]:
+    """The Program and scene of :func:`derived`, for values of all parameters by name."""
+    if values is None or dict(values) == scene.mechanism.values(scene.assembly):
         return _assembled(scene, want)
     try:
-        program, near = _assembled(scene, want)
+        found = _assembled(scene, want)
     except (AssemblyError, MobilityError):
-        return _assembled(_at(scene, tuple(values.items())), want)
+        return _assembled(replace(scene, assembly=dict(values)), want)
     if (
         scene.mechanism.space
         and scene.rounding
-        and _misses(program, values, iterated=False) > _SERVES
+        and _misses(found[0], dict(values), iterated=False) > _SERVES
     ):
         with suppress(AssemblyError, MobilityError):
-            return _assembled(_at(scene, tuple(values.items())), want)
-    return program, near
+            return _assembled(replace(scene, assembly=dict(values)), want)
+    return found
 
 
 @functools.lru_cache(maxsize=64)
@@ -155,11 +162,6 @@ def _check_aimed(scene: Scene, names: Sequence[str]) -> None:
             and not two_force_link.link.beam.round
         ):
             raise DeclarationError(unaimed(two_force_link.link.name))
-
-
-@functools.lru_cache(maxsize=32)
-def _at(scene: Scene, values: tuple[tuple[str, float], ...]) -> Scene:
-    return replace(scene, assembly=dict(values))
 
 
 @functools.lru_cache(maxsize=32)
@@ -328,7 +330,8 @@ def _strength(
     for name in want.stressed:
         found |= stresses(scene.mechanism, name, columns)
     if want.used or want.bent:
-        description = filled(template(scene), scene.mechanism.values(scene.assembly))
+        values = scene.mechanism.values(scene.assembly)
+        description = template(scene).at([*values.values()])
         for name in want.used:
             beam = scene.mechanism.links[name].beam
             assert beam is not None

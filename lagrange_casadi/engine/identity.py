@@ -11,7 +11,7 @@ import casadi as ca
 from ..base.arrays import Json
 from ..base.scalars import column
 from ..base.symbolic import symbolic
-from ..base.tree import dumps
+from ..base.templates import dumps
 from ..model.scene import Scene, Wanted
 
 _UNKNOWN = ("CallbackInternal", "External", "GenericExternal")

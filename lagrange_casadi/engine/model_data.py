@@ -18,24 +18,22 @@ from ..base.quantities import Kinds
 from ..base.scalars import column, graph
 from ..base.symbolic import Graphs, symbolic
 from ..base.tables import table_of
-from ..base.tree import Template
+from ..base.templates import Template
 from ..base.vocabulary import PRECISIONS, Precision
 from ..errors import UnknownNameError
 from ..model.beams.beam import Beam, beam_of
 from ..model.beams.material import Material
 from ..model.corners import Corners
-from ..model.declared import Declared
 from ..model.density import Density
 from ..model.description import (
     Description,
     beams_of,
     described,
-    filled,
     in_space,
     kinds_of_described,
 )
 from ..model.laws import Laws
-from ..model.mass_properties import ALL, masses_of
+from ..model.mass_properties import ALL
 from ..model.parts import LineLoad, Link, Parameter
 from ..model.scene import Scene
 from ..model.stated import Stated
@@ -92,12 +90,11 @@ class ModelData(Graphs, Brief):
     are asked for, and ``span`` [s] their first and last. ``rounding`` is how far axes were
     corrected for loops to close, or zero.
 
-    ``extent(p)`` is its size [m], and ``masses(p)`` are those of its bodies, and last of all
-    together [kg]. ``margins`` are what a precision demands of the parameters; motions and
-    constraints may have kinks at ``corners``. The loads ``partial`` act along a part of their link;
-    ``jumps`` are the ratios at which the mass along a link jumps. ``stated`` are the constraints,
-    rows, motions and laws of loads as they were declared, for certificates (:class:`.Stated`), and
-    ``template`` is the description but for the numbers.
+    ``extent(p)`` is its size [m]. ``margins`` are what a precision demands of the parameters;
+    motions and constraints may have kinks at ``corners``. The loads ``partial`` act along a part of
+    their link; ``jumps`` are the ratios at which the mass along a link jumps. ``stated`` are the
+    constraints, rows, motions and laws of loads as they were declared, for certificates
+    (:class:`.Stated`), and ``template`` is the description but for the numbers.
     """
 
     rounding: float
@@ -108,7 +105,6 @@ class ModelData(Graphs, Brief):
     extent: ca.Function
     margins: Mapping[Precision, Margins]
     corners: Corners
-    masses: ca.Function
     partial: tuple[str, ...]
     jumps: Mapping[str, tuple[float, ...]]
     stated: Template
@@ -130,7 +126,6 @@ class ModelData(Graphs, Brief):
                 for precision in PRECISIONS
             },
             corners=Corners.of(scene),
-            masses=graph("masses", given, masses=masses_of(mechanism)),
             partial=tuple(
                 name
                 for name, load in mechanism.loads.items()
@@ -179,13 +174,7 @@ class ModelData(Graphs, Brief):
 
     def at(self, p: Sequence[float] | Array) -> Description:
         """Describe the mechanism in plain numbers, for parameters ``p``."""
-        return filled(self.template, self.values(p))
-
-    def declared(self, p: Sequence[float] | Array) -> Declared:
-        """Return what certificates read of the mechanism, for parameters ``p``: nothing of it is
-        derived.
-        """
-        return Declared.of(self.at(p), self.stated.at(p))
+        return dict(self.template.at(p))
 
     @property
     @symbolic
@@ -199,11 +188,11 @@ class ModelData(Graphs, Brief):
 
         Raises :class:`.UnknownNameError` for anything else.
         """
-        parts = [*self.template.content["bodies"], ALL]
-        if part not in parts:
-            raise UnknownNameError("part with a mass", part, parts)
-        mass: ca.SX = self.masses(p)[parts.index(part)]
-        return mass
+        bodies = self.template.content["bodies"]
+        if part not in (*bodies, ALL):
+            raise UnknownNameError("part with a mass", part, (*bodies, ALL))
+        some = bodies.values() if part == ALL else [bodies[part]]
+        return ca.SX(sum(self.template.placed([body["mass"] for body in some], p)))
 
     @cached_property
     def materials(self) -> dict[str, Material]:

@@ -16,7 +16,7 @@ from ..base.brief import listed
 from ..base.quantities import Output
 from ..base.scalars import graph, inputs_of
 from ..base.symbolic import Graphs, symbolic, symbolic_property
-from ..base.tree import Place, Template, dumps, loads
+from ..base.templates import Place, Template, dumps, loads
 from ..errors import PickleError
 from ..model.corners import Corners
 from ..model.kinks import Smooth

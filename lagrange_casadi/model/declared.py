@@ -176,7 +176,7 @@ def _place(entry: Description) -> Place:
 
 
 def _body(entry: Description, space: bool) -> BodyNumbers:
-    length, mass = entry["length"], entry["mass"]
+    length = entry["length"]
     if "centre" in entry:
         centre = entry["centre"]
         inertia = (
@@ -184,10 +184,14 @@ def _body(entry: Description, space: bool) -> BodyNumbers:
             if space
             else ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, centre["inertia"]))
         )
-        return BodyNumbers(length, mass, (centre["x"], centre["y"], centre.get("z", 0.0)), inertia)
-    if length is None or mass == 0.0:
+        place = centre["x"], centre["y"], centre.get("z", 0.0)
+        return BodyNumbers(length, entry["mass"], place, inertia)
+    if length is None:
+        return BodyNumbers(length, entry["mass"])
+    # Not the mass of the description, which was computed as the derivation does it.
+    mass, first, second = (float(tail[0]) for tail in density_of(entry).tails(np.zeros(1)))
+    if mass == 0.0:
         return BodyNumbers(length, mass)
-    _, first, second = (float(tail[0]) for tail in density_of(entry).tails(np.zeros(1)))
     middle = first / mass
     across = (second - first * middle) * length**2
     yy, zz, yz = slices_of(entry)

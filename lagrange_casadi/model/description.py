@@ -4,19 +4,19 @@ made from.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable
 from typing import Any
 
 import casadi as ca
 
 from ..base.arrays import Expression
 from ..base.quantities import Kinds
-from ..base.tree import Template
 from ..base.vectors import cross
 from .beams.beam import beam_to_numbers
 from .density import Density, NumericDensity
 from .fitted import parts_to_numbers
 from .joints import Joint
+from .mass_properties import mass_of
 from .mechanism import Mechanism
 from .parts import Friction, Link, Load, Point, PointMass, RigidMass
 
@@ -245,17 +245,6 @@ def parts_of(description: Description) -> list[str]:
     )
 
 
-def filled(template: Template, values: Mapping[str, float]) -> Description:
-    """The description that a template is of, for values of all parameters."""
-    found: Description = template.at([*values.values()])
-    for name, value in values.items():
-        found["parameters"][name]["value"] = value
-    for body in found["bodies"].values():
-        if "density" in body:
-            body["mass"] = density_of(body).mass
-    return found
-
-
 def _lies_by_default(joint: Joint) -> bool:
     """Return whether a slender link slides along one line of its parent, and its direction there
     was not declared.
@@ -290,9 +279,7 @@ def described(
     ``driven`` are the coordinates whose motion is given, ``drives`` those whose efforts make it,
     where these are others. A joint in space has its coordinates in sequence, with their kinds;
     their ``axes`` and how the child's axes are ``turned``, both where all coordinates are zero; and
-    its own axes, the ``triad``. Directions are in the parent's axes, a row each. The mass of a link
-    that has a density is no expression, for it follows from the density; nor are values of
-    parameters.
+    its own axes, the ``triad``. Directions are in the parent's axes, a row each.
     """
 
     def place(point: Point) -> Description:
@@ -312,16 +299,16 @@ def described(
 
     def mass_properties(body: Link | PointMass) -> Description:
         if isinstance(body, PointMass):
-            return {"length": None, "mass": ca.SX(body.mass)}
-        length = ca.SX(body.length)
+            return {"length": None, "mass": mass_of(body)}
+        found: Description = {"length": ca.SX(body.length), "mass": mass_of(body)}
         if isinstance(body.mass, RigidMass):
-            return {"length": length, "mass": ca.SX(body.mass.mass), "centre": centre(body.mass)}
+            return found | {"centre": centre(body.mass)}
         entry = along(body, body.mass)
         if body.mass.slices is not None:
             names = zip(("yy", "zz", "yz"), body.mass.slices.each, strict=True)
             entry["slices"] = {name: along(body, moment) for name, moment in names}
-        found = {"length": length, "mass": None, "density": entry}
-        return found if body.beam is None else found | {"beam": beam_to_numbers(body.beam, ca.SX)}
+        beam = {} if body.beam is None else {"beam": beam_to_numbers(body.beam, ca.SX)}
+        return found | {"density": entry} | beam
 
     def along(link: Link, density: Density) -> Description:
         scale = link.length if density.per_length else 1.0
@@ -372,7 +359,12 @@ def described(
         for joint in mechanism.joints.values()
     }
     parameters = {
-        name: {"value": None, "unit": parameter.unit, "low": parameter.low, "high": parameter.high}
+        name: {
+            "value": parameter.symbol,
+            "unit": parameter.unit,
+            "low": parameter.low,
+            "high": parameter.high,
+        }
         for name, parameter in mechanism.parameters.items()
     }
     paths = {name: place(path.point) for name, path in mechanism.paths.items()}

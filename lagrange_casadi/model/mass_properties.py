@@ -1,12 +1,10 @@
-"""Declarations of a link's mass: even, by a density, by a beam, or by mass, centre and inertia; and
-the masses of parts as expressions of the parameters.
-"""
+"""Declarations of a link's mass: even, by a density, by a beam, or by mass, centre and inertia."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 import casadi as ca
 
@@ -14,9 +12,6 @@ from ..errors import DeclarationError
 from .beams.beam import Beam
 from .density import Density, Slices, uniform
 from .parts import Expression, Link, PointMass, RigidMass
-
-if TYPE_CHECKING:
-    from .mechanism import Mechanism
 
 Rigid: TypeAlias = Callable[[Expression, Expression], tuple[tuple[Expression, ...], Expression]]
 """Reader of a centre and moments of inertia."""
@@ -120,15 +115,8 @@ def inertias(mass_properties: RigidMass) -> list[Expression]:
     return [mass_properties.inertia]
 
 
-def masses_of(mechanism: Mechanism) -> ca.SX:
-    """The masses of its links and point masses, in their order, and last that of all of them [kg],
-    in a column.
-    """
-    masses = [_mass(body) for body in mechanism.moving]
-    return ca.densify(ca.vertcat(*masses, sum(masses)))
-
-
-def _mass(body: Link | PointMass) -> ca.SX:
+def mass_of(body: Link | PointMass) -> ca.SX:
+    """The mass of a link or a point mass [kg]."""
     if isinstance(body, PointMass):
         return ca.SX(body.mass)
     assert isinstance(body, Link)

@@ -16,7 +16,7 @@ import numpy as np
 from ..base.arrays import Array, Expression
 from ..base.scalars import column
 from ..base.symbolic import Graphs, symbolic
-from ..base.tree import Template
+from ..base.templates import Template
 from .mechanism import Mechanism
 from .meshes import Transmission, Wrench
 from .motion import Motion

@@ -69,37 +69,31 @@ def holding(scene: Scene, solution: Solution) -> dict[str, Holding]:
     DeclarationError
         For what is no scene or no solution.
     """
-    return _ranges(scene, solution)
+    determined = {
+        output.part: Holding(values, values, solution.unit(output))
+        for output, values in solution.outputs.items()
+        if output.group == "effort"
+    }
+    return determined | held_at_rest(scene, solution)
 
 
 def held_at_rest(scene: Scene, histories: Histories) -> dict[str, Holding]:
     """The ranges of those efforts that friction at rest leaves open at some instant."""
-    if not histories.resting.any():
-        return {}
-    ranges = _ranges(scene, histories)
-    return {name: held for name, held in ranges.items() if np.isnan(histories.effort(name)).any()}
-
-
-def _ranges(scene: Scene, histories: Histories) -> dict[str, Holding]:
-    """The ranges of :func:`holding`."""
-    efforts = {
-        output.part: values
+    open_at = {
+        output.part: histories.resting & np.isnan(values)
         for output, values in histories.outputs.items()
         if output.group == "effort"
     }
-    indeterminate = {name: histories.resting & np.isnan(values) for name, values in efforts.items()}
-    at = np.flatnonzero(np.any([*indeterminate.values()], axis=0)) if efforts else np.zeros(0, int)
-    if not at.size:
-        return {
-            name: Holding(values, values, histories.unit(Output("effort", name)))
-            for name, values in efforts.items()
-        }
+    open_at = {name: instants for name, instants in open_at.items() if instants.any()}
+    if not open_at:
+        return {}
+    at = np.flatnonzero(np.any([*open_at.values()], axis=0))
     values = values_of(histories.description)
     program, near = derived(scene, ["effort"], values)
     held, p = held_efforts(near), np.array([*values.values()])
     tried, why = _tried(held, _inputs(program, histories.t, p, at))
     ranges = {}
-    for name, effort in efforts.items():
+    for name, instants in open_at.items():
         output, reasons = Output("effort", name), list(why)
         found = tried[:, held.columns.index(output)]
         if (doubt := Check("open", output)) in held.columns:
@@ -111,10 +105,10 @@ def _ranges(scene: Scene, histories: Histories) -> dict[str, Holding]:
             )
         reasons.append((~np.isfinite(found).all(axis=0), "it is not finite"))
         known = ~np.any([wrong for wrong, _ in reasons], axis=0)
-        there = indeterminate[name][at]
+        there = instants[at]
         ends = []
         for end in (found.min(axis=0), found.max(axis=0)):
-            ends.append(effort.copy())
+            ends.append(histories.outputs[output].copy())
             ends[-1][at[there]] = np.where(known, end, np.nan)[there]
         reason = next((words for wrong, words in reasons if wrong[there].any()), "")
         ranges[name] = Holding(ends[0], ends[1], histories.unit(output), reason)

@@ -15,7 +15,7 @@ from ..base.arguments import Positive, public
 from ..base.brief import Brief
 from ..base.numerals import readable
 from ..base.scalars import column
-from ..base.tree import Template
+from ..base.templates import Template
 from ..engine.model_data import beam_at, template
 from ..engine.two_force_links import unaimed
 from ..errors import DeclarationError, LagrangeCasadiError, NoDesignError, UnknownNameError

@@ -143,8 +143,8 @@ def _declared(solution: Solution, link: str, scene: Scene | Case | None) -> Decl
         raise refused(link, why)
     values = values_of(solution.description)
     if [*scene_of(scene).parameters] == [*values]:
-        program = compile_scene(scene_of(scene), ["motion"], parameters=values)
-        stated = program.data.declared(list(values.values()))
+        data = compile_scene(scene_of(scene), ["motion"], parameters=values).data
+        stated = Declared.of(data.at([*values.values()]), data.stated.at([*values.values()]))
         if (stated.bodies, stated.joints) == (declared.bodies, declared.joints):
             return stated
     raise refused(link, f"{expected}; the one given has other parameters, bodies or joints")

@@ -58,9 +58,9 @@ class Consistency(Graphs):
         theta, p = ca.SX.sym("theta", len(numbers)), ca.SX(ca.DM(defaults))
         p[numbers] = theta
         first, found = defaults[numbers], {}
-        content = program.data.template.content["bodies"]
-        for name, mass in zip(content, ca.vertsplit(program.data.masses(p)), strict=False):
-            centre = program.data.template.placed(content[name], p).get("centre")
+        template = program.data.template
+        for name, body in template.placed(template.content["bodies"], p).items():
+            mass, centre = ca.SX(body["mass"]), body.get("centre")
             matrix = mass if centre is None else _pseudo_inertia(mass, centre, theta, first)
             if _depends(matrix, theta):
                 found[name] = ca.densify(matrix)

@@ -125,10 +125,9 @@ class Live:
 
 
 def _numbers(data: ModelData, timing: Timing) -> ca.Function:
-    """The ends of the instants, the numbers of the picture, and the masses, by the parameters."""
+    """The ends of the instants, and the numbers of the picture, by the parameters."""
     start, stop = timing.ends(data.symbols)
-    masses = (data.mass(body, data.symbols) for body in data.template.content["bodies"])
-    numbers = ca.vertcat(start, stop, data.template.numbers(data.symbols), *masses)
+    numbers = ca.vertcat(start, stop, data.template.numbers(data.symbols))
     return ca.Function("numbers_of", [data.symbols], [ca.densify(numbers)], {"cse": True})
 
 
@@ -137,8 +136,6 @@ def _entry(
 ) -> dict[str, Json]:
     source, timing = live.source, live.timing
     data = source.exported.program.data
-    described, asked = data.template.content, data.template.numbers(data.symbols)
-    bodies = described["bodies"]
     contract = source.contract
     known = {member.source: k for k, member in enumerate((*contract.inputs, *contract.outputs))}
     return {
@@ -166,9 +163,7 @@ def _entry(
         },
         "shown": None if chosen.size == timing.count else chosen.tolist(),
         "numbers": live.numbers,
-        "picture": _picture(
-            described, 2, {body: 2 + asked.numel() + k for k, body in enumerate(bodies)}
-        ),
+        "picture": _picture(data.template.content, 2),
         "command": live.command,
     }
 
@@ -202,7 +197,7 @@ def _link(link: str, number: int, solution: Solution, known: Mapping[str, int]) 
     }
 
 
-def _picture(described: Description, first: int, masses: Mapping[str, int]) -> dict[str, Json]:
+def _picture(described: Description, first: int) -> dict[str, Json]:
     """The numbers that a picture is made of, as their places behind ``first``; -1 is nothing."""
 
     def at(number: float | None) -> int:
@@ -231,7 +226,7 @@ def _picture(described: Description, first: int, masses: Mapping[str, int]) -> d
         "bodies": {
             name: {
                 "length": at(body["length"]),
-                "mass": masses[name],
+                "mass": at(body["mass"]),
                 "centre": place(body["centre"]) if "centre" in body else None,
                 "outlines": [
                     [vector(corner) for corner in outline]

@@ -10,7 +10,6 @@ from html import escape
 
 from ...engine.model_data import template
 from ...errors import DeclarationError, LagrangeCasadiError
-from ...model.description import filled
 from ...model.scene import Scene
 from ...results.ordering import ordered
 from ...results.solution import Solution
@@ -73,7 +72,7 @@ def scene_summary(scene: Scene) -> str:
             scene, t=(start, start, 1), wanted=["motion"], backend="vm", certificate=False
         )
         drawing = still(first)
-    asked, content = scene.timing(), filled(template(scene), scene.values())
+    asked, content = scene.timing(), template(scene).at([*scene.values().values()])
     over = f"over {escape(asked.joint)}" if asked.joint else "over time"
     lines = [f"<b>{escape(content['name'])}</b>: {asked.count} instants {over}"]
     parts = {

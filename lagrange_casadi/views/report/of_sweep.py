@@ -22,7 +22,7 @@ from ...engine.derive import compile_scene
 from ...engine.identity import identity_of, sources
 from ...engine.model_data import template
 from ...errors import DeclarationError, shown
-from ...model.description import filled, values_of
+from ...model.description import values_of
 from ...model.scene import Scene, Wanted
 from ...model.wanted_names import SENSITIVITY
 from ...results.store.untrusted import check_shape, reported_as
@@ -78,7 +78,7 @@ def is_of(sweep: Sweep, scene: Scene) -> bool:
     values = values_of(swept)
     if (
         values.keys() != scene.parameters.keys()
-        or json.loads(json.dumps(filled(template(scene), values))) != swept
+        or json.loads(json.dumps(template(scene).at([*values.values()]))) != swept
     ):
         return False
     known = identity_of(scene, _wanted(sweep))
