@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal
 
@@ -18,7 +18,7 @@ import numpy as np
 
 from ..base.arrays import Expression
 from .description import Description, density_of, drives_of, in_space, motions_of, slices_of
-from .stated import Equation, LoadLaw, Stated, Triple
+from .stated import Stated, Triple
 
 Rows = tuple[Triple, Triple, Triple]
 """Three directions, or a matrix by its rows."""
@@ -93,9 +93,8 @@ class Declared:
 
     ``drives`` are the coordinates whose efforts make the motion, ``driven`` those whose motion is
     given. ``beside`` are the directions in ground axes that were declared for y axes of links.
-    ``multipliers`` are the names of all constraints and rows, and ``equations`` are these;
-    ``motions`` are those of ``driven``, and ``laws`` those of loads. There are none where they are
-    not known, as of a file.
+    ``multipliers`` are the names of all constraints and rows. ``stated`` has these, the motions of
+    ``driven`` and the laws of loads; nothing where they are not known, as of a file.
     """
 
     gravity: Triple
@@ -106,14 +105,12 @@ class Declared:
     driven: tuple[str, ...]
     beside: Mapping[str, Triple]
     multipliers: tuple[str, ...]
-    equations: tuple[Equation, ...] = ()
-    motions: tuple[Equation, ...] = ()
-    laws: tuple[LoadLaw, ...] = ()
+    stated: Stated = field(default_factory=Stated)
 
     @classmethod
     def of(cls, description: Description, stated: Stated | None = None) -> Declared:
         """The numbers of a description, which a file holds too; and what was ``stated``."""
-        space, stated = in_space(description), stated or Stated()
+        space = in_space(description)
         return cls(
             gravity=_triple(description["gravity"]),
             bodies={name: _body(body, space) for name, body in description["bodies"].items()},
@@ -128,9 +125,7 @@ class Declared:
                 for name, direction in description.get("beside", {}).items()
             },
             multipliers=(*description["constraints"], *description["rows"]),
-            equations=stated.equations,
-            motions=stated.motions,
-            laws=stated.laws,
+            stated=stated or Stated(),
         )
 
     @cached_property

@@ -74,8 +74,9 @@ def _attributes(solution: Solution, figures: str, grids: Sequence[str]) -> Attri
     return found | stated | {"figures": figures}
 
 
-def read_attributes(attributes: Attributes) -> dict[str, Any]:
-    """Fields of a :class:`Solution` that attributes of its file state; ``holding`` are reasons.
+def read_attributes(attributes: Attributes) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Fields of :class:`.Histories`, and other fields of a :class:`Solution`, that attributes of
+    its file state; ``holding`` are reasons.
 
     Raises ``ValueError``, ``TypeError`` or ``KeyError`` for attributes that are not written.
     """
@@ -93,6 +94,7 @@ def read_attributes(attributes: Attributes) -> dict[str, Any]:
         "description": description,
         "provenance": Provenance(**words, versions=stated("versions", {str: str})),
         "indeterminate": tuple(map(Output.of, stated("undetermined", [str]))),
+    }, {
         "errors": stated("error_estimates", {str: float}, "{}"),
         "tolerance": number(attributes, "certificate_tolerance"),
         "elasticity": Elasticity(tuple(map(Output.of, completed)), tuple(reasons)),

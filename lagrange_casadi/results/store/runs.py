@@ -30,8 +30,9 @@ from ...model.description import Description, motions_of, pieces_of
 from ...model.even_points import are_even
 from ...model.times import DriveAxis
 from ...model.wanted_names import SENSITIVITY
+from ..histories import Histories
 from ..ordering import in_order
-from ..solution import Solution
+from ..solution import Solution, solution_of
 from ..verification.certificate import COARSE, TOLERANCE, blur, certify
 from .attributes import (
     SCHEMA_VERSION,
@@ -447,8 +448,8 @@ def _create(
 
 def _read(file: h5py.File) -> Solution:
     check_links(file)
-    stated = read_attributes(file.attrs)
-    description, errors, reasons = stated["description"], stated["errors"], stated.pop("holding")
+    stated, evidence = read_attributes(file.attrs)
+    description, errors, reasons = stated["description"], evidence["errors"], evidence["holding"]
     t, xi = (numbers(file[axis]) for axis in _AXES)
     if t.ndim != 1 or xi.ndim != 1 or not t.size or not xi.size:
         raise ValueError(f"t and xi have the shapes {t.shape} and {xi.shape}")
@@ -467,44 +468,42 @@ def _read(file: h5py.File) -> Solution:
                 outputs[output] = numbers(item, t.shape)
 
     file.visititems(visit)
-    solution = Solution(
+    histories = Histories(
         t=t,
         xi=xi,
         outputs=in_order(outputs, description),
-        certificate={
-            name: numbers(file["certificate"][name], t.shape)
-            for name in file.get("certificate", ())
-        },
         over=drive_axis(file[_OVER], t.shape, description) if _OVER in file else None,
         **stated,
     )
-    for link in solution.links_with_sections:
-        law = solution.section(link).law
-        whole = set(law.coefficients) == set(solution.table.law) and all(
+    for link in histories.links_with_sections:
+        law = histories.section(link).law
+        whole = set(law.coefficients) == set(histories.table.law) and all(
             distributed.sound for distributed in law.distributed_loads
         )
         if not whole or len(law.density.breaks) != len(law.density.cells) + 1:
             raise ValueError(f"the law or the density of '{link}' is incomplete")
-    return replace(
-        solution,
-        sensitivities=slopes_of(file, solution, numbers),
-        holding=_held(file, solution, reasons),
-    )
+    residuals = file.get("certificate", {})
+    evidence |= {
+        "certificate": {name: numbers(residuals[name], t.shape) for name in residuals},
+        "sensitivities": slopes_of(file, histories, numbers),
+        "holding": _held(file, histories, reasons),
+    }
+    return solution_of(histories, **evidence)
 
 
-def _held(file: h5py.File, solution: Solution, reasons: Mapping[str, str]) -> dict[str, Holding]:
+def _held(file: h5py.File, histories: Histories, reasons: Mapping[str, str]) -> dict[str, Holding]:
     """The ranges of the efforts that joints at rest leave open, with the reason of each.
 
     Raises ``ValueError`` for those of what is no drive.
     """
     found = {}
     for name, reason in reasons.items():
-        if Output("effort", name) not in solution.outputs:
+        if Output("effort", name) not in histories.outputs:
             raise ValueError(f"there is a range of efforts of '{name}', which is no drive")
         least, largest = (
-            numbers(file[_place(Output("holding", name, end))], solution.t.shape) for end in ENDS
+            numbers(file[_place(Output("holding", name, end))], histories.t.shape) for end in ENDS
         )
-        found[name] = Holding(least, largest, solution.unit(Output("effort", name)), reason)
+        found[name] = Holding(least, largest, histories.unit(Output("effort", name)), reason)
     return found
 
 

@@ -13,6 +13,7 @@ from ...base.arrays import Array
 from ...base.quantities import Output
 from ...model.wanted_names import SENSITIVITY
 from ..derivatives import Derivatives, derivatives
+from ..histories import Histories
 from ..solution import Solution
 from .scales import Scales
 from .words import say
@@ -33,22 +34,22 @@ def add_slopes(
 
 
 def slopes_of(
-    file: h5py.File, solution: Solution, numbers: Callable[[h5py.Dataset, tuple[int, ...]], Array]
+    file: h5py.File, histories: Histories, numbers: Callable[[h5py.Dataset, tuple[int, ...]], Array]
 ) -> Derivatives:
     """Read the sensitivities of a file; ``numbers`` reads a dataset of a shape.
 
     Raises ``ValueError`` where it is not whole.
     """
     group = file.get(SENSITIVITY, {})
-    lengths = {"t": solution.t.size, "xi": solution.xi.size}
-    expected = [output for output in solution.quantities() if solution.determined(output)]
+    lengths = {"t": histories.t.size, "xi": histories.xi.size}
+    expected = [output for output in histories.quantities() if histories.determined(output)]
     found: dict[str, dict[Output, Array]] = {}
     places: list[str] = []
     if group:
         group.visititems(
             lambda place, item: places.append(place) if isinstance(item, h5py.Dataset) else None
         )
-    if set(group) - solution.description["parameters"].keys():
+    if set(group) - histories.description["parameters"].keys():
         raise ValueError("there are sensitivities by names that are not parameters")
     expected_names = {
         f"{name}/{str(o).replace(':', '/')}": (name, o) for name in group for o in expected
@@ -59,7 +60,7 @@ def slopes_of(
         shape = tuple(lengths[axis] for axis in output.quantity.axes)
         found.setdefault(name, {})[output] = numbers(group[place], shape)
     return Derivatives(
-        {name: found[name] for name in solution.description["parameters"] if name in found}
+        {name: found[name] for name in histories.description["parameters"] if name in found}
     )
 
 

@@ -88,7 +88,7 @@ def forces_reported(placed: Placed) -> bool:
     multipliers act are known.
     """
     declared, outputs = placed.declared, placed.reported.outputs
-    if len(declared.equations) < len(declared.multipliers):
+    if len(declared.stated.equations) < len(declared.multipliers):
         return False
     needed = [*forces_needed(declared)]
     needed += [output for output in outputs if output.group in ("reaction", "load")]
@@ -185,7 +185,7 @@ def all_actions(placed: Placed) -> Iterator[Action]:
             place = load.points[0] if load.friction is not None else point
             at = placed.bodies[place.body].point(Vector(*place.at))[0]
             yield Action(f"load:{name}", point.body, at, sign * force, sign * couple)
-    for equation in declared.equations:
+    for equation in declared.stated.equations:
         yield from _held(placed, equation)
 
 

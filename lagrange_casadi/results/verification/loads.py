@@ -33,7 +33,7 @@ def off_laws(placed: Placed, digits: Digits, largest: float) -> Array:
     largest force of the cycle.
     """
     worst = np.zeros_like(placed.reported.t)
-    for law in placed.declared.laws:
+    for law in placed.declared.stated.laws:
         load = placed.declared.loads[law.name]
         given, (places, rates, _) = _given(placed, law.name), stacked(placed, law)
         acts = _acting(placed, law, load, law.at(places, rates, placed.reported.t))
