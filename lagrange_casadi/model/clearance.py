@@ -13,13 +13,10 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-import numpy.typing as npt
 
-from ..base.arrays import Array
+from ..base.arrays import Array, Flags
 from ..base.boxes import boxed
 from ..base.symbolic import symbolic_property
-
-Flags = npt.NDArray[np.bool_]
 
 _STRETCHES = 64
 """Number of parts of a path whose bounds as a whole do not suffice."""

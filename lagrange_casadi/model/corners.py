@@ -29,9 +29,17 @@ _SAMPLED = 4001
 def smooth_constraint(mechanism: Mechanism, constraint: Constraint) -> Smooth | None:
     """Condition that a constraint has no kink over its symbols; None if it can have none."""
     curve = constraint.phi if constraint.lift is None else constraint.lift
-    return Smooth.of(
-        curve, ca.vertcat(mechanism.measures.places, mechanism.time), mechanism.symbols
-    )
+    seen = ca.vertcat(mechanism.measures.places, mechanism.time)
+    what = _curve(constraint.name, constraint.lift is not None)
+    return Smooth.of(what, curve, seen, mechanism.symbols)
+
+
+def _curve(name: str, cam: bool) -> str:
+    return f"cam '{name}': its lift" if cam else f"constraint '{name}'"
+
+
+def _motion(joint: str) -> str:
+    return f"the motion of joint '{joint}'"
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,25 +67,25 @@ class Corners(Graphs):
             laws, {name: smooth for name, smooth in found.items() if smooth is not None}, cams
         )
 
+    def refuse_laws(self, span: tuple[float, float], p: Sequence[float]) -> None:
+        """Raise :class:`.DeclarationError` for a motion with a kink within a span of time, for
+        parameters ``p``.
+        """
+        self._refuse_laws(np.linspace(*span, _SAMPLED), p, at=False)
+
     def refuse_isolated_laws(self, t: Array, p: Sequence[float], *, between: bool = False) -> None:
         """Raise :class:`.DeclarationError` for a motion that is other at an instant ``t`` (t,) than
         on both sides of it.
 
         With ``between`` also for one that is so between instants, where peaks may be sought.
         """
-        for joint, smooth in self.laws.items():
-            found = smooth.isolated(t[None], p, between=between)
-            if found is not None:
-                raise found.refused(f"the motion of joint '{joint}'")
+        self._refuse_laws(t, p, between=between)
 
-    def refuse_laws(self, span: tuple[float, float], p: Sequence[float]) -> None:
-        """Raise :class:`.DeclarationError` for a motion with a kink within a span of time, for
-        parameters ``p``.
-        """
+    def _refuse_laws(self, t: Array, p: Sequence[float], **asked: bool) -> None:
         for joint, smooth in self.laws.items():
-            found = smooth.kink(np.linspace(*span, _SAMPLED)[None], p)
+            found = smooth.kink(t[None], p, **asked)
             if found is not None:
-                raise found.refused(f"the motion of joint '{joint}'")
+                raise found.refused(_motion(joint))
 
     def refuse_constraints(
         self, arguments: Callable[[str], Array], p: Sequence[float], *, between: bool = False
@@ -89,12 +97,9 @@ class Corners(Graphs):
         that of motions.
         """
         for name, smooth in self.constraints.items():
-            path = arguments(name)
-            found = smooth.kink(path, p) or smooth.isolated(path, p, between=between)
+            found = smooth.kink(arguments(name), p, between=between)
             if found is not None:
-                raise found.refused(
-                    f"cam '{name}': its lift" if name in self.cams else f"constraint '{name}'"
-                )
+                raise found.refused(_curve(name, name in self.cams))
 
     def broken_laws(self, t: Array, p: Array) -> npt.NDArray[np.bool_]:
         """Return the designs ``p`` (d, parameters) in which a motion has a kink between the
@@ -112,11 +117,6 @@ class Corners(Graphs):
             rows = np.column_stack([start, stop, np.where(smooth.uses, p, 0.0)])[near]
             each, number = np.unique(rows, axis=0, return_inverse=True)
             found[near] |= _broken_law(smooth, each.tobytes())[number.ravel()]
-            if len(t) > 1:
-                found[near] |= smooth.isolates(t[near, None], p[near], between=True)
-            else:
-                at = np.broadcast_to(t[:, None], (len(each), 1, t.shape[1]))
-                found[near] |= smooth.isolates(at, each[:, 2:], between=True)[number.ravel()]
         return found
 
     def broken_constraints(
@@ -153,8 +153,7 @@ def _broken_constraint(smooth: Smooth, paths: Array, p: Array) -> npt.NDArray[np
     rows = np.concatenate([paths.reshape(len(paths), -1), p], axis=1)
     _, which, number = np.unique(rows, axis=0, return_index=True, return_inverse=True)
     paths, p = paths[which], p[which]
-    found = smooth.broken(paths, p) | smooth.isolates(paths, p, between=True)
-    return np.asarray(found[number.ravel()], bool)
+    return np.asarray(smooth.broken(paths, p)[number.ravel()], bool)
 
 
 def _smooth_laws(laws: Mapping[str, Motion], parameters: ca.SX) -> dict[str, Smooth]:
@@ -165,7 +164,7 @@ def _smooth_laws(laws: Mapping[str, Motion], parameters: ca.SX) -> dict[str, Smo
     t = ca.SX.sym("t")
     looked_at = {joint: law for joint, law in laws.items() if not (law.knots or law.stretches)}
     found = {
-        joint: Smooth.of(law_expression(joint, law, t, parameters), t, parameters)
+        joint: Smooth.of(_motion(joint), law_expression(joint, law, t, parameters), t, parameters)
         for joint, law in looked_at.items()
     }
     return {joint: smooth for joint, smooth in found.items() if smooth is not None}

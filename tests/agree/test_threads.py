@@ -89,8 +89,8 @@ from threaded import press
 
 scenes, moving = [press(0), press(1)], ca.SX.sym("t")
 demands = [scene.parameter_constraints() for scene in scenes]
-smooth = [Smooth.of(ca.fabs(k * moving), moving, ca.SX(0, 1)) for k in (1, 2)]
-pairs = dict.fromkeys(("laws", "guided", "prescribed", "span"), scenes) | {"function": demands, "_bends": smooth}
+smooth = [Smooth.of("law", ca.fabs(k * moving), moving, ca.SX(0, 1)) for k in (1, 2)]
+pairs = dict.fromkeys(("laws", "guided", "prescribed", "span"), scenes) | {"function": demands, "_turns": smooth}
 for name, (first, second) in pairs.items():
     for whole in (first, second):
         vars(whole).pop(name, None)

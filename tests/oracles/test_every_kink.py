@@ -58,6 +58,12 @@ def refused(scene, seeds):
             # A profile that is undercut for the default.
             continue
         said = f"seed {seed}: {program} with k = {k}"
+        try:
+            smooth = Smooth.of("the law", program, T, K)
+        except DeclarationError:
+            with pytest.raises(DeclarationError, match="by == or !="):
+                DesignEngine.of(made, ["effort"])
+            continue
         status = DesignEngine.of(made, ["effort"]).evaluate(np.array([[0.7], [k]])).status[1]
         try:
             evaluate(made, parameters={"k": k}, backend="vm", certificate=False)
@@ -71,7 +77,7 @@ def refused(scene, seeds):
         lone = (
             None
             if told or status != Status.CORNER
-            else Smooth.of(program, T, K).isolated(TIMES, (k,), between=True)
+            else smooth.kink(TIMES, (k,), between=True, at=False)
         )
         assert (
             told or status != Status.CORNER or told_by_limits(scaled, k, lone.at["t"]) == "isolated"
@@ -79,7 +85,7 @@ def refused(scene, seeds):
         # A design may be refused for something else before its corners are looked for.
         assert not told or status != Status.OK, said
         if status in (Status.OK, Status.CORNER) and (told or broken):
-            place = Smooth.of(program, T, K).kink(TIMES, (k,))
+            place = smooth and smooth.kink(TIMES, (k,), at=False)
             assert told == broken or (
                 told and place is not None and shown(program, k, place.at["t"])
             ), said
