@@ -4,7 +4,6 @@
 
 from lagrange_casadi.base import cache, symbolic
 from lagrange_casadi.base import seal as base_seal
-from lagrange_casadi.base.boxes import boxed
 from lagrange_casadi.base.compensated import Pair, Pairs
 from lagrange_casadi.base.interpret import interpret, numpy_arithmetic
 from lagrange_casadi.base.methods import METHODS as METHODS_METHODS

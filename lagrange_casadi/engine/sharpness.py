@@ -128,11 +128,19 @@ class Sharpness:
 
 @symbolic
 def with_watched(program: Program, sharpness: Sharpness) -> Program:
-    """The graph with what is watched as further columns, the last ones."""
+    """The graph with what is watched as further columns, the last ones: first for the search for
+    peaks, then the marks of motions and constraints that may have kinks.
+    """
     inputs = program.instant.sx_in()
-    watched = [Check("watched", str(k)) for k in range(len(sharpness.watches))]
-    out = ca.vertcat(program.instant(*inputs), sharpness.watched(*inputs))
-    return program.with_columns([*program.columns, *watched], out)
+    out, corners, p = program.instant(*inputs), program.data.corners, inputs[-1]
+    marks = [smooth.marks(inputs[0], p) for smooth in corners.laws.values()]
+    marks += [
+        smooth.marks(out[program.seen_columns(name)], p)
+        for name, smooth in corners.constraints.items()
+    ]
+    rows = ca.vertcat(sharpness.watched(*inputs), *marks)
+    watched = [Check("watched", str(k)) for k in range(rows.numel())]
+    return program.with_columns([*program.columns, *watched], ca.vertcat(out, ca.densify(rows)))
 
 
 def bent(program: Program, sharpness: Sharpness, t: Array, p: Array) -> Flags:

@@ -52,6 +52,18 @@ class Corners(Graphs):
     constraints: Mapping[str, Smooth]
     cams: Collection[str]
 
+    @property
+    def whole(self) -> tuple[bool, ...]:
+        """True for each mark of laws, then of constraints, that counts at whole numbers."""
+        each = (*self.laws.values(), *self.constraints.values())
+        return tuple(bool(whole) for smooth in each for whole in smooth.whole)
+
+    @property
+    def hidden(self) -> bool:
+        """True if a law or constraint cannot be followed, so that its marks are not known."""
+        each = (*self.laws.values(), *self.constraints.values())
+        return not all(smooth.whole.size for smooth in each)
+
     @classmethod
     @symbolic
     @functools.lru_cache(maxsize=64)
@@ -108,15 +120,10 @@ class Corners(Graphs):
         found = np.zeros(len(p), bool)
         start, stop = (np.broadcast_to(t[:, k], len(p)) for k in (0, -1))
         for smooth in self.laws.values():
-            near = smooth.clearance.near(
-                start[:, None], stop[:, None], p, lambda some: _instants(start[some], stop[some])
-            )
-            if not near.any():
-                continue
             # Most designs share what their motions depend on.
-            rows = np.column_stack([start, stop, np.where(smooth.uses, p, 0.0)])[near]
+            rows = np.column_stack([start, stop, np.where(smooth.uses, p, 0.0)])
             each, number = np.unique(rows, axis=0, return_inverse=True)
-            found[near] |= _broken_law(smooth, each.tobytes())[number.ravel()]
+            found |= _broken_law(smooth, each.tobytes())[number.ravel()]
         return found
 
     def broken_constraints(
@@ -127,12 +134,7 @@ class Corners(Graphs):
         """
         found = np.zeros(len(p), bool)
         for name, smooth in self.constraints.items():
-            paths = arguments(name)
-            near = smooth.clearance.near(paths.min(axis=2), paths.max(axis=2), p, paths.__getitem__)
-            if near.any():
-                found[near] |= _broken_constraint(
-                    smooth, paths[near], np.where(smooth.uses, p[near], 0.0)
-                )
+            found |= _broken_constraint(smooth, arguments(name), np.where(smooth.uses, p, 0.0))
         return found
 
 

@@ -24,7 +24,6 @@ from ..base.lookups import is_entry
 from ..base.scalars import entries
 from ..base.symbolic import symbolic_property
 from ..errors import DeclarationError
-from .clearance import Clearance
 from .one_sided_limits import (
     CROSSED,
     INSTANT,
@@ -172,13 +171,6 @@ class Smooth:
         rows = ca.densify(ca.jtimes(self.marks(x, p), x, way))
         return ca.Function("turns", [x, p, way], [rows], {"cse": True})
 
-    @symbolic_property
-    def clearance(self) -> Clearance:
-        """Return along which paths no mark comes near to where it passes, at a small part of the
-        cost of looking for kinks.
-        """
-        return Clearance(self.marks, self.whole, self.open)
-
     def kink(
         self, path: Array, values: Sequence[float], *, between: bool = False, at: bool = True
     ) -> Kink | None:
@@ -186,7 +178,7 @@ class Smooth:
         symbols; or what is other ``at`` an instant alone, or at a place ``between`` two.
         """
         paths, p = np.asarray(path, float)[None], np.array(values, float)[None]
-        found = [*self._kinks(paths, p, between, at)]
+        found = self._kinks(paths, p, between, at)
         if not found:
             return None
         worst = max(found, key=lambda one: (not one.alone, one.what == "value", one.jump))
@@ -206,21 +198,21 @@ class Smooth:
             found[[start + k for k in owners]] = True
         return found
 
-    def _kinks(self, paths: Array, p: Array, between: bool, at: bool) -> Iterator[_Found]:
+    def _kinks(self, paths: Array, p: Array, between: bool, at: bool) -> list[_Found]:
         """Everything that is found along paths (d, symbols, n) for values ``p`` (d, fixed)."""
         with np.errstate(all="ignore"):
             line = Line(paths, p)
             if not self.whole.size:
-                yield from _inconsistent(self.bends, line)
-                return
+                return [*_inconsistent(self.bends, line)]
             places = self._places(line, line.all(self.marks), between, at)
             if not places.step.size:
-                return
+                return []
             usual = line.usual(self.bends)[self._kinds][:, line.owner[places.step]]
             some = self._unequal(line, places, usual, between)
-            if some.size:
-                known, places = places.middle, places.some(some)
-                yield from self._judged(line, places, usual[:, some], known, between)
+            if not some.size:
+                return []
+            known, places = places.middle, places.some(some)
+            return [*self._judged(line, places, usual[:, some], known, between)]
 
     def _sides(self, marks: Array) -> Array:
         """Side of a place on which marks (marks, m) are."""
@@ -236,9 +228,9 @@ class Smooth:
         """
         sides = self._sides(marks).reshape(len(marks), *line.shape)
         # A mark that touches zero at an instant, but for rounding, does not pass it.
-        off, least = self._off(marks).reshape(sides.shape), _ROUNDING * _largest(marks)
+        off, least = self._off(marks).reshape(sides.shape), _rounding(marks.reshape(sides.shape))
         inner, before, after = sides[..., 1:-1], sides[..., :-2], sides[..., 2:]
-        touches = (off[..., 1:-1] <= least[:, None, None]) & (before == after)
+        touches = (off[..., 1:-1] <= least[..., None]) & (before == after)
         inner[touches] = before[touches]
         changed = (sides[..., 1:] != sides[..., :-1]).any(axis=0)
         step = np.flatnonzero(np.pad(changed, ((0, 0), (0, 1))))
@@ -290,11 +282,12 @@ class Smooth:
         n = line.shape[1]
         off = self._off(marks).reshape(-1, *line.shape)
         before, here, after = off[..., :-2], off[..., 1:-1], off[..., 2:]
-        least = here - (after - before) ** 2 / (8.0 * (after - 2.0 * here + before))
-        row, owner, k = np.nonzero((here <= before) & (here <= after) & (least <= _DIP * here))
+        lowest = here - (after - before) ** 2 / (8.0 * (after - 2.0 * here + before))
+        row, owner, k = np.nonzero((here <= before) & (here <= after) & (lowest <= _DIP * here))
         row, step = np.tile(row, 2), np.concatenate([owner * n + k, owner * n + k + 1])
         none = np.zeros(step.size)
         rises = [self._rises(line, step, row)(none + end) for end in (0.0, 1.0)]
+        least = np.tile(_rounding(marks.reshape(off.shape))[row[: k.size], owner], 2)
         some = rises[0] != rises[1]
         step, row, first, none = step[some], row[some], rises[0][some], none[some]
         going = self._rises(line, step, row)
@@ -304,7 +297,7 @@ class Smooth:
             *(self._off(line.rows(self.marks, step, x))[row, each] for x in (low, high))
         )
         ends = (np.abs(line.rows(self.marks, step, none + x))[row, each] for x in (0.0, 1.0))
-        zero = there <= _TOUCH * np.maximum(*ends) + _ROUNDING * _largest(marks)[row]
+        zero = there <= _TOUCH * np.maximum(*ends) + least[some]
         return Places(step, low, high, row), np.asarray(zero)
 
     def _rises(self, line: Line, step: Numbers, row: Numbers) -> Callable[[Array], Flags]:
@@ -381,9 +374,10 @@ class Smooth:
         return np.asarray(exact & ~rounds & ~_within(here, sides, least))
 
 
-def _largest(rows: Array) -> Array:
-    """The largest finite size of each row."""
-    return np.asarray(np.where(np.isfinite(rows), np.abs(rows), 0.0).max(axis=1, initial=0.0))
+def _rounding(marks: Array) -> Array:
+    """Rounding of marks (marks, d, n) along each path, (marks, d)."""
+    sizes = np.where(np.isfinite(marks), np.abs(marks), 0.0)
+    return np.asarray(_ROUNDING * sizes.max(axis=2, initial=0.0))
 
 
 def _within(here: Array, sides: Sequence[Array], least: Array) -> Flags:

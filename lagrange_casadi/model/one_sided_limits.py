@@ -170,8 +170,12 @@ class Line:
         place, known = places.middle, np.concatenate([[-np.inf], np.sort(known), [np.inf]])
         # Where a mark touches zero rounding makes many places of one.
         apart = np.where((kind == OPEN) | (kind == TOUCHED), 1e-4, 1e-9)
-        before = place - known[np.searchsorted(known, place - apart) - 1]
-        after = known[np.searchsorted(known, place + apart, side="right")] - place
+        below = known[np.searchsorted(known, place - apart) - 1]
+        above = known[np.searchsorted(known, place + apart, side="right")]
+        # Places of other paths do not bound.
+        first = self.shape[1] * self.owner[step]
+        before = np.where(below >= first, place - below, np.inf)
+        after = np.where(above < first + self.shape[1], above - place, np.inf)
         off, many, free = self.off(step), step.size, kind == INSTANT
         for way, middle, widest in ((-1.0, low, before), (1.0, high, after)):
             room = way * (np.where(way > 0, self.most[step], self.least[step]) - middle)

@@ -105,7 +105,9 @@ static void designs_sample(designs_now* now) {
     }
     row += DESIGNS_CHECKED*stride;
     for (k = 0; k < DESIGNS_CHECKS; ++k, row += stride) scene_store(row, y[designs_checked[k]]);
-    for (k = 0; peaks && k < DESIGNS_WATCHES; ++k, row += stride) scene_store(row, y[SCENE_OUTPUTS + k]);
+    for (k = 0; peaks && k < DESIGNS_WATCHES; ++k) scene_store(row + k*stride, y[SCENE_OUTPUTS + k]);
+    row += DESIGNS_WATCHES*stride;
+    for (k = 0; now->call->near && k < DESIGNS_MARKS; ++k) scene_store(row + k*stride, y[SCENE_OUTPUTS + DESIGNS_WATCHES + k]);
     if (!instants->out) {
       scene_check(instants, i, y);
       continue;
@@ -379,6 +381,30 @@ static int designs_begin(designs_now* now, const double* p) {
   return now->t[now->n - 1] >= now->t[0] ? SCENE_OK : SCENE_NO_INSTANTS;
 }
 
+/* Whether a mark of a motion or a constraint may come to where it counts between instants: it is no further from there at one of them
+   than it moves in a step. */
+static int designs_near_mark(const designs_now* now) {
+  lanes_real least, most, off, step;
+  casadi_int i;
+  int k;
+  for (k = 0; k < DESIGNS_MARKS; ++k) {
+    const lanes_real* row = designs_row(now, DESIGNS_CHECKED + DESIGNS_CHECKS + DESIGNS_WATCHES + k);
+    least = DESIGNS_LARGEST;
+    most = 0;
+    for (i = 0; i < now->n; ++i) {
+      off = designs_whole[k] ? row[i] - (lanes_real) floor((double) row[i] + 0.5) : row[i];
+      step = i > 0 ? row[i] - row[i - 1] : 0;
+      off = off < 0 ? -off : off;
+      step = step < 0 ? -step : step;
+      if (!(off - off == 0 && step - step == 0)) return 1;
+      least = off < least ? off : least;
+      most = step > most ? step : most;
+    }
+    if (now->n < 3 || least <= most) return 1;
+  }
+  return 0;
+}
+
 /* Finish a design that was sampled: whether it has a result, and unless value is NULL its peaks and means. */
 static int designs_finish(designs_now* now, double* value, double* t, double* xi, double* mean, double* rms) {
   const int why = designs_refused(now);
@@ -415,7 +441,8 @@ static void designs_timed(designs_now* now, const double* t) {
    peak_t and xi become rows of quantities, mean and rms of efforts, all of them or none where value is NULL; these ask for instants in
    equal steps. tops, unless it is NULL, becomes the local peaks of quantities that way and share ask of the search. Where error is not
    NULL, peaks are those at the instants, and error becomes how much larger each may be between them. history, unless it is NULL,
-   becomes outputs by instants, iterated likewise iterated coordinates; a design without a result leaves its status, and NaN. hiding
+   becomes outputs by instants, iterated likewise iterated coordinates; near, unless it is NULL, says whether a mark of a motion or a
+   constraint is near to where it may make a kink; a design without a result leaves its status, and NaN. hiding
    begins with two rows of zeros, which are room; what follows says after which instants the motion bends more than they show, that of
    a design bent_apart values beyond that of the one before. find searches for peaks, by a search of which tables and room are set. */
 LAGRANGE_CASADI_EXPORT void lagrange_casadi_designs(const lagrange_casadi_designs_call* call) {
@@ -447,6 +474,7 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_designs(const lagrange_casadi_design
       why = designs_finish(&now, values, times, places, means, squares);
     }
     call->status[d] = (signed char) why;
+    if (call->near) call->near[d] = (signed char) (why == SCENE_OK && designs_near_mark(&now));
     for (i = 0; closed && i < SCENE_NZ*n; ++i) closed[i] = why == SCENE_OK ? now.instants.z[i/n*stride + i%n] : (lanes_real) NAN;
     if (why == SCENE_OK) continue;
     for (k = 0; values && k < DESIGNS_QUANTITIES; ++k) values[k] = times[k] = places[k] = NAN;

@@ -101,7 +101,7 @@ def emit(
 
 
 def _sizes(program: Program, stages: Stages, reduction: Reduction | None) -> dict[str, object]:
-    columns, watched = len(program.columns), len(reduction.watches) if reduction else 0
+    columns, watched = len(program.columns), reduction.watched if reduction else 0
     nt = stages.drive.size1_in(0)
     nc = stages.drive.size1_out(0)
     nd = program.instant.size1_in("d")

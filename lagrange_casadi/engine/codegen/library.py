@@ -190,10 +190,10 @@ class Library:
         They are arrays by their names in :data:`CALL`. ``t`` are instants (n, t), and ``bent`` (n,
         t - 1) says in which steps between them the motion bends more than they show; one row of
         either serves all designs. ``history`` may be None; or all but that and the status may be
-        None: then no peaks are sought, and instants need not be in equal steps. ``iterated`` and
-        ``tops``, which ``listed`` describes, may be left out. With ``error`` peaks are those at the
-        instants: it becomes how much larger they may be between them. The bytes of a row do not
-        depend on other rows.
+        None: then no peaks are sought, and instants need not be in equal steps. ``iterated``,
+        ``tops``, which ``listed`` describes, and ``near`` may be left out. With ``error`` peaks are
+        those at the instants: it becomes how much larger they may be between them. The bytes of a
+        row do not depend on other rows.
         """
         assert self.many is not None
         many, n = self.many, t.shape[1]
@@ -208,7 +208,7 @@ class Library:
         own, status = np.zeros((2, p.shape[1]), dtype), np.zeros(stride, np.int32)
         instants = _instants(room[:2, :n], own, many.guess, room[iterated:], None, status)
         arrays: dict[str, Array | None] = {"t": t, "p": p, "hiding": hiding}
-        arrays |= {"iterated": None, "tops": None, "error": None, **results}
+        arrays |= dict.fromkeys(("iterated", "tops", "error", "near")) | dict(results)
         single = {
             name: np.empty(array.shape, dtype)
             for name in ("history", "iterated")

@@ -49,6 +49,7 @@ CALL = Call(
         "iterated": "real*",
         "tops": "double*",
         "error": "double*",
+        "near": "signed char*",
     },
 )
 """Arguments of :data:`DESIGNS`; the C says which it reads and writes."""
@@ -73,7 +74,8 @@ class Reduction:
     not zero either: the first is the mechanism's extent [m]. Then comes what ``sections.c`` takes
     for each link, and the limits of bounds. ``watches`` are what the last columns are watched for,
     ``knots`` times of kinks, and ``depends`` (watches, quantities) which quantity depends on which
-    watched function: see :class:`.Sharpness`.
+    watched function: see :class:`.Sharpness`. ``marks`` are of the columns after these, marks of
+    motions and constraints (:class:`.Smooth`): whether they count at whole numbers.
     """
 
     quantities: tuple[tuple[int, ...], ...]
@@ -88,6 +90,12 @@ class Reduction:
     watches: tuple[Watch, ...]
     knots: tuple[float, ...]
     depends: Flags
+    marks: tuple[bool, ...]
+
+    @property
+    def watched(self) -> int:
+        """Number of the last columns, which are no outputs."""
+        return len(self.watches) + len(self.marks)
 
     @property
     def curves(self) -> list[tuple[int, int, int]]:
@@ -114,7 +122,7 @@ class Reduction:
         """Rows of one design that are kept while it is evaluated, beside those of times and
         iterated coordinates.
         """
-        return len(self.curves) + self.places + len(self.checks) + len(self.watches)
+        return len(self.curves) + self.places + len(self.checks) + self.watched
 
     def tables(self, precision: Precision) -> Tables:
         """The curves as the search takes them."""
@@ -171,6 +179,7 @@ def _macros(program: Program, reduction: Reduction, precision: Precision) -> dic
         "PLACES": reduction.places,
         "CHECKED": curves + reduction.places,
         "WATCHES": len(reduction.watches),
+        "MARKS": len(reduction.marks),
         "CHECKS": checks,
         "BOUNDS": len(program.bounds),
         "DOUBTS": len(reduction.indeterminate_checks),
@@ -206,6 +215,7 @@ def _tables(program: Program, reduction: Reduction) -> str:
         "sized": sized,
         "status": map(int, statuses),
         "effort": reduction.efforts or (0,),
+        "whole": map(int, reduction.marks or (False,)),
         "doubted": shown_by,
         "doubtful": indeterminate,
     }

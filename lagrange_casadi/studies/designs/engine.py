@@ -275,7 +275,8 @@ class DesignEngine:
         p, columns = p[None], np.empty((1, len(self.program.columns), self.count))
         t = self.times.of(p, asked=listed is None)[listed is None]
         found = self._results(1, columns) | {
-            "iterated": np.empty((1, self.program.instant.size1_in("z"), self.count))
+            "iterated": np.empty((1, self.program.instant.size1_in("z"), self.count)),
+            "near": self.near(1),
         }
         tops = np.full((1, len(self.kept.quantities), TOPS, 4), np.nan)
         if listed is None:
@@ -343,11 +344,9 @@ class DesignEngine:
         if times is not None:
             times[:] = asked
         together = series is not None and asked is even
-        shape = (len(p), len(self.program.columns), self.count)
-        columns = series if together else np.empty(shape) if self.watch.columns else None
-        results = found | {"history": columns}
+        results = found | {"history": series if together else None, "near": self.near(len(p))}
         self.library.designs(even, self.bent(p, even), p, results, threads)
-        self._refuse_motions(p, even, results)
+        self._refuse_motions(p, even, results, threads)
         if series is None or together:
             return
         others: Results = {"status": np.zeros(len(p), np.int8), "history": series}
@@ -374,14 +373,36 @@ class DesignEngine:
         ]
         return np.array(known) if known else np.zeros((1, 0), bool)
 
-    def _refuse_motions(self, p: Array, t: Array, found: Results) -> None:
-        """Take the result from designs whose motion cannot be; the history has their columns, if
-        these are watched.
-        """
-        if not self.watch:
+    def _refuse_motions(self, p: Array, t: Array, found: Results, threads: int = 1) -> None:
+        """Take the result from designs whose motion cannot be."""
+        near = found.pop("near")
+        if near is None:
             return
-        status = self.watch.statuses(p, t, found["status"], found["history"])
+        status = self.statuses(p, t, found["status"], near, threads)
         refuse(found, status != found["status"], status)
+
+    def near(self, n: int) -> npt.NDArray[np.int8] | None:
+        """Array for whether n designs are to be looked at for corners; None if no motion and no
+        constraint can have one.
+        """
+        return np.zeros(n, np.int8) if self.watch else None
+
+    def statuses(
+        self,
+        p: Array,
+        t: Array,
+        status: npt.NDArray[np.int8],
+        near: npt.NDArray[np.int8],
+        threads: int = 1,
+    ) -> npt.NDArray[np.int8]:
+        """The statuses of designs as of :meth:`.Watch.statuses`."""
+
+        def columns(p: Array, t: Array) -> Array:
+            series = np.empty((len(p), len(self.program.columns), t.shape[1]))
+            self._series(p, t, {"status": np.zeros(len(p), np.int8), "history": series}, threads)
+            return series
+
+        return self.watch.statuses(p, t, status, near != 0, columns)
 
     @symbolic_property
     def slopes(self) -> Slopes:

@@ -176,19 +176,18 @@ class _Answers(threading.local):
             even, asked = self.instants = engine.times.of(self.p)
             bind = partial(engine.library.bound, p=self.p)
             nowhere = np.zeros((1, 0), bool)
-            # What is watched at the instants of peaks; series of the evaluation before stay what
-            # they are.
-            self.even = np.empty_like(self.history) if engine.watch.columns else None
+            self.near = engine.near(1)
+            common = {"status": self.status, "near": self.near}
             self.fill = (
                 bind(
                     asked,
                     nowhere,
-                    results={"status": self.status, **dict.fromkeys(KEPT), "history": self.history},
+                    results={**common, **dict.fromkeys(KEPT), "history": self.history},
                 ),
                 bind(
                     even,
                     engine.bent(self.p, even),
-                    results={"status": self.status, **places, "history": self.even},
+                    results={**common, **places, "history": None},
                 ),
             )
 
@@ -271,7 +270,7 @@ class Prepared:
             self._refuse(found.outcome.status[0], p)
             return {str(o): row for o, row in engine.reported(found.columns, p[0]).items()}
         fill[0]()
-        self._refuse(self._watched(answers.instants[1], answers.history), p)
+        self._refuse(self._watched(answers.instants[1]), p)
         if not engine.plain:
             engine.finish(answers.history[0], p[0])
         return answers.rows
@@ -422,7 +421,7 @@ class Prepared:
             error = None if found.error is None else found.error[0]
             return Peaks(value, at, xi, mean, rms, error)
         fill[1]()
-        self._refuse(self._watched(answers.instants[0], answers.even), p)
+        self._refuse(self._watched(answers.instants[0]), p)
         return answers.kept_peaks
 
     def _kept_peaks(
@@ -456,14 +455,14 @@ class Prepared:
                 row[self._place[name]] = value if type(value) is float else parameter.number(value)
         return p
 
-    def _watched(self, t: Array, columns: Array | None) -> int:
+    def _watched(self, t: Array) -> int:
         """The status of this thread's evaluation at instants (1, t); its motion may have a corner
         though all have numbers.
         """
         engine, answers = self._engine, self._answers
-        if not engine.watch:
+        if answers.near is None:
             return int(answers.status[0])
-        return int(engine.watch.statuses(answers.p, t, answers.status, columns)[0])
+        return int(engine.statuses(answers.p, t, answers.status, answers.near)[0])
 
     def _refuse(self, status: int, p: Array) -> None:
         if status != Status.OK:

@@ -122,6 +122,7 @@ class KeptOutputs:
             watches=sharpness.watches,
             knots=sharpness.knots,
             depends=sharpness.dependence(made_of),
+            marks=data.corners.whole,
         )
         return cls(tuple(names), units, efforts, reduction, sharpness)
 

@@ -4,14 +4,15 @@ curve's ends, and by kinks.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
-from ...base.arrays import Array
+from ...base.arrays import Array, Flags
 from ...base.status import Status
 from ...engine.program import Program
 from ...model.corners import Corners
@@ -48,16 +49,22 @@ class Watch:
 
     @property
     def columns(self) -> bool:
-        """True if the columns of every design are needed, as arguments of constraints."""
+        """True if columns of designs may be needed, as arguments of constraints."""
         return bool(self._corners.constraints)
 
     def statuses(
-        self, p: Array, t: Array, status: npt.NDArray[np.int8], columns: Array | None
+        self,
+        p: Array,
+        t: Array,
+        status: npt.NDArray[np.int8],
+        near: Flags,
+        columns: Callable[[Array, Array], Array],
     ) -> npt.NDArray[np.int8]:
         """The statuses of designs ``p`` (n, parameters) that had ``status``, at instants ``t`` (1
         or n, t).
 
-        ``columns`` (n, columns, t) are theirs at these instants, if :attr:`columns` are needed.
+        Those are looked at whose marks come ``near`` (n,); ``columns`` evaluates the columns (n,
+        columns, t) of some designs at instants, for what constraints see.
         """
         found: npt.NDArray[np.int8] = status.copy()
         if self._ends is not None:
@@ -65,17 +72,13 @@ class Watch:
                 share = float(self._ends(t[min(k, len(t) - 1)][None], row).full().max(initial=0.0))
                 if not share <= BEYOND["double"] and np.isfinite(row).all():
                     found[k] = Status.BEYOND_ENDS
-        ok = found == _OK
-        if not ok.any():
+        some = np.flatnonzero((found == _OK) & (near | self._corners.hidden))
+        if not some.size:
             return found
-        # All of them, as a rule, which are not copied then.
-        some: Any = slice(None) if ok.all() else ok
-        p, broken = p[some], np.zeros(np.count_nonzero(ok), bool)
-        if self._corners.laws:
-            broken |= self._corners.broken_laws(t[some] if len(t) > 1 else t, p)
-        if columns is not None and self.columns:
-            rows = columns[some]
+        p, t = p[some], t[some] if len(t) > 1 else t
+        broken = self._corners.broken_laws(t, p)
+        if self.columns:
+            rows = columns(p, t)
             broken |= self._corners.broken_constraints(lambda name: rows[:, self._seen[name]], p)
-        if broken.any():
-            found[np.flatnonzero(ok)[broken]] = Status.CORNER
+        found[some[broken]] = Status.CORNER
         return found
