@@ -13,8 +13,8 @@ from lagrange_casadi.engine.instants.evaluation_method import Provenance
 from lagrange_casadi.engine.instants.grids import empty
 from lagrange_casadi.engine.program import Program
 from lagrange_casadi.model.motion import polynomial
+from lagrange_casadi.results.laws import SectionLaw
 from lagrange_casadi.results.ordering import in_order
-from lagrange_casadi.results.section_law import SectionLaw
 from lagrange_casadi.results.solution import Solution
 
 from .engine import columns_of

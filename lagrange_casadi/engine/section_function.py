@@ -15,13 +15,12 @@ l width and a = l max(end - width - u, 0), of each coefficient
 
 Each is a product, so nothing cancels: not where the load ends, and not of a short load.
 
-Own outputs, derivatives, stresses, exported C and the functions along a link that grids are filled
-from (:mod:`.results.basis`) all come from here.
+Own outputs, derivatives, stresses and exported C come from here; numbers from
+:mod:`.results.pieces`.
 """
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -31,9 +30,8 @@ import casadi as ca
 
 from ..base.arrays import Expression, Operand
 from ..base.quantities import Output, parts_along
-from ..base.scalars import column, graph
-from ..base.symbolic import symbolic
-from ..base.tables import PLANE, Table, Terms, table_of
+from ..base.scalars import graph
+from ..base.tables import Table, Terms, table_of
 from ..model.beams.properties import larger, smaller
 from ..model.density import Density
 from .checks import Column
@@ -286,42 +284,3 @@ def section(
     )
     given = {"law": law, "acting": acting, "matter": mass_properties, "xi": xi}
     return graph(name, given, forces=forces)
-
-
-@functools.cache
-@symbolic
-def along(breaks: Sequence[float], sizes: Sequence[int], powers: Sequence[int]) -> ca.Function:
-    """``along(matter, spans, xi) -> force, bending`` of a link: what coefficients of an axial force
-    and of a moment go with.
-
-    First are those of the law, then those of loads along the link, which have so many ``powers``;
-    ``spans`` are width and end of each. Other forces have the same rows: a shear force those of an
-    axial one, a moment that has an arm of -1 the same but for the sign, and the couples of slices
-    those of a force.
-    """
-    acting = [
-        Output("spread", "", member, str(load), power)
-        for load, many in enumerate(powers)
-        for member, power in (
-            ("width", None),
-            ("end", None),
-            *((coefficient, power) for coefficient in ("qn", "qf") for power in range(many)),
-        )
-    ]
-    function = section(
-        SectionInputs(tuple(Output("law", "", member) for member in PLANE.law), tuple(acting)),
-        breaks,
-        sizes,
-        0.0,
-    )
-    law, loads, mass_properties, xi = function.sx_in()
-    forces = function(law, loads, mass_properties, xi)
-
-    def rows(force: str, coefficient: str) -> Expression:
-        given = [law[PLANE.law.index(term)] for term in PLANE.sections[force].coefficients]
-        given += [loads[k] for k, output in enumerate(acting) if output.member == coefficient]
-        return ca.jacobian(forces[PLANE.forces.index(force)], ca.vertcat(*given))
-
-    spans = (loads[k] for k, output in enumerate(acting) if output.power is None)
-    inputs = {"matter": mass_properties, "spans": column(spans), "xi": xi}
-    return graph("along", inputs, force=rows("axial", "qn"), bending=rows("bending", "qf"))

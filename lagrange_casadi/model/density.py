@@ -196,16 +196,6 @@ class NumericDensity:
     cells: tuple[tuple[float, ...], ...]
 
     @property
-    def uniform(self) -> bool:
-        """True if it is one constant."""
-        return len(self.cells) == 1 and len(self.cells[0]) == 1
-
-    @property
-    def jumps(self) -> tuple[float, ...]:
-        """The breaks at which it jumps."""
-        return _jumps(self.breaks, self.cells)
-
-    @property
     def mass(self) -> float:
         """The whole mass [kg]."""
         spans = zip(self.breaks, self.breaks[1:], self.cells, strict=False)
@@ -218,17 +208,9 @@ class NumericDensity:
         )
         return sum(terms, 0.0)
 
-    def tails(self, u: Array) -> tuple[Array, ...]:
-        """T0, T1 and T2 at ratios ``u`` of any shape."""
-        found: list[Any] = [np.zeros_like(u) for _ in range(3)]
-        for (a, b), cell in zip(
-            zip(self.breaks, self.breaks[1:], strict=False), self.cells, strict=True
-        ):
-            parts = _differences(np.maximum(b - u, 0.0), np.maximum(a - u, 0.0), len(cell) + 2)
-            for j, term in enumerate(shifted(cell, u) if len(cell) > 1 else cell):
-                for k in range(3):
-                    found[k] = found[k] + term * parts[j + k] / (j + k + 1)
-        return tuple(found)
+    def tails(self, u: Operand) -> tuple[Any, Any, Any]:
+        """T0, T1 and T2 at a ratio."""
+        return Density(self.breaks, self.cells, per_length=False).tails(u, 1.0)
 
     def at(self, u: Array) -> Array:
         """The density at ratios ``u`` of any shape; at a break, that towards the tip."""

@@ -53,15 +53,6 @@ class DistributedLoad(_Load):
         """True if the load acts on some part of the link."""
         return bool(np.isfinite([self.width, self.end]).all() and (self.width > 0.0).all())
 
-    @property
-    def marks(self) -> list[Array]:
-        """Begin and end of the load, except those that are ends of the link."""
-        return [
-            place
-            for place in (self.end - self.width, self.end)
-            if ((place > 0.0) & (place < 1.0)).any()
-        ]
-
     def outputs(self, link: str) -> dict[Output, Array]:
         """The numbers in it, as outputs of a link."""
         ends = {"width": self.width, "end": self.end}
@@ -81,19 +72,6 @@ class DistributedLoad(_Load):
             member: tuple(value(member, j) for j in range(self.powers)) for member in self.terms
         }
         return DistributedLoad(self.name, value("width"), value("end"), terms)
-
-    def bound(self, direction: str, length: float, *, arm: bool) -> Array | float:
-        """The largest size of what any section carries of it if its coefficients have any sign,
-        wherever it begins and ends.
-        """
-        lever = length if arm else 1.0
-        return sum(
-            (
-                np.abs(c)[:, None] * (length * lever / (j + 1))
-                for j, c in enumerate(self.terms.get(direction, ()))
-            ),
-            0.0,
-        )
 
     def moved(
         self, direction: str, change: DistributedLoad, u: Array, length: float, *, arm: bool
@@ -124,21 +102,6 @@ class DistributedLoad(_Load):
                 by_end += c * length * np.where(within, x**j, 0.0)
                 by_width += c * length * share * np.where(within, -j, 1.0)
         return by_end * change.end[..., None] + by_width * change.width[..., None]
-
-    def here(self, direction: str, u: Array, middle: Array) -> Array:
-        """The load per length [N/m] at ratios (t, parts, ...), in parts of the link with their
-        ``middle`` (t, parts).
-
-        Where it acts at the middle, the polynomial at the part's ends too; else 0.
-        """
-        ahead = (1,) * (u.ndim - 1)
-        width, end = (values.reshape(-1, *ahead) for values in (self.width, self.end))
-        x = (end - u) / width
-        value = np.zeros_like(u)
-        for coefficient in reversed(self.terms.get(direction, ())):
-            value = value * x + coefficient.reshape(-1, *ahead)
-        middle = middle.reshape(middle.shape + (1,) * (u.ndim - middle.ndim))
-        return np.where((end - width < middle) & (middle < end), value, 0.0)
 
 
 def distributed_load(

@@ -11,7 +11,8 @@ from ..base.arrays import Array
 from ..base.brief import Brief
 from ..base.space import require
 from ..errors import NoComponentError, UnknownNameError
-from .section_law import Basis, SectionLaw
+from .laws import SectionLaw
+from .pieces import Rows
 from .sizes import size_of
 
 
@@ -179,5 +180,5 @@ class Section:
         return self.law.on_grid(force, self._basis)
 
     @cached_property
-    def _basis(self) -> Basis:
+    def _basis(self) -> Rows:
         return self.law.basis(self.xi)

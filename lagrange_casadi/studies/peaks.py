@@ -28,6 +28,7 @@ from ..engine.derive import compile_scene
 from ..engine.instants.backends import Interpreter
 from ..engine.program import Program
 from ..engine.reciprocals import differentiable
+from ..engine.section_function import Side
 from ..engine.sharpness import Sharpness
 from ..errors import DeclarationError
 from ..model.description import values_of
@@ -35,7 +36,7 @@ from ..model.even_points import EvenPoints, are_even
 from ..model.scene import Scene
 from ..model.times import Over, Times, span_of
 from ..results.histories import Peak
-from ..results.section_law import SectionLaw, Side
+from ..results.laws import SectionLaw
 from ..results.signals import Quantity, SectionForce, Signals
 from ..results.sizes import size_of
 from ..results.solution import Solution

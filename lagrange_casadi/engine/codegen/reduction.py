@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from string import Template
@@ -18,9 +19,9 @@ from ...model.limits import END
 from ..dead_centres import CLOSURES, FAR, POINTS, ROUNDS, TOUCHES
 from ..program import Program
 from ..sharpness import Watch
+from .along_links import Along, along, pieces
 from .calls import Call
 from .compiler import written
-from .link_curves import Along, along, turning
 from .printer import defined, function_name, print_functions
 from .search import BASE, OFF, TIP, TOPS, Tables, interface
 
@@ -71,7 +72,7 @@ class Reduction:
     means. ``checks`` are the columns of a graph's bounds with their kinds, then the sizes of rows'
     terms; ``indeterminate_checks`` are the checks that leave a quantity open, by number of both.
     ``matter(p)`` gives first ``margins`` numbers that must not be negative, ``positive`` of them
-    not zero either: the first is the mechanism's extent [m]. Then comes what ``sections.c`` takes
+    not zero either: the first is the mechanism's extent [m]. Then comes what ``pieces.c`` takes
     for each link, and the limits of bounds. ``watches`` are what the last columns are watched for,
     ``knots`` times of kinks, and ``depends`` (watches, quantities) which quantity depends on which
     watched function: see :class:`.Sharpness`. ``marks`` are of the columns after these, marks of
@@ -142,8 +143,7 @@ def reduced(program: Program, reduction: Reduction, precision: Precision) -> str
         + defined("DESIGNS", _macros(program, reduction, precision))
         + _tables(program, reduction)
         + "\n"
-        + written("sections.c")
-        + turning(reduction.links)
+        + pieces(reduction.links)
         + _curves(reduction)
         + "\n"
         + written("designs.c").replace("DESIGNS_CENTRE\n", centre(1 + len(program.driven)), 1)
@@ -167,8 +167,7 @@ def _macros(program: Program, reduction: Reduction, precision: Precision) -> dic
         "ROOT": function_name("sqrt", precision),
         "FABS": function_name("fabs", precision),
         "HALF": "((lanes_real) 0.5)",
-        "SIXTH": "((lanes_real) 1/6)",
-        "CLOSE": _real(8 * float(numbers.eps)),
+        "CLOSE": _real(math.sqrt(float(numbers.eps))),
         "LARGEST": _real(float(numbers.max)),
         "MATTER": max(1, reduction.mass_properties.size1_out(0)),
         "MARGINS": reduction.margins,
@@ -204,7 +203,7 @@ def _tables(program: Program, reduction: Reduction) -> str:
     closings = itertools.count()
     closed = [next(closings) if bound.kind in CLOSURES else -1 for bound in program.bounds]
     statuses = [Status.OK, *(rule.status for rule in program.rules)]
-    others = [(k, link.breaks) for k, link in enumerate(reduction.links) if not link.uniform]
+    others = [(k, link.breaks) for k, link in enumerate(reduction.links)]
     breaks = [
         _table("lanes_real", f"designs_breaks{k}", map(_real, ratios)) for k, ratios in others
     ]
@@ -242,7 +241,7 @@ def _curves(reduction: Reduction) -> str:
         lines.append(along(k, link, f"value + {value}, place + {place}", offset))
         value += sum(map(len, link.places))
         place += link.rows
-        offset += 1 + (1 if link.uniform else (len(link.breaks) - 1) * (3 + link.terms))
+        offset += 1 + (len(link.breaks) - 1) * link.terms
     return f"""
 static void designs_curves(const casadi_real* y, const casadi_real* matter, unsigned long long need,
                            casadi_real* value, casadi_real* place) {{

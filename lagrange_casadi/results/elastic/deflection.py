@@ -20,13 +20,13 @@ from numpy.polynomial import chebyshev
 
 from ...base.arguments import Numeric, public
 from ...base.arrays import Array
-from ...base.interpolation import interpolation
+from ...base.bernstein import interpolation, product, zeros
+from ...base.interpolation import interpolation as chebyshev_nodes
 from ...errors import DeclarationError, UnknownNameError
 from ...model.end_conditions import ends_of
 from ..sizes import largest
 from ..solution import Solution
 from ..strength.member import Member
-from ..turning import stationary_points
 from .compliance import Compliance
 
 Against = Literal["ends", "base"]
@@ -137,22 +137,18 @@ class Deflection:
         """The deflection across the link that is largest in size at every instant, and its ratio
         xi/l, both (t,).
         """
-        space = self.member.space
-        names = ("across_y", "across_z") if space else ("across",)
-
-        def slope(u: Array) -> Array:
-            rises = [self._rising(name, u) for name in names]
-            if not space:
-                return rises[0]
-            return np.asarray(
-                sum(self.at(name, u) * rise for name, rise in zip(names, rises, strict=True))
-            )
-
-        edges, degree = self.member.edges, (2 if space else 1) * (self.member.strain_degree + 2)
-        stationary = stationary_points(
-            slope, edges[:, :-1], edges[:, 1:], (0.0, 1.0), degree, signed=not space
-        )
-        places = np.concatenate([edges, stationary.places.reshape(len(edges), -1)], axis=1)
+        names = ("across_y", "across_z") if self.member.space else ("across",)
+        edges, many = self.member.edges, self.member.strain_degree + 2
+        low, high = edges[:, :-1], edges[:, 1:]
+        nodes, weights = interpolation(many)
+        u = low[..., None] + (high - low)[..., None] * nodes
+        slopes = [np.tensordot(weights, self._rising(name, u), (1, 2)) for name in names]
+        slope = slopes[0]
+        if self.member.space:
+            across = [np.tensordot(weights, self.at(name, u), (1, 2)) for name in names]
+            slope = np.asarray(sum(map(product, across, slopes)))
+        inner = low + (high - low) * zeros(slope).places
+        places = np.concatenate([edges, np.concatenate([*inner], axis=1)], axis=1)
         values = self.size(places)
         best = np.argmax(np.abs(values), axis=1)[:, None]
         return np.take_along_axis(values, best, 1)[:, 0], np.take_along_axis(places, best, 1)[:, 0]
@@ -171,7 +167,7 @@ class Deflection:
         the names of section forces.
         """
         member = self.member
-        x, weights = interpolation(member.strain_degree)
+        x, weights = chebyshev_nodes(member.strain_degree)
         low, width = member.edges[:, :-1, None], np.diff(member.edges, axis=1)[:, :, None]
         u = (low + width * (x + 1.0) / 2.0).reshape(member.t.size, -1)
         strains = self.compliance.strains(member.at(u), member.index_at(u), u).reshape(

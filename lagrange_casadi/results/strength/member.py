@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -11,14 +11,15 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.arrays import Array
+from ...base.bernstein import interpolation, product, value, within
 from ...base.brief import Brief
-from ...base.interpolation import interpolation
+from ...engine.section_function import Side
 from ...engine.stress import FORCES, CrossSections
 from ...engine.two_force_links import unaimed
 from ...errors import DeclarationError, check_kind
 from ...model.beams.beam import Beam, beam_from_numbers
 from ...model.description import beams_of, in_space
-from ..section_law import SectionLaw, Side
+from ..laws import SectionLaw
 from ..solution import Solution
 from ..statistics import counted
 
@@ -47,6 +48,23 @@ class Cell:
     def names(self) -> tuple[str, ...]:
         """The names of its fibres."""
         return self.member.cross.fibres(self.index).names
+
+    def stresses(self, forces: Sequence[Array], low: Array, high: Array) -> Array:
+        """Ordinates (n + 1, 3, fibres, parts, t) of stresses in parts of the cell from ``low`` to
+        ``high`` (parts, t), by those of the section forces there, each (degree + 1, parts, t).
+        """
+        nodes, weights = interpolation(self.degree)
+        wide = self.high - self.low
+        factors = np.tensordot(weights, self.factors(self.high - wide * nodes), (1, 3))
+        start, stop = (self.high - high) / wide, (self.high - low) / wide
+        size = self.degree + len(forces[0]), 3, len(self.names), *forces[0].shape[1:]
+        found = np.zeros(size)
+        for k, force in enumerate(forces):
+            for component in np.flatnonzero(factors[..., k].any(axis=(0, 2))):
+                factor = factors[:, component, :, k, None, None]
+                factor = within(factor, start, stop) if self.degree else factor
+                found[:, component] += product(factor, force[:, None])
+        return found
 
     def factors(self, u: Array) -> Array:
         """Factors of stresses, normal and along y and along z, by each force at ratios ``u``: (3,
@@ -147,10 +165,7 @@ class Member(Brief):
     @property
     def degree(self) -> int:
         """The degree along the link of its section forces, between two marks."""
-        cells = max(map(len, self.law.density.cells)) + 2
-        return max(
-            cells, *(distributed.powers + 1 for distributed in self.law.distributed_loads), 0
-        )
+        return len(self.law.functions.moment) - 1
 
     @property
     def marks(self) -> list[Array]:
@@ -158,13 +173,8 @@ class Member(Brief):
         breaks of the density.
         """
         still = np.zeros_like(self.t)
-        found = [load.station for load in self.law.loads] + [
-            mark for distributed in self.law.distributed_loads for mark in distributed.marks
-        ]
-        return [
-            np.clip(mark, 0.0, 1.0)
-            for mark in (*found, *(still + b for b in self.law.density.breaks[1:-1]))
-        ]
+        breaks = [still + ratio for ratio in self.law.functions.breaks[0, 1:-1]]
+        return [*(np.clip(load.station, 0.0, 1.0) for load in self.law.loads), *breaks]
 
     @cached_property
     def edges(self) -> Array:
@@ -196,13 +206,14 @@ class Member(Brief):
         first, last = self.beam.course.cells[index]
         for degree in _DEGREES if first is not last else _DEGREES[:1]:
             nodes, weights = interpolation(degree)
-            finer = np.linspace(-1.0, 1.0, 2 * degree + 3)
+            finer = np.linspace(0.0, 1.0, 2 * degree + 3)
             here, there = (
-                self.cross.factors(index, low + (high - low) * (x + 1) / 2) for x in (nodes, finer)
+                np.moveaxis(self.cross.factors(index, low + (high - low) * x), -1, 0)
+                for x in (nodes, finer)
             )
-            values = here @ weights @ np.polynomial.chebyshev.chebvander(finer, degree).T
+            values = value(np.tensordot(weights, here, 1), finer[:, None, None, None])
             # Of each force its own unit.
-            size = np.abs(there).max(axis=(0, 1, 3), keepdims=True)
+            size = np.abs(there).max(axis=(0, 1, 2))
             if np.all(np.abs(values - there) <= _EXACT * size) or (
                 high - low < _NARROW and degree == _DEGREES[-1]
             ):

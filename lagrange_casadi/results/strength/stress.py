@@ -4,40 +4,29 @@ They are linear in section forces (:mod:`.engine.stress`), so between two marks 
 polynomials of xi, or products of these with smooth functions of the cross-section, which are
 replaced by polynomials that agree to 1e-13.
 
-The largest of sqrt(s^2 + k t^2) along a link is sought among all summits of its square. How far a
-square may rise between the places at which it is looked at is bounded by Ehlich and Zeller,
-*Schwankung von Polynomen zwischen Gitterpunkten*, Math. Zeitschrift 86 (1964): where nothing can be
-above what was found, nothing is sought.
+No polynomial is above its ordinates. So a part, a fibre or an instant is left out if there these
+are below what was found at ends of parts. In others the square of sqrt(s^2 + k t^2) is largest at
+an end, or at a zero of its slope.
 """
 
 from __future__ import annotations
 
-import itertools
-import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
-from numpy.polynomial import chebyshev
 
 from ...base.arguments import Share, public
-from ...base.arrays import Array, Operand
+from ...base.arrays import Array
+from ...base.bernstein import product, raised, slope, value, within, zeros
 from ...base.brief import Brief
-from ...base.interpolation import interpolation
+from ...engine.section_function import Side
 from ...engine.stress import KINDS, concentration, squared
 from ...errors import DeclarationError, UnknownNameError, shown
 from ...model.beams.beam import Notch
-from ..section_law import Side
-from .member import Cell, Member
+from .member import Member
 
-_SAMPLES, _GLANCES, _BLOCK = 8, 4, 1 << 21
-_BESIDE, _STEPS = 0.9, 40
-"""Fraction of the largest value for which a local maximum may be the largest, and the number of
-steps to it.
-
-And steps of the golden section: where a summit is to 1e-9, it is to 1e-18.
-"""
+_BLOCK = 1 << 21
 _SIDES: tuple[Side, Side] = ("base", "tip")
 
 
@@ -194,7 +183,7 @@ class Stress:
         )
         value = np.concatenate(values)
         place = np.concatenate(places)
-        names = list(itertools.chain.from_iterable(fibres))
+        names = [name for some in fibres for name in some]
         if moving is self.member:
             return Largest(value, place, tuple(names))
         found, place_names = np.full((2, self.member.t.size), np.nan), [""] * self.member.t.size
@@ -272,12 +261,11 @@ class Stress:
     def _highest(self, kind: str, floor: float) -> StressPeak | None:
         """The peak of a few instants; None where it is not above a floor.
 
-        A coarse look leaves out instants that have it not.
+        Ordinates leave out instants that have it not.
         """
-        rows = [part for cell in self.member.cells for part in self._parts(cell)]
-        sampled = [part.sampled(_weights(kind), _GLANCES) for part in rows]
-        least = np.max([squares.max(axis=(1, 2)) for squares, _ in sampled], axis=0)
-        most = np.max([squares.max(axis=(1, 2)) * bound for squares, bound in sampled], axis=0)
+        bounds = [part.bounds(_weights(kind)) for part in self._parts()]
+        least = np.max([low for low, _ in bounds], axis=0)
+        most = np.max([high.max(axis=(0, 1)) for _, high in bounds], axis=0)
         chosen = np.flatnonzero((most >= least.max()) & (most >= floor**2))
         if not chosen.size:
             return None
@@ -311,10 +299,7 @@ class Stress:
     def _blocks(self) -> Iterator[Stress]:
         """The stresses over few instants after another."""
         member = self.member
-        each = sum(
-            (_SAMPLES * (member.degree + cell.degree) + 1) * len(cell.names)
-            for cell in member.cells
-        )
+        each = sum((2 * (member.degree + c.degree) + 1) * len(c.names) for c in member.cells)
         height = max(1, _BLOCK // (each * (len(member.marks) + 1)))
         for start in range(0, member.t.size, height):
             yield (
@@ -325,152 +310,69 @@ class Stress:
 
     def _largest(self, kind: str) -> tuple[Array, Array, list[str]]:
         """Values, ratios and fibres at every instant."""
-        weights, count = _weights(kind), self.member.t.size
-        rows = [part for cell in self.member.cells for part in self._parts(cell)]
-        sampled = [part.sampled(weights, _SAMPLES) for part in rows]
-        floor = np.max([squares.max(axis=(1, 2)) for squares, _ in sampled], axis=0)
-        value, place, fibre = np.full(count, -1.0), np.zeros(count), np.zeros(count, int)
-        names: list[tuple[str, ...]] = []
-        signs = np.zeros(count)
-        for number, (part, (squares, bound)) in enumerate(zip(rows, sampled, strict=True)):
-            names.append(part.cell.names)
-            t, f = np.nonzero(squares.max(axis=2) * bound >= floor[:, None])
-            if t.size:
-                square, u, sign = part.maxima(t, f, weights)
-                order = np.lexsort((square, t))
-                last = order[np.append(np.diff(t[order]) != 0, True)]
-                better = last[square[last] > value[t[last]]]
-                at = t[better]
-                value[at] = square[better]
-                place[at] = u[better]
-                signs[at] = sign[better]
-                fibre[at] = number * 1000 + f[better]
-        labels = [names[k // 1000][k % 1000] for k in fibre.tolist()]
-        return _signed(kind, value, signs), place, labels
+        weights, count, names = _weights(kind), self.member.t.size, list[str]()
+        parts = [*self._parts()]
+        bounds = [part.bounds(weights) for part in parts]
+        floor = np.max([low for low, _ in bounds], axis=0)
+        best, place, signs = np.full(count, -1.0), np.zeros(count), np.zeros(count)
+        fibre = np.zeros(count, int)
+        for part, (_, high) in zip(parts, bounds, strict=True):
+            f, p, t = np.nonzero(high >= floor)
+            normal, *shears = np.moveaxis(part.stresses[:, :, f, p, t], 1, 0)
+            c = weights[0] * product(normal, normal)
+            c += weights[1] * sum(product(shear, shear) for shear in shears)
+            inner = zeros(slope(c)).places
+            x = np.concatenate([np.ones((1, t.size)), np.zeros((1, t.size)), inner])
+            values = value(c, x)
+            k = np.argmax(values, axis=0)[None]
+            x, values = (np.take_along_axis(rows, k, 0)[0] for rows in (x, values))
+            order = np.lexsort((values, t))
+            last = order[np.append(np.diff(t[order]) != 0, True)] if t.size else order
+            higher = last[values[last] > best[t[last]]]
+            at, x, f, p = t[higher], x[higher], f[higher], p[higher]
+            best[at], fibre[at] = values[higher], len(names) + f
+            place[at] = part.high[p, at] - (part.high - part.low)[p, at] * x
+            signs[at] = value(part.stresses[:, 0, f, p, at], x[None])[0]
+            names += part.names
+        return _signed(kind, best, signs), place, [names[k] for k in fibre.tolist()]
 
-    def _parts(self, cell: Cell) -> Iterator[_Part]:
-        """The parts of a cell between two marks."""
-        still = np.zeros_like(self.member.t)
-        marks = [np.clip(mark, cell.low, cell.high) for mark in self.member.marks]
-        inner = np.sort(np.stack([still + cell.low, *marks, still + cell.high]), axis=0)
-        for low, high in itertools.pairwise(inner):
-            if np.any(high > low):
-                yield _Part(self.member, cell, low, high)
+    def _parts(self) -> Iterator[_Part]:
+        """The parts of the link between two marks, in each cell of its cross-section."""
+        member = self.member
+        forces = [member.law.pieces(force).parts() for force in member.forces]
+        ordinates = [raised(c, member.degree) for _, (c,), _ in forces]
+        ends = forces[0][0]
+        for cell in member.cells:
+            low, high = (np.clip(end, cell.low, cell.high) for end in (ends[:-1], ends[1:]))
+            there = np.flatnonzero((high > low).any(axis=1))
+            low, high, last = low[there], high[there], ends[1:][there]
+            wide = np.maximum(last - ends[:-1][there], np.finfo(float).tiny)
+            chosen = [
+                within(c[:, there], (last - high) / wide, (last - low) / wide) for c in ordinates
+            ]
+            stresses = cell.stresses(chosen, low, high)
+            low, high = (np.broadcast_to(end, stresses.shape[3:]) for end in (low, high))
+            yield _Part(cell.names, low, high, stresses)
 
 
 @dataclass(frozen=True, eq=False)
 class _Part:
-    """A part of a link between two marks (t,), on which stresses are polynomials of a degree."""
+    """Parts of a link from ``low`` to ``high`` (parts, t) with the fibres ``names``, on which
+    ``stresses`` are polynomials, ordinates (degree + 1, 3, fibres, parts, t).
+    """
 
-    member: Member
-    cell: Cell
+    names: tuple[str, ...]
     low: Array
     high: Array
+    stresses: Array
 
-    @property
-    def degree(self) -> int:
-        return self.member.degree + self.cell.degree
-
-    @cached_property
-    def coefficients(self) -> Array:
-        """Coefficients of Chebyshev's polynomials: (3, fibres, t, degree + 1)."""
-        nodes, weights = interpolation(self.degree)
-        u = self.low[:, None] + (self.high - self.low)[:, None] * (nodes + 1.0) / 2
-        return np.asarray(np.sum(self._factors(u) * self.member.at(u), axis=2) @ weights)
-
-    def _factors(self, u: Array) -> Array:
-        """Factors of a cell of one cross-section, the same everywhere; between marks that do not
-        move, at all instants.
+    def bounds(self, weights: tuple[float, float]) -> tuple[Array, Array]:
+        """The largest square of a kind of stress at ends of parts (t,), and a bound on it in each
+        part (fibres, parts, t).
         """
-        if not self.cell.degree:
-            return self.cell.factors(np.full((1, 1), self.cell.low))
-        return self.cell.factors(u if np.ptp(self.low) or np.ptp(self.high) else u[:1])
-
-    def sampled(self, weights: tuple[float, float], samples: int) -> tuple[Array, float]:
-        """The squares (t, fibres, looks), both ends among them, and how many times higher they may
-        be in between.
-        """
-        places = _places(self.degree, samples)
-        values = self.coefficients @ chebyshev.chebvander(places, self.degree).T
-        # A square is not negative: it is bounded about half of what is largest.
-        factor = (1.0 + 1.0 / math.cos(math.pi * self.degree / (places.size - 2))) / 2
-        return np.moveaxis(squared(values, weights), 0, 1), factor
-
-    def maxima(
-        self, t: Operand, f: Operand, weights: tuple[float, float]
-    ) -> tuple[Array, Array, Array]:
-        """The largest squares at some instants and fibres, their ratios, and the sign of the normal
-        stress there.
-        """
-        square, x, sign = maxima(self.coefficients[:, f, t], weights)
-        return square, self.low[t] + (self.high - self.low)[t] * (x + 1.0) / 2, sign
-
-
-def _places(degree: int, samples: int) -> Array:
-    """Places at which squares, of twice the degree, are sampled: so many Chebyshev nodes for each
-    degree, and both ends.
-    """
-    return np.concatenate([[-1.0], chebyshev.chebpts1(max(samples * degree, 8)), [1.0]])
-
-
-def maxima(c: Array, weights: tuple[float, float]) -> tuple[Array, Array, Array]:
-    """The largest square of stresses from -1 to 1, where it is, and the sign of the normal stress
-    there, each (n,).
-
-    ``c`` (3, n, degree + 1) are coefficients of Chebyshev's polynomials of normal stress, and of
-    shear stress along y and along z. In the angle whose cosine the place is, a square of degree n
-    bends by no more than n^2 times its largest value (Bernstein's inequality), so beside its summit
-    it was looked at where it is lower by a twelfth at most. From every such place that is higher
-    than its neighbours it is followed upward, between these.
-    """
-    degree = c.shape[-1] - 1
-    places = _places(degree, _SAMPLES)
-    squares = squared(c @ chebyshev.chebvander(places, degree).T, weights)
-    edge = np.full((len(squares), 1), -1.0)
-    higher = (squares >= np.hstack([edge, squares[:, :-1]])) & (
-        squares >= np.hstack([squares[:, 1:], edge])
-    )
-    rows, k = np.nonzero(higher & (squares >= _BESIDE * squares.max(axis=1, keepdims=True)))
-    coefficients = np.moveaxis(c[:, rows], 2, 0)
-
-    def square(x: Array) -> Array:
-        return np.asarray(
-            squared(
-                np.stack(
-                    [chebyshev.chebval(x, coefficients[:, n], tensor=False) for n in range(3)]
-                ),
-                weights,
-            )
-        )
-
-    x = _uphill(square, places[np.maximum(k - 1, 0)], places[np.minimum(k + 1, places.size - 1)])
-    found, sampled = square(x), squares[rows, k]
-    x, found = np.where(found >= sampled, x, places[k]), np.maximum(found, sampled)
-    order = np.lexsort((found, rows))
-    last = order[np.append(np.diff(rows[order]) != 0, True)]
-    return (
-        found[last],
-        x[last],
-        np.sign(chebyshev.chebval(x[last], coefficients[:, 0, last], tensor=False)),
-    )
-
-
-def _uphill(function: Callable[[Array], Array], low: Array, high: Array) -> Array:
-    """Place of the maximum of a function between two places, between which it has one: by the
-    golden section.
-    """
-    golden = (math.sqrt(5.0) - 1.0) / 2
-    inner, outer = high - golden * (high - low), low + golden * (high - low)
-    at_inner, at_outer = function(inner), function(outer)
-    for _ in range(_STEPS):
-        left = at_inner >= at_outer
-        low, high = np.where(left, low, inner), np.where(left, outer, high)
-        kept, at_kept = np.where(left, inner, outer), np.where(left, at_inner, at_outer)
-        fresh = np.where(left, high - golden * (high - low), low + golden * (high - low))
-        at_fresh = function(fresh)
-        inner, outer = np.where(left, fresh, kept), np.where(left, kept, fresh)
-        at_inner, at_outer = np.where(left, at_fresh, at_kept), np.where(left, at_kept, at_fresh)
-    return (low + high) / 2
+        ends = [squared(self.stresses[k], weights) for k in (0, -1)]
+        most = squared(np.abs(self.stresses).max(axis=0), weights)
+        return np.max(ends, axis=(0, 1, 2)), np.asarray(most)
 
 
 def _weights(kind: str) -> tuple[float, float]:

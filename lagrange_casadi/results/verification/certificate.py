@@ -22,7 +22,7 @@ from ...errors import CertificateError
 from ...model.declared import Declared
 from ...model.scene import kinds
 from ..histories import Histories
-from ..section_law import SectionLaw
+from ..laws import SectionLaw
 from ..solution import Solution
 from .balance import balance, forces_reported
 from .closure import Residuals, closure

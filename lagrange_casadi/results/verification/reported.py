@@ -10,7 +10,7 @@ import numpy as np
 from ...base.arrays import Array, during
 from ...base.quantities import Output
 from ...model.declared import Declared, JointNumbers
-from ..section_law import SectionLaw
+from ..laws import SectionLaw
 from .vectors import GROUND, Axes, Scalar, Vector
 
 _NEAR = 1e-3

@@ -14,7 +14,7 @@ from ...base.quantities import AVERAGED, Output, compared
 from ...base.scalars import column
 from ...base.symbolic import symbolic
 from ...base.tables import Table, table_of
-from ...engine.codegen.link_curves import Along, mass_properties_of
+from ...engine.codegen.along_links import Along, mass_properties_of
 from ...engine.codegen.reduction import Reduction
 from ...engine.codegen.stages import Stages, compensated, plain, stages_for
 from ...engine.distributed_loads import distributed_loads_of

@@ -34,8 +34,7 @@ from ...model.density import Density
 from ...model.even_points import EvenPoints, points
 from ...model.times import Timing
 from ...model.wanted_names import SENSITIVITY
-from ...results.laws import law_of
-from ...results.section_law import SectionLaw
+from ...results.laws import SectionLaw, law_of
 from ...results.statistics import of_counted
 from ..designs.energy import DriveEnergy
 from ..designs.engine import DesignEngine

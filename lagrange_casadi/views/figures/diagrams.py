@@ -15,9 +15,10 @@ import numpy as np
 from ...base.arrays import Array
 from ...base.quantities import Output
 from ...base.tables import SPACE
+from ...engine.section_function import Side
 from ...results.histories import Peak
+from ...results.laws import SectionLaw
 from ...results.ordering import vanishes
-from ...results.section_law import SectionLaw, Side
 from ...results.solution import Solution
 from ..shapes.readable import scale_for
 
@@ -80,7 +81,8 @@ def marks(law: SectionLaw, force: str) -> list[Mark]:
     """
     places, _ = law.curves(force)
     found: list[Mark] = []
-    for xi in sorted({round(float(place), 12) for place in places[0]}):
+    # Nothing is to be seen where the density alone changes.
+    for xi in sorted({round(float(x), 12) for x in places[0]} - {*law.density.breaks[1:-1]}):
         base, tip = (float(law.at(force, np.array([[xi]]), side)[0, 0]) for side in _SIDES)
         found.append(Mark(xi, "base", base))
         if abs(tip - base) > _SAME * max(abs(base), abs(tip)):

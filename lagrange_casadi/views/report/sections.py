@@ -60,7 +60,7 @@ def section_entries(
 
         columns = {name: added(Output("law", link, name)) for name in law.coefficients}
         of_force, of_moment = (
-            [arrays.add(row) for row in rows] for rows in (basis.force, basis.bending)
+            [arrays.add(row) for row in rows] for rows in (basis.force.rows, basis.moment.rows)
         )
         loads = [
             {"name": load.name}
