@@ -46,7 +46,7 @@ NUMBERS = (
 PROCESSES, SECONDS = 2, 30.0
 """Processes that run tests of one mutation, and seconds of a processor that each may take."""
 
-MOST = 100
+MOST = 200
 """Tests that are asked at most: more take longer than there is, and to collect them takes time."""
 
 _SWAPS: dict[type[ast.AST], type[ast.AST]] = {ast.Add: ast.Sub, ast.Eq: ast.NotEq}

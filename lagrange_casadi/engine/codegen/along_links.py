@@ -195,6 +195,7 @@ def pieces(links: Sequence[Along]) -> str:
     # A resultant of moments has the highest: the slope of its square.
     highest = 2 * degree + 3 if most > len(PLANE.forces) else degree + 1
     numbers = {"DEGREE": highest, "ORDINATES": degree + 3, "FORCES": most, "ALL": most}
+    numbers |= {"PIECES": sum(not link.even for link in links)}
     defines = "".join(f"#define DESIGNS_{name} {number}\n" for name, number in numbers.items())
     rows = [f"{{{_listed(comb(n, k) for k in range(n + 1))}}}" for n in range(highest + 2)]
     table = f"designs_binomial[][{highest + 2}] = {{{_listed(rows)}}}"

@@ -111,6 +111,39 @@ static inline casadi_real designs_between(const casadi_real* c, const casadi_rea
   return lanes_less(0, there, x, nearer);
 }
 
+/* The curves of designs_along, of a link in the plane of even mass, with nothing along it: its matter is its length and its mass. */
+LANES_INLINE void designs_even(const casadi_real* matter, const casadi_real* law, casadi_real* value, casadi_real* place) {
+  const casadi_real l = matter[0], m = matter[1];
+  casadi_real c[4], tip, base, turns;
+  int k;
+  for (k = 0; k < 2; ++k, value += 3, law += 3) {
+    tip = m*(law[1] + law[2]*l);
+    base = m*law[1];
+    c[0] = law[0];
+    c[1] = c[0] + DESIGNS_HALF*tip;
+    c[2] = c[1] + DESIGNS_HALF*base;
+    place[k] = designs_kept(-law[1]/(law[2]*l), 0, 1);
+    value[0] = c[2];
+    value[1] = c[0];
+    value[2] = designs_value(c, 2, 1 - place[k]);
+  }
+  place[2] = 1 - designs_parabola(c, 0, &turns);
+  place[3] = 1 - designs_parabola(c, 1, &turns);
+  base = l*((lanes_real) 1/3);
+  c[3] = c[2];
+  tip = law[0];
+  for (k = 0; k < 4; ++k) {
+    const casadi_real next = tip + base*c[k];
+    c[k] = tip;
+    tip = next;
+  }
+  value[0] = c[3];
+  value[1] = c[0];
+  for (k = 0; k < 2; ++k) value[2 + k] = designs_value(c, 3, 1 - place[2 + k]);
+}
+
+#if DESIGNS_PIECES
+
 /* The zeros from 0 to 1 of a polynomial of degree n, all among n places, and whether it falls (1) or rises (-1) there: see zeros in
    base/bernstein.py. */
 static void designs_zeros(const casadi_real* c, int n, casadi_real* at, casadi_real* turns) {
@@ -146,37 +179,6 @@ static void designs_zeros(const casadi_real* c, int n, casadi_real* at, casadi_r
     at[k] = at[many];
     turns[k] = 0;
   }
-}
-
-/* The curves of designs_along, of a link in the plane of even mass, with nothing along it: its matter is its length and its mass. */
-LANES_INLINE void designs_even(const casadi_real* matter, const casadi_real* law, casadi_real* value, casadi_real* place) {
-  const casadi_real l = matter[0], m = matter[1];
-  casadi_real c[4], tip, base, turns;
-  int k;
-  for (k = 0; k < 2; ++k, value += 3, law += 3) {
-    tip = m*(law[1] + law[2]*l);
-    base = m*law[1];
-    c[0] = law[0];
-    c[1] = c[0] + DESIGNS_HALF*tip;
-    c[2] = c[1] + DESIGNS_HALF*base;
-    place[k] = designs_kept(-law[1]/(law[2]*l), 0, 1);
-    value[0] = c[2];
-    value[1] = c[0];
-    value[2] = designs_value(c, 2, 1 - place[k]);
-  }
-  place[2] = 1 - designs_parabola(c, 0, &turns);
-  place[3] = 1 - designs_parabola(c, 1, &turns);
-  base = l*((lanes_real) 1/3);
-  c[3] = c[2];
-  tip = law[0];
-  for (k = 0; k < 4; ++k) {
-    const casadi_real next = tip + base*c[k];
-    c[k] = tip;
-    tip = next;
-  }
-  value[0] = c[3];
-  value[1] = c[0];
-  for (k = 0; k < 2; ++k) value[2 + k] = designs_value(c, 3, 1 - place[2 + k]);
 }
 
 /* A section force: where its coefficients stand in the law, whether two of them go with mass; the member of a load point that acts, and the
@@ -423,3 +425,5 @@ LAGRANGE_CASADI_PART static void designs_along(const designs_link* link, const i
     }
   }
 }
+
+#endif

@@ -203,9 +203,10 @@ def _tables(program: Program, reduction: Reduction) -> str:
     closings = itertools.count()
     closed = [next(closings) if bound.kind in CLOSURES else -1 for bound in program.bounds]
     statuses = [Status.OK, *(rule.status for rule in program.rules)]
-    others = [(k, link.breaks) for k, link in enumerate(reduction.links)]
     breaks = [
-        _table("lanes_real", f"designs_breaks{k}", map(_real, ratios)) for k, ratios in others
+        _table("lanes_real", f"designs_breaks{k}", map(_real, link.breaks))
+        for k, link in enumerate(reduction.links)
+        if not link.even
     ]
     shown_by, indeterminate = zip(*(reduction.indeterminate_checks or [(0, 0)]), strict=True)
     tables: dict[str, Iterable[float | str]] = {

@@ -5,7 +5,7 @@ says how.
 from ...base.vocabulary import KEEPS, Keep
 from .axes import Axis, Grid, Listed, Range, Values
 from .best import Condition, Design, best, chosen
-from .listing import read_designs
+from .design_lists import read_designs
 from .reading import Sweep, is_sweep
 from .sweeping import sweep
 
