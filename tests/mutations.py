@@ -191,7 +191,8 @@ class Map:
         if module not in self.lines:
             path = Path(module)
             near = sorted(self.lines, key=lambda one: (Path(one).parent != path.parent, one))
-            module = next(one for one in near if f'"{path.name}"' in (PACKAGE / one).read_text())
+            named = (one for one in near if f'"{path.name}"' in (PACKAGE / one).read_text())
+            module = next(named, near[0])
         lines = self.lines[module]
         own = [lines[k] for k in range(mutation.first, mutation.line + 1) if k in lines]
         if module != mutation.file or (own and not any(own)):
