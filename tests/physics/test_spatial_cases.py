@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from conftest import CASES
 
-from lagrange_casadi import evaluate, load_case
+from lagrange_casadi import Scene, SpatialMechanism, evaluate, load_case
+from lagrange_casadi.motion import polynomial
 
 
 def scene_of(name):
@@ -93,3 +94,20 @@ STORED = (
     -11.7118547489456,
     56.52568637869752,
 )
+
+
+def test_a_slider_beside_its_guide_hangs_on_its_pin():
+    """A cylindrical guide bears no moment about its line: the pin bears that of the weight."""
+    m, side, mass = SpatialMechanism("beside"), 0.04, 3.0
+    m.set_gravity(0.0, -9.81, 0.0)
+    crank, rod = m.link("crank", length=0.1, mass=0.5), m.link("rod", length=0.4, mass=0.6)
+    inertia = (0.01, 0.01, 0.01)
+    slider = m.link("slider", length=0.05, mass=mass, centre=(0.0, 0.0, side), inertia=inertia)
+    m.revolute("O", m.ground, crank, axis=(0, 0, 1))
+    m.revolute("A", crank.tip, rod, axis=(0, 0, 1))
+    m.revolute("B", rod.tip, slider, axis=(0, 0, 1))
+    m.cylindrical("G", m.ground, slider, axis=(1, 0, 0))
+    law, posture = {"O": polynomial(0.3, 2.0)}, {"A": -0.4, "B": 0.1}
+    solution = evaluate(Scene(m, law, t=(0, 1, 9), posture=posture))
+    assert solution.certified
+    assert solution.reaction("B").mx == pytest.approx(-mass * 9.81 * side, rel=1e-12)
