@@ -12,7 +12,7 @@ from lagrange_casadi import Mechanism, Scene, evaluate
 from lagrange_casadi.errors import AssemblyError, DeclarationError
 from lagrange_casadi.motion import polynomial
 
-pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
+pytestmark = pytest.mark.usefixtures("interpreted")
 
 VALUES = (0.0, 0.3, 1.0)
 TIMES = np.linspace(0.0, 1.0, 4001)[None]

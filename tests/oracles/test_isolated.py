@@ -14,7 +14,7 @@ from operations import EACH, X, Y
 from lagrange_casadi import evaluate, prepare
 from lagrange_casadi.errors import AssemblyError, DeclarationError
 
-pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
+pytestmark = pytest.mark.usefixtures("interpreted")
 
 TOUCHING = T * ca.sin(T)
 """Zero at zero alone, to the last bit; CasADi does not simplify its size, as it does that of a

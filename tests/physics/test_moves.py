@@ -26,7 +26,7 @@ from lagrange_casadi.motion import (
     samples,
 )
 
-pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
+pytestmark = pytest.mark.usefixtures("interpreted")
 
 
 def arm(law, t=(0.0, 1.0, 101), **parameters):
