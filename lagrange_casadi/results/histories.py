@@ -8,7 +8,7 @@ import itertools
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -74,6 +74,9 @@ class Histories:
     provenance: Provenance
     indeterminate: tuple[Output, ...] = ()
     over: DriveAxis | None = None
+
+    _over_time: ClassVar[tuple[str, ...]] = ("outputs",)
+    """The fields that have a value at every instant, beside ``t`` and ``over``."""
 
     @cached_property
     def table(self) -> Table:
@@ -244,7 +247,7 @@ class Histories:
         return found
 
     def during(self, instants: slice | npt.NDArray[np.bool_]) -> Self:
-        """Return the histories at some of the instants.
+        """Return the same at some of the instants.
 
         Parameters
         ----------
@@ -254,7 +257,7 @@ class Histories:
         Returns
         -------
         Histories
-            All arrays over time, cut to these.
+            All arrays over time, cut to these; of a solution a solution.
 
         Raises
         ------
@@ -272,7 +275,8 @@ class Histories:
                 f" {shown(instants)}"
             )
         over = self.over and replace(self.over, values=self.over.values[instants])
-        return replace(self, t=self.t[instants], outputs=during(self.outputs, instants), over=over)
+        cut = during({name: getattr(self, name) for name in self._over_time}, instants)
+        return replace(self, t=self.t[instants], over=over, **cut)
 
     def determined(self, name: str | Output) -> bool:
         """Return whether equilibrium determines a quantity, at all instants.

@@ -5,13 +5,12 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from ..base.arguments import public
-from ..base.arrays import Array, during
+from ..base.arrays import Array
 from ..base.methods import method
 from ..engine.instants.beyond_equilibrium import Elasticity, Holding, held_notes
 from ..model.notes import notes
@@ -49,6 +48,8 @@ class Solution(Histories):
     elasticity: Elasticity = field(default_factory=Elasticity)
     sensitivities: Derivatives = field(default_factory=Derivatives)
     holding: Mapping[str, Holding] = field(default_factory=dict)
+
+    _over_time: ClassVar[tuple[str, ...]] = ("outputs", "certificate", "sensitivities", "holding")
 
     @property
     def failed(self) -> dict[str, float]:
@@ -122,28 +123,6 @@ class Solution(Histories):
         if any(output.group == "deflection" for output in self.outputs):
             slopes = (*slopes, *method("Solution.notes")(self))
         return (*found, *held_notes(self.holding), *self.elasticity.notes, *slopes)
-
-    def during(self, instants: slice | npt.NDArray[np.bool_]) -> Solution:
-        """Return the solution at some of the instants.
-
-        Parameters
-        ----------
-        instants : slice or array of bool (t,)
-            The instants that stay.
-
-        Returns
-        -------
-        Solution
-            All arrays over time, cut to these.
-
-        Raises
-        ------
-        DeclarationError
-            If it is neither a slice nor a mask of the instants.
-        """
-        names = ("certificate", "sensitivities", "holding")
-        over_time = {name: getattr(self, name) for name in names}
-        return replace(super().during(instants), **during(over_time, instants))
 
     @property
     def by_equilibrium(self) -> Solution:
