@@ -328,6 +328,23 @@ static int search_is_sharp(search_real* row, long long n, int kind, double step)
   return 0;
 }
 
+/* Whether a quantity that jumps in a step may matter there: at most as far as it goes on from the values on one side. */
+static int search_leaps(const search_now* now, const search_panel* panel, int watch, long long step) {
+  const long long last = panel->n - 2;
+  search_real before, after;
+  int k;
+  for (k = 0; k < now->curves->curves; ++k) {
+    const search_real* row = search_row(panel, k) + step;
+    if (!search_depends(now, watch, now->quantity[k])) continue;
+    before = step > 0 ? 2*row[0] - row[-1] : row[0];
+    after = step < last ? 2*row[1] - row[2] : row[1];
+    before = search_magnitude(before) + (step > 1 ? search_magnitude(search_bend(row - 1)) : 0);
+    after = search_magnitude(after) + (step < last - 1 ? search_magnitude(search_bend(row + 2)) : 0);
+    if (search_upper(before, after) > search_level(now, panel, k, step)) return 1;
+  }
+  return 0;
+}
+
 /* Find in which steps of a panel something may hide; inside a step between instants, kinks of the motion are counted too. In the
    finest steps rounding makes kinks, where what is watched is nearly zero, and poles alone hide more. */
 static void search_hide(search_now* now, const search_panel* panel, int depth) {
@@ -358,6 +375,7 @@ static void search_hide(search_now* now, const search_panel* panel, int depth) {
         if (depth < SEARCH_FINEST || kind == SEARCH_IS_POLE) panel->hiding[i] |= SEARCH_HIDES;
         continue;
       }
+      if (found && (kind == SEARCH_IS_SWITCH || kind == SEARCH_IS_STEP) && search_leaps(now, panel, k, i)) panel->hiding[i] |= SEARCH_HIDES;
       panel->kinks[i] = (signed char) (panel->kinks[i] + found > 2 ? 2 : panel->kinks[i] + found);
       any |= found > 0 && depth < SEARCH_FINEST;
     }
@@ -377,14 +395,19 @@ static int search_kinked(const search_now* now, const search_panel* panel, long 
   return kinked;
 }
 
+/* How many kinks one of the watched has in a step. */
+static int search_kinks_in(const search_now* now, const search_panel* panel, int watch, long long step) {
+  const int first = now->curves->watch_first[watch];
+  return search_kinks(search_watched(panel, watch), step, panel->n, now->curves->watch[watch], now->curves->watch_at + first,
+                      now->curves->watch_first[watch + 1] - first, search_width(panel), 0);
+}
+
 /* Whether one of the watched may hide something in a step, alone or with another kink there or beside it. */
 static int search_hides_at(const search_now* now, const search_panel* panel, int watch, long long step) {
-  const int first = now->curves->watch_first[watch];
   long long i;
   int found;
   for (i = step > 0 ? step - 1 : 0; i <= step + 1 && i < panel->n - 1; ++i) {
-    found = search_kinks(search_watched(panel, watch), i, panel->n, now->curves->watch[watch], now->curves->watch_at + first,
-                         now->curves->watch_first[watch + 1] - first, search_width(panel), 0);
+    found = search_kinks_in(now, panel, watch, i);
     if (found && (i == step || found != SEARCH_MANY) && !search_undecided(now, panel, watch, i)) return 1;
   }
   return 0;

@@ -27,7 +27,7 @@ typedef struct {
 
 enum { SEARCH_HIDES = 1, SEARCH_DONE = 2 };
 
-/* A search. left are panels that it may still take of a quota, hidden steps in which something may hide; none says which
+/* A search. left are panels that it may still take of a quota; none says which
    curves are no number at any instant, ignored which of the watched hide too much. In a step
    between instants that is searched, noise is the rounding of what is watched, and sides are those on which it is before and after;
    step is below zero elsewhere, near what is watched there. inner are rows of panels within each other, columns what such panels
@@ -36,7 +36,7 @@ typedef struct {
   const lagrange_casadi_search_call* call;
   const lagrange_casadi_curves* curves;
   const int *quantity, *link, *placed;
-  long long n, left, quota, hidden, step;
+  long long n, left, quota, step;
   const double* t;
   double half;
   search_panel all;

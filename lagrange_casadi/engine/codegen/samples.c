@@ -75,7 +75,7 @@ static int search_closed(const search_now* now, const search_panel* panel, searc
   const search_real rounding = peak->rounding, missed = found - summit->size;
   const search_real off = missed < 0 ? -missed : missed;
   search_real slope, gain;
-  if (!(summit->curve_there < 0 && summit->rough <= rounding - SEARCH_ROUGH*summit->curve_there)) return 0;
+  if (summit->broken || !(summit->curve_there < 0 && summit->rough <= rounding - SEARCH_ROUGH*summit->curve_there)) return 0;
   if (!(off <= rounding || off <= -summit->trust*summit->curve_there)) return 0;
   /* What is missed by rounding says nothing of the slope, however near a value is. */
   slope = off <= SEARCH_CLOSE*peak->best ? summit->slope : summit->slope + missed*summit->steep;
@@ -92,15 +92,17 @@ static int search_closed(const search_now* now, const search_panel* panel, searc
   return 0;
 }
 
-/* Whether a curve is nothing but rounding: it zigzags at the instants, though between most of them nothing hides. */
+/* Whether a curve is nothing but rounding: it zigzags at the instants, where no kink explains that. */
 static int search_rounded(const search_now* now, int curve) {
-  const search_real* row = search_row(&now->all, curve);
+  const search_panel* all = &now->all;
+  const search_real* row = search_row(all, curve);
   search_real bend, before = 0;
   long long i, turns = 0;
-  if (now->n < 2*SEARCH_QUIET || 2*now->hidden > now->n) return 0;
+  if (now->n < 2*SEARCH_QUIET) return 0;
   for (i = 1; i < now->n - 1; ++i) {
     bend = search_bend(row + i);
-    if (!(search_magnitude(bend) > SEARCH_RAGGED*search_upper(search_magnitude(row[i]),
+    if (search_kinked(now, all, i - 1) || search_kinked(now, all, i) ||
+        !(search_magnitude(bend) > SEARCH_RAGGED*search_upper(search_magnitude(row[i]),
                                                                search_upper(search_magnitude(row[i - 1]), search_magnitude(row[i + 1]))))) {
       bend = 0;
     }
@@ -123,6 +125,20 @@ static void search_open(search_now* now, const search_panel* panel, search_list*
   if (now->zigzags[curve]) return;
   if (anywhere) entry->bound = (search_real) INFINITY;
   ++list->open;
+}
+
+/* Whether a curve may jump, or have a kink in its slope, between any of the seven values from the first on. A polynomial through these does
+   not show that: its sixth difference is zero for a kink at some places. */
+static int search_broken(const search_now* now, const search_panel* panel, int curve, long long first) {
+  long long i;
+  int k;
+  for (k = 0; k < now->curves->watches; ++k) {
+    if (!search_is_switching(now, k) || now->curves->watch[k] == SEARCH_IS_KNOT) continue;
+    for (i = first; search_depends(now, k, now->quantity[curve]) && i < first + SEARCH_FIT - 1; ++i) {
+      if (search_kinks_in(now, panel, k, i)) return 1;
+    }
+  }
+  return 0;
 }
 
 /* Where polynomials through the values around each summit say to look. All are begun, then all solved: what is solved waits for
@@ -158,7 +174,8 @@ static void search_aim(const search_now* now, const search_panel* panel, search_
     summit->trust = fit->x[lane] > -2 && fit->x[lane] < 2 ? SEARCH_TRUST : SEARCH_TRUST_ASIDE;
     summit->kinked = 0;
     if (first == summit->at - 3) search_kink(search_row(panel, summit->curve) + summit->at, summit, panel->t[summit->at], step);
-    summit->closed = summit->curve_there < 0 && summit->rough <= -SEARCH_ROUGH*summit->curve_there &&
+    summit->broken = search_broken(now, panel, summit->curve, first);
+    summit->closed = !summit->broken && summit->curve_there < 0 && summit->rough <= -SEARCH_ROUGH*summit->curve_there &&
                      summit->size + summit->rough < peak->least;
   }
 }

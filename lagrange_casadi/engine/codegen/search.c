@@ -228,7 +228,6 @@ LANES_INLINE void search_panel_of(search_now* now, const search_panel* panel, in
   } else {
     search_edge(now, panel);
     search_hide(now, panel, depth);
-    if (depth == 0) for (i = 0; i < panel->n - 1; ++i) now->hidden += panel->hiding[i] & SEARCH_HIDES;
     for (q = 0; q < now->curves->quantities; ++q) {
       limit = now->peaks[q].limit;
       for (k = now->curves->first[q]; limit < SEARCH_LARGEST && k < now->curves->first[q + 1]; ++k) {
@@ -509,7 +508,7 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_search(lagrange_casadi_search_call* 
   now.t = call->t;
   now.half = call->n > 1 ? (call->t[call->n - 1] - call->t[0])/(double) (2*(call->n - 1)) : 1;
   now.left = now.quota = SEARCH_PANELS + 4*call->n;
-  now.hidden = now.ignoring = now.stopped = 0;
+  now.ignoring = now.stopped = 0;
   now.step = -1;
   now.all.n = call->n;
   now.all.stride = call->stride;

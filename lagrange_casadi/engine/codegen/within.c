@@ -25,6 +25,27 @@ static void search_columns_at(search_now* now, const double* t, int many, search
   }
 }
 
+/* Take in what a curve is at the times inside a step, where it is larger than what is known: of local peaks none of their flanks. */
+static void search_note_inner(search_now* now, const search_panel* within, int curve) {
+  const int q = now->quantity[curve];
+  const search_real known = now->call->tops ? now->peaks[q].least : now->peaks[q].best;
+  search_real *row = search_row(within, curve), size, beside;
+  int j, beyond = 0;
+  for (j = 1; j <= SEARCH_INNER; ++j) beyond |= !(search_magnitude(row[j]) <= known);
+  for (j = 1; beyond && j <= SEARCH_INNER; ++j) {
+    size = search_magnitude(row[j]);
+    beside = search_upper(search_magnitude(row[j - 1]), search_magnitude(row[j + 1]));
+    if (size > known && !(now->call->tops && size < beside) &&
+        search_counts(now, q, within->t[j], within->watched + j, SEARCH_STRIDE)) {
+      search_note(now, curve, row[j], within->t[j], search_ratio_in(now, within, curve, j));
+    }
+    /* What has no value is nothing, and hides what is beside it. */
+    if (row[j] - row[j] == 0) continue;
+    within->hiding[j - 1] = within->hiding[j] = SEARCH_HIDES;
+    row[j] = 0;
+  }
+}
+
 /* Search what is between two times as a panel; beside rest, where what switches is no number, only so deep. */
 static void search_part(search_now* now, double start, double stop, const search_real* first, const search_real* last, int depth) {
   const double width = (stop - start)/(SEARCH_INNER + 1);
@@ -32,8 +53,8 @@ static void search_part(search_now* now, double start, double stop, const search
   double t[SEARCH_WITHIN];
   signed char hiding[SEARCH_WITHIN], kinks[SEARCH_WITHIN];
   search_panel within;
-  search_real *row, known;
-  int i, j, k, many, beyond;
+  search_real* row;
+  int i, j, k, many;
   for (k = 0; now->call->rests && depth >= SEARCH_BESIDE_REST && k < curves; ++k) {
     if (search_lacks(now, k, (start + stop)/2)) return;
   }
@@ -49,27 +70,12 @@ static void search_part(search_now* now, double start, double stop, const search
   for (i = 1; i <= SEARCH_INNER; i += together) {
     many = SEARCH_INNER + 1 - i < together ? SEARCH_INNER + 1 - i : together;
     search_evaluate(now, t + i, many, ~0ull, within.rows + i, SEARCH_STRIDE);
-    for (k = 0; k < curves; ++k) {
-      row = search_row(&within, k);
-      known = now->call->tops ? now->peaks[now->quantity[k]].least : now->peaks[now->quantity[k]].best;
-      beyond = 0;
-      for (j = i; j < i + many; ++j) beyond |= !(search_magnitude(row[j]) <= known);
-      if (!beyond || search_lacks(now, k, (start + stop)/2)) continue;
-      for (j = i; j < i + many; ++j) {
-        if (search_magnitude(row[j]) > known && search_counts(now, now->quantity[k], t[j], within.watched + j, SEARCH_STRIDE)) {
-          search_note(now, k, row[j], t[j], search_ratio_in(now, &within, k, j));
-        }
-        /* What has no value is nothing, and hides what is beside it. */
-        if (row[j] - row[j] == 0) continue;
-        hiding[j - 1] = hiding[j] = SEARCH_HIDES;
-        row[j] = 0;
-      }
-    }
   }
   for (k = 0; k < rows; ++k) {
     row = within.rows + k*SEARCH_STRIDE;
     row[0] = first[k];
     row[SEARCH_WITHIN - 1] = last[k];
+    if (k < curves && !search_lacks(now, k, (start + stop)/2)) search_note_inner(now, &within, k);
   }
   for (k = 0; now->call->rests && k < curves; ++k) {
     if (!search_lacks(now, k, (start + stop)/2)) continue;
