@@ -2,7 +2,7 @@
 
 # ruff: noqa: F401
 
-from lagrange_casadi.base import cache, symbolic
+from lagrange_casadi.base import bernstein, cache, symbolic
 from lagrange_casadi.base import seal as base_seal
 from lagrange_casadi.base.compensated import Pair, Pairs
 from lagrange_casadi.base.interpret import interpret, numpy_arithmetic

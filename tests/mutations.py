@@ -36,7 +36,7 @@ ROOT, MAPS, EQUIVALENT = TESTS.parent, TESTS / "maps", TESTS / "equivalent.txt"
 PACKAGE = ROOT / "lagrange_casadi"
 
 NUMBERS = (
-    *("base/compensated.py", "base/frames.py", "base/interpret.py"),
+    *("base/bernstein.py", "base/compensated.py", "base/frames.py", "base/interpret.py"),
     *("base/ipopt.py", "base/lookups.py", "base/rotation.py"),
     *("base/scalars.py", "base/vectors.py", "model", "engine", "results", "studies/designs"),
     *("studies/peaks.py", "studies/forward", "studies/actuators", "studies/identification"),

@@ -163,7 +163,7 @@ def _between(c: Array, inner: Array) -> Zeros:
         before = (now < 0.0) == rising
         low, high = np.where(before, x, low), np.where(before, high, x)
         with np.errstate(all="ignore"):
-            step = now / value(rate, x[None])[0]
+            step = np.where(now == 0.0, 0.0, now / value(rate, x[None])[0])  # 0/0 where zeros meet
         ahead, tight = x - step, high - low <= _CLOSE
         # At an end that is a zero, too, there is another one between.
         trusted = ((ahead > low) & (ahead < high)) | tight

@@ -98,7 +98,7 @@ static inline casadi_real designs_between(const casadi_real* c, const casadi_rea
     before = begin*lanes_less(now, 0, -1, 1);
     low = lanes_less(0, before, x, low);
     high = lanes_less(0, before, high, x);
-    step = now/(n*designs_value(slope, n - 1, x));
+    step = lanes_less(0, designs_size(now), now/(n*designs_value(slope, n - 1, x)), 0);  /* 0/0 where zeros meet */
     ahead = x - step;
     tight = lanes_less(DESIGNS_CLOSE, high - low, 0, 1);
     /* At an end that is a zero, too, there is another one between. */
