@@ -43,3 +43,18 @@ def test_extremes_are_at_zeros(degree):
     falls, rises = (found.turns == 1.0).sum(axis=0), (found.turns == -1.0).sum(axis=0)
     signs = np.diff(np.sign([bernstein.value(c, np.full(COUNT, x)) for x in (0.0, 1.0)]), axis=0)[0]
     assert (2 * (rises - falls) == signs)[np.abs(c[0] * c[-1]) > 0.0].all()
+
+
+@pytest.mark.parametrize("degree", range(1, 6))
+def test_other_ordinates_have_the_same_values(degree):
+    """Those of a higher degree, of a part from 0 to 1, and of values at nodes."""
+    draw = np.random.default_rng(degree)
+    c, x = draw.normal(size=(degree + 1, 20)), draw.uniform(size=20)
+    values = bernstein.value(c, x)
+    np.testing.assert_allclose(bernstein.value(bernstein.raised(c, degree + 2), x), values)
+    start, stop = np.sort(draw.uniform(size=(2, 20)), axis=0)
+    part = bernstein.within(c, start, stop)
+    there = bernstein.value(c, start + (stop - start) * x)
+    np.testing.assert_allclose(bernstein.value(part, x), there, atol=1e-14)
+    nodes, weights = bernstein.interpolation(degree)
+    np.testing.assert_allclose(weights @ bernstein.value(c, np.tile(nodes[:, None], 20)), c)
