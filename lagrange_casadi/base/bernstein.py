@@ -163,7 +163,8 @@ def _between(c: Array, inner: Array) -> Zeros:
         before = (now < 0.0) == rising
         low, high = np.where(before, x, low), np.where(before, high, x)
         with np.errstate(all="ignore"):
-            step = np.where(now == 0.0, 0.0, now / value(rate, x[None])[0])  # 0/0 where zeros meet
+            step = now / value(rate, x[None])[0]
+        step[now == 0.0] = 0.0  # 0/0 where zeros meet
         ahead, tight = x - step, high - low <= _CLOSE
         # At an end that is a zero, too, there is another one between.
         trusted = ((ahead > low) & (ahead < high)) | tight
