@@ -161,7 +161,10 @@ def test_misuse_is_named(declare, says):
             {"density": density.polynomial(1.0, -5.0, 5.0)},
             r"density must not be negative, got -0\.25 kg/m at xi/l = 0\.5",
         ),
-        ({"density": density.tabulated([0, 0.5, 1], [1, -1, 1])}, r"got -1 kg/m at xi/l = 0\.5"),
+        (
+            {"density": density.tabulated([0, 0.5, 0.7, 1], [1, -1, 1, -3])},
+            r"got -3 kg/m at xi/l = 1",
+        ),
         ({"mass": 1.0, "centre": (0, 0), "inertia": -1.0}, "inertia must not be negative"),
     ],
 )

@@ -140,6 +140,28 @@ def test_thin_open_walls_twist_as_textbooks_say(kind, flanges):
     assert box == pytest.approx(4 * (H * B) ** 2 / (2 * (H + B) / t), rel=1e-2)
 
 
+@pytest.mark.parametrize("kind", ["i_section", "t_section", "c_section"])
+def test_twist_goes_round_open_walls_with_the_moment(kind):
+    """Prandtl: along the outline, counterclockwise, thickness over torsion constant."""
+    found, corners = shapes()[kind].properties(), np.array(corners_of(kind))
+    if beams.polygon([*map(tuple, corners)]).area < 0:
+        corners = corners[::-1]
+    furthest = [max(f.y for f in found.fibres), max(f.z for f in found.fibres)]
+    corners = corners + furthest - corners.max(axis=0)
+    sides = np.roll(corners, -1, axis=0) - corners
+    twisted = 0
+    for fibre in found.fibres:
+        twist, at = np.array([fibre.along_y[2], fibre.along_z[2]]), np.array([fibre.y, fibre.z])
+        if not twist.any():
+            continue
+        across = [abs(a * z - b * y) for (a, b), (y, z) in zip(sides, at - corners, strict=True)]
+        there = [side / np.hypot(*side) for side, x in zip(sides, across, strict=True) if x < 1e-15]
+        thickness = TW if twist[0] else TF
+        assert any(side @ twist * found.torsion == pytest.approx(thickness) for side in there)
+        twisted += 1
+    assert twisted >= 4
+
+
 @pytest.mark.parametrize(
     ("ratio", "constant", "modulus"),
     # Timoshenko and Goodier, Theory of Elasticity, table of art. 109: k1 and k2.
