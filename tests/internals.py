@@ -19,7 +19,7 @@ from lagrange_casadi.engine.identity import identity_of
 from lagrange_casadi.engine.instants import backends, cycle_table, grids
 from lagrange_casadi.engine.instants.backends import run
 from lagrange_casadi.engine.instants.evaluation_method import EvaluationMethod, Provenance
-from lagrange_casadi.engine.instants.refusal import refusal as refusal_refusal
+from lagrange_casadi.engine.instants.refusing import refusal as refusal_refusal
 from lagrange_casadi.interop.formats import case_of
 from lagrange_casadi.model import laws
 from lagrange_casadi.model.declared import Declared

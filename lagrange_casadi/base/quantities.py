@@ -11,7 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import TypeAlias, TypeVar
 
 from ..errors import check_kind
 from .tables import PLANE, SPACE, Quantity, Table
@@ -166,6 +166,38 @@ class Output:
             else None
         )
         return self.quantity.unit_for(found or "angle")
+
+
+@dataclass(frozen=True)
+class Check:
+    """A column of a Program that is no output: :mod:`.engine.verdicts` has those whose numbers
+    decide if an instant has a result.
+
+    ``bend`` of a friction says how much one that slides changes with those at rest (see
+    :mod:`.friction`), ``rowsize`` has the size of a non-holonomic row's terms. ``turns`` are the
+    whole turns of a joint's angle that its column is without, ``multiplier`` is one that was not
+    wanted, ``drive`` is what a table needs of its drive, ``seen`` what a constraint sees that may
+    have kinks (see :mod:`.corners`), and ``watched`` what is watched for jumps and kinks between
+    instants.
+    """
+
+    kind: str
+    part: str | Output
+
+    def __str__(self) -> str:
+        """A name that no output has."""
+        return f"_{self.kind}:{self.part}"
+
+
+Column: TypeAlias = Output | Check
+
+
+def column_of(name: str) -> Column:
+    """The output or check that a name says."""
+    if not name.startswith("_"):
+        return Output.of(name)
+    kind, _, part = name.removeprefix("_").partition(":")
+    return Check(kind, Output.of(part) if kind == "open" else part)
 
 
 def motions_of(coordinate: str) -> tuple[Output, ...]:

@@ -35,8 +35,8 @@ if TYPE_CHECKING:
     from .program import Program
 
 CLOSURES = ("CLOSURE", "BRANCH")
-"""Kinds of bounds that come to zero at a dead centre: of a ``BRANCH`` the column is a sine, of a
-``CLOSURE`` a square.
+"""Bounds that come to zero at a dead centre, by what they are seen beside: of a ``BRANCH`` the
+column is a sine, of a ``CLOSURE`` a square.
 """
 
 POINTS, ROUNDS = 8, 20
@@ -66,9 +66,9 @@ def closing_of(program: Program) -> ca.Function:
     out, u = program.instant(*given.values()), ca.vertcat(t, d)
     squares: Expression = ca.vertcat(
         *(
-            out[bound.column] ** 2 if bound.kind == "BRANCH" else out[bound.column]
+            out[bound.column] ** 2 if bound.beside == "BRANCH" else out[bound.column]
             for bound in program.bounds
-            if bound.kind in CLOSURES
+            if bound.beside in CLOSURES
         )
     )
     slopes = ca.jacobian(squares, u)

@@ -19,10 +19,9 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from ..base.arrays import Expression
-from ..base.quantities import Output
+from ..base.quantities import Column, Output
 from ..base.scalars import column
 from ..model.mechanism import Mechanism
-from .checks import Column
 from .strains import Moduli, moduli_of, strains
 from .strength import Loaded, Part, most, sampled
 

@@ -15,7 +15,7 @@ import casadi as ca
 from ..base import cache
 from ..base.arguments import Outputs, public, texts
 from ..base.arrays import Expression
-from ..base.quantities import Output
+from ..base.quantities import Check, Column, Output
 from ..base.scalars import column, graph
 from ..base.symbolic import symbolic
 from ..base.tables import Table, table_of
@@ -27,7 +27,6 @@ from ..model.parts import Link
 from ..model.results import Asked
 from ..model.scene import STRENGTH, Scene, Wanted
 from ..model.wanted_names import among
-from .checks import Check, Column
 from .deflections import deflections
 from .drives import closure
 from .identity import identity_of

@@ -14,12 +14,11 @@ from typing import Any
 import casadi as ca
 
 from ..base.arrays import Expression
-from ..base.quantities import Output
+from ..base.quantities import Column, Output
 from ..base.tables import table_of
 from ..model.density import Density, shifted
 from ..model.mechanism import Mechanism
 from ..model.parts import LineLoad, Link, Vector
-from .checks import Column
 from .multibody import Multibody
 
 

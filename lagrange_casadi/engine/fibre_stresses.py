@@ -21,7 +21,7 @@ import numpy.typing as npt
 
 from ..base.arrays import Array, Expression
 from ..base.interpret import interpret, numpy_arithmetic
-from ..base.quantities import Output
+from ..base.quantities import Column, Output
 from ..base.scalars import column
 from ..base.symbolic import Graphs, symbolic
 from ..base.tables import table_of
@@ -31,7 +31,6 @@ from ..model.beams.shape import Course, Shape
 from ..model.density import Density, NumericDensity
 from ..model.limits import END
 from ..model.parts import Link
-from .checks import Column
 from .section_function import SIDES, SectionInputs, Side, edge
 from .strength import Loaded, Part
 from .stress import concentration, notch_factor

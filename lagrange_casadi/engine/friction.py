@@ -26,10 +26,10 @@ import casadi as ca
 import numpy as np
 
 from ..base.arrays import Expression, Operand
+from ..base.quantities import Check, Column
 from ..base.scalars import column
 from ..base.vocabulary import Precision
 from ..model.meshes import Loss, Transmission
-from .checks import Check, Column
 from .pressing import Contact, FrictionContact, both_edges
 
 STEPS = 4

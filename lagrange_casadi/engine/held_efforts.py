@@ -8,11 +8,10 @@ from typing import Any
 
 import casadi as ca
 
-from ..base.quantities import Output
+from ..base.quantities import Check, Column, Output
 from ..base.scalars import column, graph
 from ..base.symbolic import Graphs, symbolic
 from ..model.scene import Scene, Wanted
-from .checks import Check, Column
 from .meshes import transmissions_of
 from .mobility import internal_forces
 from .moving import Moving

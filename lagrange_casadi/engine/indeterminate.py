@@ -11,9 +11,8 @@ from typing import Any
 import casadi as ca
 
 from ..base.arrays import Expression
-from ..base.quantities import Output
+from ..base.quantities import Check, Column, Output
 from ..base.scalars import column
-from .checks import Check, Column
 
 
 @dataclass(frozen=True, eq=False)

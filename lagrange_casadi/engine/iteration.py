@@ -21,6 +21,9 @@ LARGEST_STEP = 0.3
 may land on another branch.
 """
 
+NEWTON_LOST = 0.1
+"""A last correction, of a fixed number, after which nothing is known."""
+
 
 @dataclass(frozen=True, eq=False)
 class NewtonLoop:

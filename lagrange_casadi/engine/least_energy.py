@@ -26,7 +26,7 @@ import casadi as ca
 import numpy as np
 
 from ..base.arrays import Expression
-from ..base.quantities import Output, force_members
+from ..base.quantities import Column, Output, force_members
 from ..base.scalars import column, graph
 from ..base.tables import table_of
 from ..errors import DeclarationError, one_line
@@ -36,7 +36,6 @@ from ..model.mechanism import Mechanism
 from ..model.parts import Link
 from ..model.scene import Wanted
 from ..model.scene_arguments import Elastic
-from .checks import Column
 from .indeterminate import Forces
 from .residuals import extent
 from .section_function import Place, Section

@@ -18,11 +18,10 @@ import casadi as ca
 import numpy as np
 
 from ..base.arrays import Expression
-from ..base.quantities import Output
+from ..base.quantities import Column, Output
 from ..base.scalars import column
 from ..model.limits import END
 from ..model.parts import Link
-from .checks import Column
 from .mobility import load_points_of
 from .multibody import Coordinate
 from .sampling import drawn, vanish

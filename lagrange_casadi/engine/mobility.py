@@ -28,7 +28,7 @@ import casadi as ca
 
 from ..base.arrays import Expression
 from ..base.frames import Frame, Velocities
-from ..base.quantities import Output, force_members
+from ..base.quantities import Check, Column, Output, force_members
 from ..base.rotation import Rotation
 from ..base.scalars import column
 from ..base.tables import table_of
@@ -40,7 +40,6 @@ from ..model.mechanism import Mechanism
 from ..model.parts import Link, Point, PointMass, Vector
 from ..model.scene import Scene, Wanted
 from .assembly import line_reaction
-from .checks import Check, Column
 from .distributed_loads import distributed_loads, rotary
 from .drives import solve_efforts
 from .friction import Solved, needed, solve

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..base.arrays import Array, Expression
 from ..base.brief import Brief
-from ..base.quantities import Kinds
+from ..base.quantities import Column, Kinds
 from ..base.scalars import column, graph
 from ..base.symbolic import Graphs, symbolic
 from ..base.tables import table_of
@@ -39,7 +39,6 @@ from ..model.scene import Scene
 from ..model.stated import Stated
 from ..model.times import Timing
 from ..model.validity import Margins
-from .checks import Column
 from .residuals import extent
 from .section_function import Section
 from .tree import span

@@ -12,7 +12,7 @@ from typing import Any
 import casadi as ca
 
 from ..base.arrays import Expression
-from ..base.quantities import Output, force_members, motions_of
+from ..base.quantities import Check, Column, Output, force_members, motions_of
 from ..base.scalars import column
 from ..base.tables import ANGLE
 from ..base.vectors import ZERO, dot
@@ -25,7 +25,6 @@ from ..model.scene import Scene, Wanted
 from ..model.spatial import reference_posture
 from . import kinematics
 from .assembly import assemble
-from .checks import Check, Column
 from .drives import pushed
 from .kinematics import Start
 from .mobility import needed_reactions

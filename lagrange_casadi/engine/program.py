@@ -13,10 +13,11 @@ import numpy as np
 
 from ..base.arrays import Array, Expression
 from ..base.brief import listed
-from ..base.quantities import Output
+from ..base.quantities import Check, Column, Output
 from ..base.scalars import graph, inputs_of
 from ..base.symbolic import Graphs, symbolic, symbolic_property
 from ..base.templates import Place, Template, dumps, loads
+from ..base.vocabulary import Precision
 from ..errors import PickleError
 from ..model.corners import Corners
 from ..model.kinks import Smooth
@@ -27,14 +28,13 @@ from ..model.scene import Wanted
 from ..model.stated import Entry, Equation, LoadLaw, Stated, Touch
 from ..model.times import Timing
 from ..model.validity import Margins
-from .checks import Check, Column, Kind
 from .dead_centres import closing_of
 from .fibre_stresses import LinkStress
 from .iteration import NewtonLoop
 from .least_energy import Completion
 from .model_data import ModelData
 from .section_function import SectionInputs, section
-from .status import Bound, Rule, bounds_of, rules_of, status_of
+from .verdicts import Bound, Broken, Tolerances, bounds_of, rules_of, status_of
 
 Turns: TypeAlias = tuple[tuple[int, int], ...]
 """Numbers of parts of an angle, and the sign of each."""
@@ -82,7 +82,7 @@ class Program(Graphs):
         """The outputs, and their rows of ``out``."""
         return {column: k for k, column in enumerate(self.columns) if isinstance(column, Output)}
 
-    def checks(self, kind: Kind) -> Mapping[str, int]:
+    def checks(self, kind: str) -> Mapping[str, int]:
         """The parts that have a check of a kind, and its row of ``out``."""
         return self._checks.get(kind, {})
 
@@ -109,20 +109,36 @@ class Program(Graphs):
 
     @cached_property
     def bounds(self) -> tuple[Bound, ...]:
-        """Limits of columns."""
-        return bounds_of(self)
+        """The columns with a verdict (:mod:`.verdicts`), in their order."""
+        iterated = self.newton.names if self.newton is not None else ()
+        return bounds_of(self.columns, self.data.kinds, iterated)
 
     @cached_property
-    def rules(self) -> tuple[Rule, ...]:
+    def rules(self) -> tuple[Broken, ...]:
         """The rules of an instant, in the order in which they are reported."""
-        return rules_of(self)
+        return rules_of(self.bounds, iterated=self.newton is not None)
 
     @symbolic_property
     def status(self) -> ca.Function:
         """The function ``status(checks, limits, beside, iterated)``: the number of the first of
         :attr:`rules` that is broken.
         """
-        return status_of(self)
+        return status_of(self.rules, len(self.bounds))
+
+    def tolerances(
+        self, precision: Precision, newton: int | None, extent: Expression
+    ) -> Tolerances:
+        """Tolerances of a precision, for an ``extent`` [m]; ``newton`` as in
+        :class:`.EvaluationMethod`.
+        """
+        return Tolerances(precision, newton is not None, self.data.rounding, extent)
+
+    def limits(
+        self, precision: Precision, newton: int | None, extent: Expression
+    ) -> list[Expression]:
+        """Limits of :attr:`bounds`, by the same."""
+        at = self.tolerances(precision, newton, extent)
+        return [bound.verdict.limit(at) for bound in self.bounds]
 
     @symbolic_property
     def closing(self) -> ca.Function:

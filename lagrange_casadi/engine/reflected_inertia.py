@@ -13,11 +13,10 @@ from dataclasses import dataclass
 
 import casadi as ca
 
-from ..base.quantities import Output
+from ..base.quantities import Column, Output
 from ..base.scalars import column, entries, graph
 from ..model.scene import Scene, Wanted
 from .assembly import assemble
-from .checks import Column
 from .derive import derived
 from .model_data import ModelData
 from .moving import instant_inputs, solved_motion

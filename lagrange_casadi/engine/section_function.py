@@ -29,12 +29,11 @@ from typing import Any, Literal
 import casadi as ca
 
 from ..base.arrays import Expression, Operand
-from ..base.quantities import Output, parts_along
+from ..base.quantities import Column, Output, parts_along
 from ..base.scalars import graph
 from ..base.tables import Table, Terms, table_of
 from ..model.beams.properties import larger, smaller
 from ..model.density import Density
-from .checks import Column
 from .distributed_loads import distributed_loads_of
 from .mobility import load_points_of
 

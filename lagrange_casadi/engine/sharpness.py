@@ -21,10 +21,10 @@ import numpy as np
 from ..base.arrays import Array, Flags
 from ..base.interpret import Step, codes, expressed, followable, operation_of, replay
 from ..base.lookups import is_entry
+from ..base.quantities import Check
 from ..base.scalars import column, graph, inputs_of
 from ..base.symbolic import symbolic
 from ..base.tables import LARGEST
-from .checks import Check
 from .program import Program
 
 

@@ -21,7 +21,7 @@ import casadi as ca
 import numpy as np
 
 from ..base.arrays import Expression, Operand
-from ..base.quantities import Output
+from ..base.quantities import Column, Output
 from ..base.tables import table_of
 from ..model.beams.properties import Properties, larger, smaller
 from ..model.density import Density
@@ -29,7 +29,6 @@ from ..model.limits import END
 from ..model.mechanism import Mechanism
 from ..model.parts import Link
 from . import buckling
-from .checks import Column
 from .section_function import Section, edge
 from .stress import KINDS, CrossSections, squared
 

@@ -27,16 +27,15 @@ import numpy.typing as npt
 
 from ..base.arguments import public
 from ..base.arrays import Array
-from ..base.quantities import Output
-from ..engine.checks import Check
+from ..base.quantities import Check, Output
 from ..engine.derive import derived
 from ..engine.friction import SLIP
 from ..engine.held_efforts import HeldEfforts, held_efforts
 from ..engine.instants.backends import run
 from ..engine.instants.beyond_equilibrium import Holding
 from ..engine.instants.evaluation_method import EvaluationMethod
-from ..engine.instants.rules import OPEN
 from ..engine.program import Program
+from ..engine.verdicts import OPEN
 from ..model.description import values_of
 from ..model.scene import Scene
 from .histories import Histories

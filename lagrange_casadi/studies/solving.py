@@ -13,7 +13,7 @@ from ..engine.instants.determinacy import completed, determinate, undetermined
 from ..engine.instants.evaluation_method import EvaluationMethod, seconds
 from ..engine.instants.from_table import columns
 from ..engine.instants.phases import outputs_of, phases
-from ..engine.instants.refusal import refuse, refuse_laws
+from ..engine.instants.refusing import refuse, refuse_laws
 from ..engine.program import Program
 from ..errors import CertificateWarning, DeclarationError, warn
 from ..model.even_points import checked_ratios, points

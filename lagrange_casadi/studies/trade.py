@@ -28,7 +28,7 @@ from ..engine.derive import compile_scene
 from ..engine.instants.backends import Evaluated, run
 from ..engine.instants.evaluation_method import EvaluationMethod
 from ..engine.instants.from_table import columns
-from ..engine.instants.refusal import resting, unfinished
+from ..engine.instants.refusing import resting, unfinished
 from ..engine.program import Program
 from ..errors import AccuracyError, AssemblyError, CompilerError, DeclarationError
 from ..model.scene import Scene

@@ -16,6 +16,7 @@ from ...base.scalars import column
 from ...base.status import Status
 from ...base.symbolic import symbolic
 from ...base.vocabulary import Precision
+from ..iteration import NEWTON_LOST
 from ..program import Program
 from .calls import Call
 from .compiler import WIDE, start, written
@@ -35,8 +36,6 @@ square is not far below them.
 """
 
 NEWTON_ROUNDING, NEWTON_ROUNDING_SINGLE = 1e-13, 1e-5
-NEWTON_LOST = 0.1
-"""A last correction, of a fixed number, after which nothing is known."""
 
 INSTANTS = Call(
     "lagrange_casadi_instants",

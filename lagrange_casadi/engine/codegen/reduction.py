@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from string import Template
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from ...model.limits import END
 from ..dead_centres import CLOSURES, FAR, POINTS, ROUNDS, TOUCHES
 from ..program import Program
 from ..sharpness import Watch
+from ..verdicts import Beside
 from .along_links import Along, along, pieces
 from .calls import Call
 from .compiler import written
@@ -55,11 +56,6 @@ CALL = Call(
 )
 """Arguments of :data:`DESIGNS`; the C says which it reads and writes."""
 
-CHECKS = ("CLOSURE", "BRANCH", "ROW", "TURNED")
-"""Kinds of what is checked at every instant (:class:`.Bound`) that are seen beside other
-instants.
-"""
-
 _PLACES = {"BASE": BASE, "TIP": TIP, "OFF": OFF}
 
 
@@ -69,21 +65,22 @@ class Reduction:
 
     ``quantities`` off links are one column, or the size of a vector of two; then come the forces of
     each of ``links``. ``units`` numbers the units of all of them, ``efforts`` says which have
-    means. ``checks`` are the columns of a graph's bounds with their kinds, then the sizes of rows'
-    terms; ``indeterminate_checks`` are the checks that leave a quantity open, by number of both.
-    ``matter(p)`` gives first ``margins`` numbers that must not be negative, ``positive`` of them
-    not zero either: the first is the mechanism's extent [m]. Then comes what ``pieces.c`` takes
-    for each link, and the limits of bounds. ``watches`` are what the last columns are watched for,
-    ``knots`` times of kinks, and ``depends`` (watches, quantities) which quantity depends on which
-    watched function: see :class:`.Sharpness`. ``marks`` are of the columns after these, marks of
-    motions and constraints (:class:`.Smooth`): whether they count at whole numbers.
+    means. ``checks`` are the columns of a graph's bounds and what these are seen beside, then the
+    sizes of rows' terms; ``indeterminate_checks`` are the checks that leave a quantity open, by
+    number of both. ``matter(p)`` gives first ``margins`` numbers that must not be negative,
+    ``positive`` of them not zero either: the first is the mechanism's extent [m]. Then comes what
+    ``pieces.c`` takes for each link, and the limits of bounds. ``watches`` are what the last
+    columns are watched for, ``knots`` times of kinks, and ``depends`` (watches, quantities) which
+    quantity depends on which watched function: see :class:`.Sharpness`. ``marks`` are of the
+    columns after these, marks of motions and constraints (:class:`.Smooth`): whether they count at
+    whole numbers.
     """
 
     quantities: tuple[tuple[int, ...], ...]
     links: tuple[Along, ...]
     units: tuple[int, ...]
     efforts: tuple[int, ...]
-    checks: tuple[tuple[int, str], ...]
+    checks: tuple[tuple[int, Beside], ...]
     indeterminate_checks: tuple[tuple[int, int], ...]
     mass_properties: Any
     positive: int
@@ -183,12 +180,12 @@ def _macros(program: Program, reduction: Reduction, precision: Precision) -> dic
         "BOUNDS": len(program.bounds),
         "DOUBTS": len(reduction.indeterminate_checks),
         "EFFORTS": len(reduction.efforts),
-        "CLOSINGS": sum(bound.kind in CLOSURES for bound in program.bounds),
+        "CLOSINGS": sum(bound.beside in CLOSURES for bound in program.bounds),
         "SLOPES": 1 + len(program.driven),
         "POINTS": POINTS,
         "TOPS": TOPS,
         "END": _real(END[precision]),
-        **{f"IS_{kind}": k for k, kind in enumerate(CHECKS)},
+        **{f"IS_{beside}": k for k, beside in enumerate(get_args(Beside)[1:])},
     }
 
 
@@ -199,10 +196,10 @@ def _real(value: float) -> str:
 def _tables(program: Program, reduction: Reduction) -> str:
     columns, kinds = zip(*reduction.checks, strict=True) if reduction.checks else ((0,), ("",))
     sizes = itertools.count(len(program.bounds))
-    sized = [next(sizes) if bound.kind == "ROW" else -1 for bound in program.bounds] or [-1]
+    sized = [next(sizes) if bound.beside == "ROW" else -1 for bound in program.bounds] or [-1]
     closings = itertools.count()
-    closed = [next(closings) if bound.kind in CLOSURES else -1 for bound in program.bounds]
-    statuses = [Status.OK, *(rule.status for rule in program.rules)]
+    closed = [next(closings) if bound.beside in CLOSURES else -1 for bound in program.bounds]
+    statuses = [Status.OK, *(rule.status for rule, _ in program.rules)]
     breaks = [
         _table("lanes_real", f"designs_breaks{k}", map(_real, link.breaks))
         for k, link in enumerate(reduction.links)
@@ -211,7 +208,7 @@ def _tables(program: Program, reduction: Reduction) -> str:
     shown_by, indeterminate = zip(*(reduction.indeterminate_checks or [(0, 0)]), strict=True)
     tables: dict[str, Iterable[float | str]] = {
         "checked": columns,
-        "kind": (f"DESIGNS_IS_{kind}" if kind in CHECKS else -1 for kind in kinds),
+        "kind": (f"DESIGNS_IS_{kind}" if kind else -1 for kind in kinds),
         "sized": sized,
         "status": map(int, statuses),
         "effort": reduction.efforts or (0,),

@@ -18,15 +18,18 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.arrays import Array
+from ...base.quantities import Check, Column
 from ...base.symbolic import symbolic
 from ...base.tables import ANGLE, FORCE, LENGTH, MOMENT
 from ...errors import DeclarationError
-from ..checks import FRACTIONS, Check, Column
 from ..dead_centres import POINTS
 from ..kinematics import describe_coordinate, where
 from ..program import Program
 from .dead_centres import Placed, dead_steps
-from .rules import first_broken, limits
+from .refusing import first_broken
+
+FRACTIONS = ("gap", "misfit", "beyond")
+"""Checks that are small or large beside one."""
 
 TURNS = 4
 """Number of the longest periods."""
@@ -263,21 +266,20 @@ class Drive:
             z = self.settle(d, z) if self.program.newton else z
             return width, still, (ca.DM(d[None]), rate, 0.0 * rate), z
 
-        most = limits(self.program, "double", None, self.program.extent(self.p))
+        most = self.program.limits("double", None, self.program.extent(self.p))
         return dead_steps(self.program, angles, out, np.isfinite(angles), most, self.p, place)
 
     def _refuse(self, angles: Array, values: Array) -> None:
         program, still = self.program, np.zeros(angles.size)
-        most = limits(program, "double", None, program.extent(self.p))
-        sizes = np.array([still + (bound.kind == "ROW") for bound in program.bounds])
+        most = program.limits("double", None, program.extent(self.p))
+        sizes = np.array([still + (bound.beside == "ROW") for bound in program.bounds])
         broken = first_broken(program, values[0], most, sizes.reshape(-1, still.size), still)
-        loops = {k for kind in ("closure", "gap") for k in program.checks(kind).values()}
         for i in np.flatnonzero(broken):
-            bound = program.bounds[program.rules[broken[i] - 1].bound or 0]
-            if bound.column in loops:
+            bound = program.bounds[program.rules[broken[i] - 1][1] or 0]
+            if bound.kind in ("closure", "branch", "gap"):
                 loop = f"the loop closed by {program.data.closing(str(bound.part))}"
                 gap = f"the solution of {loop} does not close it"
-                what = gap if bound.kind == "GAP" else f"{loop} cannot be closed"
+                what = gap if bound.kind == "gap" else f"{loop} cannot be closed"
                 raise DeclarationError(f"table: {what}{self._not_round(angles[i])}")
         found = np.argwhere(~np.isfinite(values).all(axis=0))
         if found.size:

@@ -36,10 +36,10 @@ def dead_steps(
     """
     found, closing = np.zeros((len(program.bounds), out.shape[1])), 0
     for k, (bound, limit) in enumerate(zip(program.bounds, most, strict=True)):
-        if bound.kind not in CLOSURES:
+        if bound.beside not in CLOSURES:
             continue
         squares = np.where(closed, out[bound.column], np.nan)
-        if bound.kind == "BRANCH":
+        if bound.beside == "BRANCH":
             squares, limit = squares * np.abs(squares), limit * limit
         for i in steps_near(squares, t, limit):
             path = functools.partial(_closing, program, p, closing, place, int(i))

@@ -14,15 +14,13 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ...base.arrays import Array
-from ...base.quantities import Output
+from ...base.quantities import Check, Column, Output
 from ...base.status import Status
-from ...base.tables import MOMENT
-from ..checks import Check, Column
 from ..program import Program
+from ..verdicts import bounds_of
 from .backends import Evaluated, run
 from .beyond_equilibrium import Elasticity
 from .evaluation_method import EvaluationMethod
-from .rules import indeterminate_limit
 
 
 def undetermined(
@@ -72,12 +70,13 @@ def _beyond(
     """The outputs that change at any of some instants by more than what is none."""
     if not changes:
         return ()
-    extent, limit = program.extent(p), indeterminate_limit(program, method.precision, method.newton)
-    units = {
-        output: extent if output.unit(program.data.kinds) == MOMENT else 1.0 for output in changes
-    }
+    at = program.tolerances(method.precision, method.newton, program.extent(p))
+    checks = [Check("open", output) for output in changes]
+    limits = [bound.verdict.limit(at) for bound in bounds_of(checks, program.data.kinds, ())]
     return tuple(
-        output for output, sizes in changes.items() if np.any(sizes > limit * units[output])
+        output
+        for (output, sizes), limit in zip(changes.items(), limits, strict=True)
+        if np.any(sizes > limit)
     )
 
 

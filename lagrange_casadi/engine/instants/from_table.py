@@ -12,12 +12,12 @@ import casadi as ca
 import numpy as np
 
 from ...base.arrays import Array
+from ...base.quantities import Check
 from ...base.scalars import graph, inputs_of
 from ...base.space import cores
 from ...base.status import Status
 from ...base.symbolic import symbolic
 from ...base.threads import in_threads
-from ..checks import Check
 from ..program import Program
 from .backends import Evaluated, run, unevaluated
 from .cycle import TURNS, the_drive

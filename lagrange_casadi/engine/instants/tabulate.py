@@ -13,12 +13,11 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.arrays import Array
-from ...base.quantities import Output
+from ...base.quantities import Check, Output, column_of
 from ...base.tables import LARGEST as LARGEST_ALONG
 from ...errors import DeclarationError
-from ..checks import FRACTIONS, Check, column_of
 from ..program import Program
-from .cycle import Cycle, cycle_of
+from .cycle import FRACTIONS, Cycle, cycle_of
 from .cycle_table import LEAST, CycleTable, arranged, splines, weights
 
 FEWEST, MOST = 16, 16384

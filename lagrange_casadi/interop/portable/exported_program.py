@@ -13,17 +13,16 @@ from typing import Any
 import casadi as ca
 
 from ...base.arrays import Array
-from ...base.quantities import Output
+from ...base.quantities import Check, Column, Output
 from ...base.scalars import column
+from ...base.status import Status
 from ...base.symbolic import symbolic
 from ...base.vocabulary import Precision
-from ...engine.checks import Check, Column
 from ...engine.codegen.emit import hoisted, newton_rule
 from ...engine.codegen.printer import Format, literal, print_functions
 from ...engine.codegen.stages import controlled
 from ...engine.dead_centres import CLOSURES
 from ...engine.instants.cycle_table import CycleTable
-from ...engine.instants.rules import limits
 from ...engine.instants.tabulate import still
 from ...engine.program import Program
 from ...engine.section_function import SectionInputs, section
@@ -77,23 +76,19 @@ class ExportedProgram:
 
     def answers(self) -> Iterator[str]:
         """Answer for each rule that may be broken, by its number."""
-        program = self.program
         yield "OK"
-        for rule in program.rules:
-            indeterminate = rule.bound is not None and program.bounds[rule.bound].kind.startswith(
-                "OPEN"
-            )
-            yield "UNDETERMINED" if indeterminate else ANSWERS.get(rule.status, "OK")
+        for rule, _ in self.program.rules:
+            yield "UNDETERMINED" if rule.status == Status.OK else ANSWERS[rule.status]
 
     @property
     def zeros(self) -> list[float]:
         """Limits below which the squares of ``closing`` are zero within rounding."""
         program = self.program
-        most = limits(program, self.precision, self.newton, 0.0)
+        most = program.limits(self.precision, self.newton, 0.0)
         return [
-            float(limit) ** 2 if bound.kind == "BRANCH" else float(limit)
+            float(limit) ** 2 if bound.beside == "BRANCH" else float(limit)
             for bound, limit in zip(program.bounds, most, strict=True)
-            if bound.kind in CLOSURES
+            if bound.beside in CLOSURES
         ]
 
     @property
@@ -188,15 +183,15 @@ def _status(
         ca.SX.sym("iterated"),
     )
     extent = mass_properties[0] if gapped else program.extent(p) if p is not None else 0.0
-    most = limits(program, precision, newton, extent)
+    most = program.limits(precision, newton, extent)
     most = [
-        math.inf if bound.kind == "GAP" and p is not None else limit
+        math.inf if bound.kind == "gap" and p is not None else limit
         for bound, limit in zip(program.bounds, most, strict=True)
     ]
     where = {column: k for k, column in enumerate(columns)}
     given = [y[where[program.columns[bound.column]]] for bound in program.bounds]
     sizes = [
-        y[where[program.columns[bound.size]]] if bound.kind == "ROW" else 0.0
+        y[where[program.columns[bound.size]]] if bound.beside == "ROW" else 0.0
         for bound in program.bounds
     ]
     rule = program.status(*(column(each) for each in (given, most, sizes)), iterated)

@@ -18,11 +18,10 @@ from typing import Any
 import casadi as ca
 
 from ...base.arrays import Expression
-from ...base.quantities import Output
+from ...base.quantities import Column, Output
 from ...base.scalars import graph, inputs_of
 from ...base.symbolic import Graphs, symbolic
 from ...base.tables import table_of
-from ...engine.checks import Column
 from ...engine.model_data import ModelData
 from ...engine.program import Program
 from ...engine.reciprocals import differentiable

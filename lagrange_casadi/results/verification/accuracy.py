@@ -18,10 +18,9 @@ import numpy as np
 from ...base.arrays import Array, spread
 from ...base.compensated import DTYPES, ROUNDING
 from ...base.quantities import Output
-from ...engine.checks import Kind
 from ...engine.instants.backends import Evaluated
 from ...engine.instants.cycle_table import CycleTable
-from ...engine.instants.refusal import resting
+from ...engine.instants.refusing import resting
 from ...engine.program import Program
 from ..histories import Histories
 from ..sizes import largest
@@ -31,7 +30,7 @@ from .disturbed import Instants, effects, openness
 INSTANTS = 48
 _MANY, _FIRST, _WORST = 2000, 10, 30
 _CLOSED = 10.0
-_DEAD: tuple[Kind, ...] = ("closure", "gimbal", "roll", "hold")
+_DEAD = ("closure", "gimbal", "roll", "hold")
 _FORCES = (
     "effort",
     "reaction",

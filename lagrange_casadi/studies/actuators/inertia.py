@@ -10,7 +10,7 @@ from ...base.arguments import public
 from ...base.arrays import Array
 from ...engine.instants.backends import run
 from ...engine.instants.evaluation_method import EvaluationMethod
-from ...engine.instants.refusal import refuse
+from ...engine.instants.refusing import refuse
 from ...engine.reflected_inertia import ReflectedInertia, reflected_inertia
 from ...errors import DeclarationError, UnknownNameError
 from ...model.scene import Scene

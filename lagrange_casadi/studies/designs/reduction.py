@@ -19,11 +19,11 @@ from ...engine.codegen.reduction import Reduction
 from ...engine.codegen.stages import Stages, compensated, plain, stages_for
 from ...engine.distributed_loads import distributed_loads_of
 from ...engine.instants.evaluation_method import EvaluationMethod
-from ...engine.instants.rules import limits
 from ...engine.mobility import load_points_of
 from ...engine.model_data import ModelData
 from ...engine.program import Program
 from ...engine.sharpness import Sharpness
+from ...engine.verdicts import Beside
 from ...errors import DeclarationError
 from ...results.laws import made_of
 
@@ -99,9 +99,11 @@ class KeptOutputs:
         ]
         made_of = [*map(set, chosen.values()), *(row for row in rows for _ in table.forces)]
         sharpness = Sharpness.of(program, sorted({k for columns in made_of for k in columns}))
-        checks = [(bound.column, bound.kind) for bound in program.bounds]
-        doubted = {k: number for number, (k, kind) in enumerate(checks) if kind.startswith("OPEN")}
-        sizes = [(bound.size, "SIZE") for bound in program.bounds if bound.kind == "ROW"]
+        checks = [(bound.column, bound.beside) for bound in program.bounds]
+        doubted = {bound.column: number for number, bound in enumerate(program.bounds)}
+        sizes: list[tuple[int, Beside]] = [
+            (bound.size, "") for bound in program.bounds if bound.beside == "ROW"
+        ]
         made = {name: _made_of(program, name, table) for name in names}
         indeterminate_checks = [
             (doubted[program.indeterminate[n]], k)
@@ -180,7 +182,7 @@ def _mass_properties(
     for link, part in zip(links, along, strict=True):
         length, density = data.mass_properties(link, symbols)
         rest += mass_properties_of(part, length, density.cells)
-    rest += limits(program, method.precision, method.newton, positive[0])
+    rest += program.limits(method.precision, method.newton, positive[0])
     out = ca.densify(column(ca.SX(value) for value in (*positive, *others, *rest)))
     return (
         ca.Function("matter_of", [symbols], [out], {"cse": True}),

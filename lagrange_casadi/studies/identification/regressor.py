@@ -18,11 +18,10 @@ import numpy.typing as npt
 
 from ...base.arrays import Array, Expression
 from ...base.brief import Brief
-from ...base.quantities import Output
+from ...base.quantities import Column, Output
 from ...base.scalars import column
 from ...base.symbolic import Graphs, symbolic
 from ...base.tables import table_of
-from ...engine.checks import Column
 from ...engine.derive import compile_scene
 from ...engine.instants.backends import begun
 from ...engine.instants.evaluation_method import EvaluationMethod

@@ -18,10 +18,9 @@ import casadi as ca
 import numpy as np
 
 from ...base.arrays import Array, Expression
-from ...base.quantities import Output
+from ...base.quantities import Column, Output
 from ...base.symbolic import symbolic, symbolic_property
 from ...base.tables import table_of
-from ...engine.checks import Column
 from ...engine.program import Program
 from ...engine.reciprocals import differentiable
 from ...engine.section_function import Place

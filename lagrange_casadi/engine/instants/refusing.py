@@ -6,33 +6,29 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from ...base.arrays import Array
 from ...base.compensated import DTYPES
+from ...base.interpret import interpret, numpy_arithmetic
 from ...base.status import Status
 from ...base.vocabulary import Precision
 from ...errors import AssemblyError, DeclarationError
-from ...model.ends import BEYOND, share_beyond, words_beyond
+from ...model.ends import BEYOND
 from ..codegen.stages import plain
 from ..iteration import LARGEST_STEP
 from ..kinematics import where
 from ..model_data import ModelData
 from ..program import Program
-from ..status import Bound, Rule
+from ..verdicts import Instance
 from .backends import Evaluated, Interpreter
 from .dead_centres import Placed, dead_steps
 from .evaluation_method import EvaluationMethod
-from .rules import first_broken, limits
 
-_JAM = (
-    "friction has no unique solution there (jamming); reduce mu, lengthen the guide, or push"
-    " closer to its axis"
-)
 _TRIALS, _WIDE = 100, 0.1
 _SAMPLED = 4001
 
@@ -82,15 +78,12 @@ def refusal(
 ) -> Refusal | None:
     """Reason why the first instant without a result has none; None if all have one."""
     precision = evaluated.stages.precision
-    shares = zip(
-        program.bounds, limits(program, precision, method.newton, program.extent(p)), strict=True
-    )
-    most = [math.inf if bound.kind.startswith("OPEN") else limit for bound, limit in shares]
+    most = program.limits(precision, method.newton, program.extent(p))
     near = _beside(program, evaluated, most, t, p)
     numbers = first_broken(program, evaluated.out, most, near, evaluated.status)
     if not numbers.any() and not (evaluated.status == Status.NOT_FINITE).any():
         return None
-    statuses = np.array([Status.OK, *(rule.status for rule in program.rules)])[numbers]
+    statuses = np.array([Status.OK, *(rule.status for rule, _ in program.rules)])[numbers]
     finite = (evaluated.status != Status.NOT_FINITE) | (statuses == Status.AT_REST)
     bad = ~(finite & ((statuses == Status.OK) | (statuses == Status.AT_REST)))
     if not bad.any():
@@ -102,26 +95,71 @@ def refusal(
         (name, coordinates[name], value) for name, value in zip(program.driven, driven, strict=True)
     )
     at = f"at t = {t[i]:.6g} s{at}"
-    status = Status(int(statuses[i]))
+    status, out = Status(int(statuses[i])), evaluated.out[:, i]
     if status in (Status.OK, Status.AT_REST):
-        refused = Refusal(Status.NOT_FINITE, _not_finite(program, evaluated.out[:, i], at))
+        status, words = Status.NOT_FINITE, _not_finite(program, out, at)
     else:
-        loops = functools.partial(
-            _unclosed_loops, program, evaluated.iterated[:, i], float(t[i]), p
+        loops = (
+            _unclosed_loops(program, evaluated.iterated[:, i], float(t[i]), p)
+            if status == Status.NOT_CONVERGED
+            else ""
         )
-        refused = Refusal(
-            status,
-            _Broken(program, program.rules[numbers[i] - 1], evaluated.out[:, i], most, at).words(
-                loops
-            ),
+        words = words_of(program, int(numbers[i]), out, most, at, loops)
+    return Refusal(status, _beyond(program, p, precision, at) or words)
+
+
+def words_of(
+    program: Program, number: int, out: Array, most: Sequence[float], at: str, loops: str = ""
+) -> str:
+    """Message for the rule of a number, broken by columns ``out`` (columns,) ``at`` some instant;
+    ``loops`` are those that iteration did not close, if they are known.
+    """
+    rule, k = program.rules[number - 1]
+    if k is None:
+        assert program.newton is not None
+        it = Instance("", loops or program.newton.joints, at, math.nan, math.nan)
+    else:
+        part, column = str(program.bounds[k].part), program.bounds[k].column
+        it = Instance(part, program.data.closing(part), at, float(out[column]), most[k])
+    return rule.words.format(it=it)
+
+
+def first_broken(
+    program: Program,
+    out: Array,
+    most: Sequence[float],
+    beside: Array,
+    status: npt.NDArray[np.generic],
+) -> npt.NDArray[np.intp]:
+    """The number of the first rule that each instant of columns ``out`` (columns, t) breaks (t,),
+    or zero.
+
+    ``most`` are the limits, ``beside`` (bounds, t) the values beside checks, ``status`` (t,) that
+    of iterated loops.
+    """
+    checks, shares = [out[bound.column] for bound in program.bounds], [*map(np.float64, most)]
+
+    def numbers(
+        checks: Iterable[Array], beside: Iterable[Array], status: Array
+    ) -> npt.NDArray[np.intp]:
+        given = [[np.asarray(row, float) for row in checks], shares, [*beside], [status]]
+        (found,) = interpret(program.status, given, numpy_arithmetic())
+        return np.broadcast_to(found[0], status.shape).astype(np.intp)
+
+    if not status.any():
+        # A rule is kept within an interval: if the least and the largest keep it, all do.
+        few, near = (
+            [np.array([row.min(), row.max()]) for row in rows] for rows in (checks, [*beside])
         )
-    return replace(refused, message=_beyond(program, p, precision, at) or refused.message)
+        if not (np.isnan([*few, *near]).any() or numbers(few, near, np.zeros(2)).any()):
+            return np.zeros(status.shape, np.intp)
+    return numbers(checks, beside, status.astype(float))
 
 
 def _beside(
     program: Program, evaluated: Evaluated, most: Sequence[float], t: Array, p: Array
 ) -> Array:
-    """Values beside the checks of each instant (bounds, t), for :class:`.Bound`."""
+    """Values beside the checks of each instant (bounds, t), as :data:`.Beside` says."""
     interpreter = Interpreter(program, plain(program))
 
     def place(i: int, x: Array) -> Placed:
@@ -133,10 +171,10 @@ def _beside(
     closed = evaluated.status != Status.NOT_CONVERGED
     found = dead_steps(program, t, evaluated.out, closed, most, p, place)
     for k, bound in enumerate(program.bounds):
-        if bound.kind == "ROW":
+        if bound.beside == "ROW":
             # Where all stands still, what rounding leaves of rates violates nothing.
             found[k] = np.fmax.reduce(evaluated.out[bound.size], initial=0.0)
-        elif bound.kind == "TURNED":
+        elif bound.beside == "TURNED":
             found[k, :-1] = np.diff(evaluated.out[bound.column])
     return found
 
@@ -201,117 +239,3 @@ def _not_finite(program: Program, out: Array, at: str) -> str:
         if not math.isfinite(value)
     )
     return f"'{name}' is not finite {at}: the mechanism is singular there, or its numbers overflow"
-
-
-@dataclass(frozen=True, eq=False)
-class _Broken:
-    """A rule that an instant breaks, whose columns are ``out``; ``at`` says in words when it is."""
-
-    program: Program
-    rule: Rule
-    out: Array
-    most: Sequence[float]
-    at: str
-
-    def words(self, unclosed: Callable[[], str]) -> str:
-        """Message of a refusal; ``unclosed`` names the loops that iteration did not close."""
-        newton, at, k = self.program.newton, self.at, self.rule.bound
-        if k is None:
-            assert newton is not None
-            if self.rule.status == Status.SLOW:
-                cause = "they are near a dead centre, or the instant before is too far off"
-                return f"the loops closed by {newton.joints} converge slowly {at}: {cause}"
-            cause = "their links do not reach, or the instant before is too far off"
-            return f"the loops closed by {unclosed()} did not converge {at}: {cause}"
-        bound = self.program.bounds[k]
-        part, value = str(bound.part), float(self.out[bound.column])
-        if bound.kind in ("CLOSURE", "BRANCH"):
-            return self._loop(bound)
-        if bound.kind == "BEYOND":
-            far = f"by {share_beyond(value):.3g} of that range"
-            what, argument = part.rsplit(": ", 1)
-            return words_beyond(f"the {what}", argument, f" {at}, {far}")
-        if bound.kind == "GAP":
-            what = (
-                f"the solution of the loop closed by {self.program.data.closing(part)} does not"
-                " close it"
-            )
-            return f"{what} {at}: a gap of {abs(value):.3g} m"
-        if bound.kind == "MISFIT":
-            gap = f"a gap of {value:.3g} of the links' length"
-            return (
-                f"the loops closed by {self.program.data.closing(part)} are over-constrained and do"
-                f" not fit {at}: {gap}"
-            )
-        if bound.kind == "TURNED":
-            what = f"the angle of '{part}', on whose number of revolutions a load depends,"
-            if abs(value) <= self.most[k]:
-                return (
-                    f"{what} changes by most of a turn from the instant {at} to the next: take"
-                    " more instants"
-                )
-            swing = (
-                f"is {math.degrees(value):.3g} deg from the middle of its range over the scene's"
-                f" motion {at}"
-            )
-            further = (
-                "its number of revolutions cannot be determined; take defaults and a motion that"
-                " cover its range"
-            )
-            return f"{what} {swing}: {further}"
-        if bound.kind == "JAM":
-            what = "frictions" if ", " in part else "friction"
-            return f"{what} '{part}': the mechanism jams {at}: {_JAM}"
-        if bound.kind == "SLIP":
-            return (
-                f"the law of friction '{part}' has a relative residual of {value:.3g} {at}: it"
-                " nearly jams"
-            )
-        return f"the motion violates the non-holonomic constraint '{part}' by {value:.6g} {at}"
-
-    def _loop(self, bound: Bound) -> str:
-        """Message on a loop, on three turns, or on constraints of drives."""
-        status, at, part = self.rule.status, self.at, bound.part
-        closed = self.program.data.closing(str(part))
-        if status == Status.JUMPED:
-            return (
-                f"the loop closed by {closed} has jumped to another branch {at}: take more instants"
-            )
-        if status == Status.OUT_OF_REACH:
-            return f"the loop closed by {closed} cannot be closed {at}: its links do not reach"
-        passes = status == Status.PASSES_DEAD_CENTRE
-        after = f"after {at.removeprefix('at ')}"
-        if bound.column in self.program.checks("gimbal").values():
-            lock = f"passes gimbal lock {after}" if passes else f"is in gimbal lock {at}"
-            why = (
-                "its third axis becomes parallel to its first; choose axis and second so that"
-                " turn_2 stays away from 90 deg"
-            )
-            return f"joint '{part}' {lock}: {why}"
-        if bound.column in self.program.checks("roll").values():
-            lies = (
-                f"passes through its beside= direction {after}"
-                if passes
-                else f"lies along its beside= direction {at}"
-            )
-            return (
-                f"two-force link '{part}' {lies}, so its y axis is undefined; choose a"
-                " direction that stays across it"
-            )
-        if bound.column in self.program.checks("hold").values():
-            where_to = f"cannot produce the motion {after if passes else at}"
-            return (
-                f"the drives {part} {where_to}: the mechanism can move there while they are at"
-                " rest; drive other joints"
-            )
-        if not passes:
-            limit = self.most[self.program.bounds.index(bound)]
-            band = limit if bound.kind == "BRANCH" else math.sqrt(limit)
-            return (
-                f"the loop closed by {closed} is at a dead centre {at}, within rounding, which is a"
-                f" sine of {band:.2g} of its transmission angle: its forces are indeterminate"
-            )
-        return (
-            f"the loop closed by {closed} passes a dead centre {after}, where it can"
-            " continue on either branch"
-        )
