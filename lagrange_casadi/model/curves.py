@@ -1,15 +1,14 @@
 """Curves given by points: smooth ones, and tables with corners.
 
-Splines are computed in many digits, and each of their numbers is rounded once, so that pieces join.
+Splines come from their second derivatives at the points, by sparse matrices of CasADi's: importing
+SciPy's would take three times as long as CasADi and NumPy together.
 """
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from decimal import Context, Decimal, localcontext
 
 import casadi as ca
 import numpy as np
@@ -24,7 +23,6 @@ from ..errors import DeclarationError, NumberError, shown
 _SAME = 1e-12
 """Largest relative difference of the ends of a periodic curve that is rounding."""
 
-_DIGITS = 40
 _HALVINGS = 50
 
 Cell = tuple[float, float, float, float]
@@ -228,11 +226,12 @@ def curve(
         )
     if periodic:
         to[-1] = to[0]
+    places, values = np.array(at), np.array(to)
     if smoothing:
-        to = _smoothed(at, to, float(smoothing), periodic=periodic)
+        values = _smoothed(places, values, float(smoothing), periodic=periodic)
     origin = (at[0] + at[-1]) / 2 if periodic else 0.0
-    starts, cells = _through(at, to, periodic=periodic, origin=origin)
-    if not all(math.isfinite(number) for cell in cells for number in cell):
+    starts, cells = _through(places, values, periodic=periodic, origin=origin)
+    if not np.isfinite(cells).all():
         raise DeclarationError(
             "curve: the points are so close to each other that the slopes overflow;"
             " expected fewer or more distant points"
@@ -241,7 +240,7 @@ def curve(
 
 
 def _through(
-    x: Sequence[float], y: Sequence[float], *, periodic: bool, origin: float = 0.0
+    x: Array, y: Array, *, periodic: bool, origin: float = 0.0
 ) -> tuple[list[float], list[Cell]]:
     """Starts of the pieces, less an ``origin``, and of each piece c in c0 + c1 u + c2 u^2 + c3 u^3,
     u from its start.
@@ -250,54 +249,59 @@ def _through(
     the first two pieces are one cubic, and the last two. De Boor, *A Practical Guide to Splines*,
     1978, chapter IV.
     """
-    with localcontext(Context(prec=_DIGITS)):
-        at, to = [Decimal(number) for number in x], [Decimal(number) for number in y]
-        h = [b - a for a, b in itertools.pairwise(at)]
-        slopes = [(b - a) / width for a, b, width in zip(to, to[1:], h, strict=False)]
-        bends = _bends_around(h, slopes) if periodic else _bends(h, slopes)
-        cells = [
-            (
-                to[i],
-                slopes[i] - h[i] * (2 * bends[i] + bends[i + 1]) / 6,
-                bends[i] / 2,
-                (bends[i + 1] - bends[i]) / (6 * h[i]),
-            )
-            for i in range(len(h))
-        ]
-        starts = [float(place - Decimal(origin)) for place in at[:-1]]
-        return starts, [(float(a), float(b), float(c), float(d)) for a, b, c, d in cells]
+    with np.errstate(all="ignore"):
+        h = np.diff(x)
+        slopes = np.diff(y) / h
+        bends = _bends(h, slopes, periodic=periodic)
+        first = slopes - h * (2.0 * bends[:-1] + bends[1:]) / 6.0
+        cells = np.column_stack([y[:-1], first, bends[:-1] / 2.0, np.diff(bends) / (6.0 * h)])
+    return (x[:-1] - origin).tolist(), [(a, b, c, d) for a, b, c, d in cells.tolist()]
 
 
-def _smoothed(
-    x: Sequence[float], y: Sequence[float], distance: float, *, periodic: bool
-) -> list[float]:
+def _bends(h: Array, slopes: Array, *, periodic: bool) -> Array:
+    """Second derivatives at all points (n + 1,), for distances ``h`` (n,) and ``slopes`` of chords
+    between them: R M = jumps of slopes, and where the ends are not-a-knot the second differences
+    of M vanish there.
+    """
+    unit = float(h.mean())
+    Q, R = _second(h / unit, periodic=periodic)
+    scale = ca.diag(1.0 / ca.sum2(R))
+    R, jumps = scale @ R, scale @ np.diff(slopes, prepend=slopes[-1:] if periodic else slopes[:0])
+    if not periodic:
+        ends = [Q[k, :] / ca.mmax(ca.fabs(Q[k, :])) for k in (0, -1)]
+        R, jumps = ca.vertcat(ends[0], R, ends[1]), ca.vertcat(0.0, jumps, 0.0)
+    bends = ca.solve(R, jumps, "qr").full().ravel() / unit
+    return np.append(bends, bends[0]) if periodic else bends
+
+
+def _second(h: Array, *, periodic: bool) -> tuple[ca.DM, ca.DM]:
+    """Sparse matrices Q and R of rows at inner points, or at all where ``periodic``, and columns at
+    all points: Q y are jumps of the slopes of chords, and equal to R M for second derivatives M of
+    a spline.
+    """
+    before, after = (np.roll(h, 1), h) if periodic else (h[:-1], h[1:])
+    rows, columns = np.arange(before.size), h.size + (not periodic)
+    places = [(rows + k) % columns for k in ((-1, 0, 1) if periodic else (0, 1, 2))]
+    at = np.tile(rows, 3).tolist(), np.concatenate(places).tolist()
+    each = (1 / before, -1 / before - 1 / after, 1 / after), (before, 2 * (before + after), after)
+    Q, R = (
+        ca.DM.triplet(*at, ca.DM(np.concatenate(weights)), rows.size, columns) for weights in each
+    )
+    return Q, R / 6.0
+
+
+def _smoothed(x: Array, y: Array, distance: float, *, periodic: bool) -> Array:
     """The values at the points of the least bent curve whose distance from the points has the root
     mean square ``distance``.
 
     Reinsch, *Smoothing by spline functions*, Numer. Math. 10, 1967. Raises
     :class:`DeclarationError` for a distance that leaves nothing but a straight line.
     """
-    at, to = np.array(x), np.array(y[:-1] if periodic else y)
-    h = np.diff(at)
+    at, to = (x[:-1], y[:-1]) if periodic else (x, y)
+    h, size = np.diff(x), float(np.ptp(to)) or 1.0
     # Scaled, so that the search for a weight is the same in all units.
-    h, size = h / h.mean(), float(np.ptp(to)) or 1.0
-    rows, columns = (h.size, to.size) if periodic else (h.size - 1, to.size)
-    second: dict[tuple[int, int], float] = {}
-    mass: dict[tuple[int, int], float] = {}
-    for row in range(rows):
-        before, after = (h[row - 1], h[row]) if periodic else (h[row], h[row + 1])
-        places = [(row + k) % columns for k in ((-1, 0, 1) if periodic else (0, 1, 2))]
-        weights = (1 / before, -1 / before - 1 / after, 1 / after)
-        second |= {(row, place): weight for place, weight in zip(places, weights, strict=True)}
-        mass[row, row] = (before + after) / 3
-        beside = {
-            (row, (row + k) % rows): width / 6
-            for k, width in ((-1, before), (1, after))
-            if periodic or 0 <= row + k < rows
-        }
-        mass |= beside
-    Q, R, values = _sparse(second, rows, columns), _sparse(mass, rows, rows), ca.DM(to / size)
-    square, bent = Q @ Q.T, Q @ values
+    Q, R = _second(h / h.mean(), periodic=periodic)
+    R, square, bent = R if periodic else R[:, 1:-1], Q @ Q.T, Q @ (to / size)
     solver = ca.Linsol("smoothing", "ldl", (R + square).sparsity())
 
     def off(weight: float) -> np.ndarray:
@@ -306,7 +310,8 @@ def _smoothed(
             (weight * Q.T @ solver.solve(R + weight * square, bent)).full().ravel() * size
         )
 
-    line = float(np.sqrt(np.mean((to - to.mean()) ** 2))) if periodic else _off_line(at, to)
+    straight = np.polynomial.Polynomial.fit(at, to, 0 if periodic else 1)
+    line = float(np.sqrt(np.mean((to - straight(at)) ** 2)))
     if not distance < line:
         what = "a constant" if periodic else "a straight line"
         raise DeclarationError(
@@ -320,65 +325,4 @@ def _smoothed(
             (low, middle) if np.sqrt(np.mean(off(10.0**middle) ** 2)) > distance else (middle, high)
         )
     found = to - off(10.0**low)
-    return [float(value) for value in ([*found, found[0]] if periodic else found)]
-
-
-def _sparse(entries: dict[tuple[int, int], float], rows: int, columns: int) -> ca.DM:
-    places = list(zip(*entries, strict=True))
-    return ca.DM.triplet(
-        list(places[0]), list(places[1]), ca.DM(list(entries.values())), rows, columns
-    )
-
-
-def _off_line(at: np.ndarray, to: np.ndarray) -> float:
-    line = np.polynomial.Polynomial.fit(at, to, 1)
-    return float(np.sqrt(np.mean((to - line(at)) ** 2)))
-
-
-def _bends(h: list[Decimal], slopes: list[Decimal]) -> list[Decimal]:
-    """Second derivatives at all points, not-a-knot at the ends."""
-    n = len(h) - 1
-    below, diagonal, above = h[:n], [2 * (a + b) for a, b in itertools.pairwise(h)], h[1:]
-    right = [6 * (b - a) for a, b in itertools.pairwise(slopes)]
-    diagonal[0] += h[0] + h[0] * h[0] / h[1]
-    above[0] -= h[0] * h[0] / h[1]
-    diagonal[-1] += h[-1] + h[-1] * h[-1] / h[-2]
-    below[-1] -= h[-1] * h[-1] / h[-2]
-    inner = _tridiagonal(below, diagonal, above, right)
-    first = inner[0] - h[0] / h[1] * (inner[1] - inner[0])
-    last = inner[-1] + h[-1] / h[-2] * (inner[-1] - inner[-2])
-    return [first, *inner, last]
-
-
-def _bends_around(h: list[Decimal], slopes: list[Decimal]) -> list[Decimal]:
-    """Second derivatives at all points of a curve that goes round: by Sherman and Morrison's
-    formula.
-    """
-    n = len(h)
-    below = [h[i - 1] for i in range(n)]
-    diagonal = [2 * (h[i - 1] + h[i]) for i in range(n)]
-    above = h[:]
-    right = [6 * (slopes[i] - slopes[i - 1]) for i in range(n)]
-    corner = h[-1]
-    diagonal[0] -= corner
-    diagonal[-1] -= corner
-    ends = [corner, *[Decimal(0)] * (n - 2), corner]
-    found = _tridiagonal(below, diagonal, above, right)
-    other = _tridiagonal(below, diagonal, above, ends)
-    share = (found[0] + found[-1]) / (1 + other[0] + other[-1])
-    bends = [a - share * b for a, b in zip(found, other, strict=True)]
-    return [*bends, bends[0]]
-
-
-def _tridiagonal(
-    below: list[Decimal], diagonal: list[Decimal], above: list[Decimal], right: list[Decimal]
-) -> list[Decimal]:
-    """Solve for a diagonal that dominates; ``below[0]`` and ``above[-1]`` do not count."""
-    over, found = [above[0] / diagonal[0]], [right[0] / diagonal[0]]
-    for i in range(1, len(diagonal)):
-        pivot = diagonal[i] - below[i] * over[-1]
-        over.append(above[i] / pivot)
-        found.append((right[i] - below[i] * found[-1]) / pivot)
-    for i in reversed(range(len(found) - 1)):
-        found[i] -= over[i] * found[i + 1]
-    return found
+    return np.append(found, found[0]) if periodic else found

@@ -17,6 +17,7 @@ import numpy as np
 
 from ...base.arguments import Numeric, public
 from ...base.arrays import Array, Expression
+from ...base.bernstein import of_powers, slope, value, zeros
 from ...base.csv_rows import headings, read_rows
 from ...errors import DeclarationError, one_line
 from ..curves import Curve, curve
@@ -284,17 +285,10 @@ def _law(what: str, angle: Array, height: Array, smoothing: float) -> Curve:
 
 
 def _least(found: Curve) -> float:
-    """The least value of a curve, at an end of a piece or where its slope is zero within."""
-    cells, starts = np.array(found.cells), np.array(found.starts)
-    c0, c1, c2, c3 = cells.T
-    ends = np.append(starts[1:], starts[0] + found.high - found.low) - starts
-    with np.errstate(divide="ignore", invalid="ignore"):
-        root = np.sqrt(c2**2 - 3.0 * c1 * c3)
-        # The root of c1 + 2 c2 u + 3 c3 u^2 where the slope rises, in the form that loses no
-        # digits.
-        within = np.where(c2 > 0.0, -c1 / (c2 + root), (root - c2) / (3.0 * c3))
-    u = np.where((within > 0.0) & (within < ends), within, 0.0)
-    return float((c0 + u * (c1 + u * (c2 + u * c3))).min())
+    """The least value of a curve, at the start of a piece or where its slope is zero within."""
+    widths = np.diff([*found.starts, found.starts[0] + found.high - found.low])
+    pieces = of_powers(np.array(found.cells).T, np.array([np.zeros(widths.size), widths]))
+    return float(value(pieces, np.pad(zeros(slope(pieces)).places, [(0, 1), (0, 0)])).min())
 
 
 def _direction(vectors: Array) -> Array:
