@@ -13,7 +13,7 @@ import numpy as np
 
 from ..base.arguments import public
 from ..base.arrays import Array
-from ..base.recorded_table import RecordedTable, count_sizes, for_each
+from ..base.csv_table import Table, count_sizes, for_each
 from ..base.units import UNITS, count, number
 from ..errors import DeclarationError, NumberError, PathError, UnknownNameError, one_line
 from .curves import Curve, curve
@@ -235,10 +235,10 @@ def read_motion(
     return found
 
 
-def _table(path: Path) -> RecordedTable:
+def _table(path: Path) -> Table:
     """Read a table's heads, and its units: those that it states, or those of OpenSim."""
     skip, described = _header(path)
-    table = RecordedTable.read(path, "columns of times and values", skip)
+    table = Table.recorded(path, "columns of times and values", skip)
     if not skip:
         return table
     angle = "deg" if described.get("indegrees", "no").lower() == "yes" else "rad"
@@ -247,7 +247,7 @@ def _table(path: Path) -> RecordedTable:
 
 
 def _recordings(
-    table: RecordedTable,
+    table: Table,
     named: Mapping[str, str | int],
     time: str | int,
     unit: str | Mapping[str, str] | None,

@@ -32,7 +32,9 @@ def test_columns_of_a_file_have_units_counts_and_gaps(tmp_path):
     assert 5.0 < given.cutoff("A") < 100.0
     assert given.quantities(["A", "B"]) == ("effort:A",)
     path.write_text("\n".join([lines[0], "0,1,x,3"]))
-    with pytest.raises(DeclarationError, match=r"line 2: expected a finite number, got 'x' in col"):
+    with pytest.raises(
+        DeclarationError, match=r"line 2, column .*: expected a finite number, got 'x'"
+    ):
         read_measurements(path, counts_per_turn=4096)
 
 
@@ -106,10 +108,10 @@ def test_a_unit_of_another_quantity_is_refused(arm_record, tmp_path, column, hea
             lambda rows: [*rows[:3], rows[4], rows[3], *rows[5:]],
             r"run.csv, line 6: times must increase, but 0\.03 follows 0\.04",
         ),
-        (lambda rows: [*rows[:3], "nan,nan,nan,nan", *rows[4:]], "line 5: .* 'nan' in column t"),
+        (lambda rows: [*rows[:3], "nan,nan,nan,nan", *rows[4:]], "line 5, column 't.* got 'nan'"),
         (
             lambda rows: [*rows[:3], "0.03,inf,1,1", *rows[4:]],
-            r"line 5: .* 'inf' in column A \[rad",
+            r"line 5, column 'A \[rad.* got 'inf'",
         ),
         (
             lambda rows: ["0,,,", *rows[1:]],

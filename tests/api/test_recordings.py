@@ -134,13 +134,13 @@ REFUSED = {
     "points": ("t,q", RAMP_ROWS, {"points": 3}, "points: expected a whole number of at least 5"),
     "rows": ("t,q", RAMP_ROWS[: RAMP_ROWS.index("0.4")], {}, "expected at least 5 rows"),
     "back": ("t,q", RAMP_ROWS + "\n0.7,1", {}, "line 10: times must increase, but 0.7 follows 0.7"),
-    "nan": ("t,q", RAMP_ROWS + "\n0.9,nan", {}, "line 10: expected a finite number, got 'nan'"),
+    "nan": ("t,q", RAMP_ROWS + "\n0.9,nan", {}, "line 10, column 'q': expected"),
     **{
         f"head {cell}": (f"0,{cell}", RAMP_ROWS, {}, "line 1: expected a finite number, got")
         for cell in ("nan", "-inf", "1_0", "\u0663", "1.2.3")
     },
     "empty": ("# nothing", "", {}, "it has no rows"),
-    "short": ("t;q", "0;1\n1;2\n# why\n2;", {}, "line 5: expected a finite number, got ''"),
+    "short": ("t;q", "0;1\n1;2\n# why\n2;", {}, "line 5, column 'q': expected"),
 }  # fmt: skip
 
 

@@ -76,7 +76,7 @@ DAMAGES = {
     r"among numbers with decimal (points|commas), as in .*; expected one kind$": (
         lambda row, k, mark: [*row[:k], row[k].replace(mark, ",."[mark == ","]), *row[k + 1 :]]
     ),
-    r"line {}.* must be a positive number|expected a (finite|positive) number": (
+    r"line {}.* expected a (finite|positive) number": (
         lambda row, k, _: [*row[:k], row[k].translate(ARABIC), *row[k + 1 :]]
     ),
 }

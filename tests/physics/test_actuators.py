@@ -116,12 +116,12 @@ def test_where_no_motor_serves_the_nearest_is_named(here):
         (
             [*ROWS, "bad,1,x,3000,2,4000,1e-5"],
             HEADS,
-            r"motors\.csv, line 5: rated_torque must be a positive number, got 'x'",
+            r"motors\.csv, line 5: rated_torque: expected a positive number, got 'x'",
         ),
         (
             [*ROWS, "bad,1,-1,3000,2,4000,1e-5"],
             HEADS,
-            "line 5: rated_torque must be a positive number, got '-1'",
+            "line 5: rated_torque: expected a positive number, got '-1'",
         ),
         (
             [*ROWS, "bad,1,2,3000,2,4000,1e-5"],
@@ -129,11 +129,11 @@ def test_where_no_motor_serves_the_nearest_is_named(here):
             "line 5: expected rated_torque <= stall_torque <= peak_torque",
         ),
         ([*ROWS, "bad,1,2"], HEADS, "line 5: 3 cells, expected 7"),
-        ([*ROWS, ",1,1,3000,2,4000,1e-5"], HEADS, "line 5: a motor without a name"),
+        ([*ROWS, ",1,1,3000,2,4000,1e-5"], HEADS, "line 5: it has no name"),
         (
             ROWS,
             HEADS.replace("inertia", "J"),
-            r"motors\.csv, line 1: it lacks the column 'inertia'; expected name, stall_torque",
+            r"motors\.csv, line 1: expected one column 'inertia' of name, stall_torque",
         ),
         ([*ROWS, ROWS[0]], HEADS, r"motors\.csv, line 5: motor 'small' is listed twice"),
         (
@@ -159,9 +159,9 @@ def test_where_no_motor_serves_the_nearest_is_named(here):
         (
             [f"{row},2" for row in ROWS],
             f"{HEADS},inertia",
-            "line 1: the column 'inertia' is listed twice",
+            "line 1: expected one column 'inertia' of name",
         ),
-        ([], HEADS, "expected at least one motor below the heads"),
+        ([], HEADS, "expected a line for every motor below this head"),
     ],
 )
 def test_a_bad_line_of_a_catalogue_is_told(here, rows, heads, says):

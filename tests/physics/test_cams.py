@@ -343,7 +343,7 @@ def test_what_is_no_profile_is_told(kind, points, says):
         (
             "x,z\n1,2\n",
             DeclarationError,
-            r"p\.csv, line 1: expected one column 'y', as in x \[mm\], got x, z",
+            r"p\.csv, line 1: expected one column 'y' of x, y, got x, z",
         ),
         (
             "x [in],y\n1,2\n",
@@ -353,12 +353,12 @@ def test_what_is_no_profile_is_told(kind, points, says):
         (
             "# cam\nx,y\n1,2\n1,\n",
             DeclarationError,
-            r"p\.csv, line 4: expected a finite number for y, got ''",
+            r"p\.csv, line 4, column 'y': expected a finite number, got ''",
         ),
         (
             "x,y\n1,two\n",
             DeclarationError,
-            r"p\.csv, line 2: expected a finite number for y, got 'two'",
+            r"p\.csv, line 2, column 'y': expected a finite number, got 'two'",
         ),
         (None, PathError, r"p\.csv: no such file"),
     ],

@@ -202,8 +202,8 @@ def test_a_table_of_ones_own_bearings(tmp_path):
     assert own.source == str(path)
     assert own.rolling(100.0).dynamic == 14.8e3
     for text, told in (
-        ("name,bore [mm]\n", r"expected one column 'outer \[mm\]'"),
-        (path.read_text().replace("14,8", "-1"), r"line 3: dynamic \[kN\]: expected a positive"),
+        ("name,bore [mm]\n", r"expected one column 'outer' of name, bore"),
+        (path.read_text().replace("14,8", "-1"), r"line 3: dynamic: expected a positive"),
     ):
         path.write_text(text)
         with pytest.raises(DeclarationError, match=told):

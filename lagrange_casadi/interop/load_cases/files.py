@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ...base.arguments import public
-from ...base.csv_rows import csv_text
+from ...base.csv_table import csv_text
 from ...base.publish import filling
 from ...base.vocabulary import LOAD_FORMATS
 from ...errors import DeclarationError, UnknownNameError, shown

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...base.arguments import Index, public
 from ...base.arrays import Array
-from ...base.csv_rows import csv_text
+from ...base.csv_table import csv_text
 from ...base.publish import writing
 from ...errors import DeclarationError, UnknownNameError
 from ...results.solution import Solution

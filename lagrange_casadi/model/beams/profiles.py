@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ...base.arguments import public
-from ...base.csv_rows import Row, headings, read_rows
+from ...base.csv_table import Table
 from ...errors import DeclarationError
 from .shape import Shape, dimensions_of
 
@@ -87,32 +87,24 @@ def read_profiles(path: str | os.PathLike[str]) -> tuple[Profile, ...]:
     if table:
         path = _TABLES / f"{table}.csv"
     tables = f"tables: {', '.join(STANDARD)}"
-    rows = read_rows(path, "a head and a line for every profile", names=tables)
-    head = next(rows)
-    sizes = {name: _size_of(head.where, name, unit) for name, unit in headings(head.cells)}
-    names = [name for name, _ in headings(head.cells)]
+    read = Table.read(path, "a head and a line for every profile", others=tables)
+    names = read.names
     if names.count("name") != 1 or len(set(names)) < len(names) or len(names) < 2:
         raise DeclarationError(
-            f"{head.where}: expected a column 'name' and one for each dimension, got"
+            f"{read.head.where}: expected a column 'name' and one for each dimension, got"
             f" {', '.join(names)}"
         )
-    found: dict[str, Profile] = {}
-    for row in rows:
-        cells = dict(zip(names, row.cells, strict=True))
-        name = cells.pop("name")
-        if not name.isprintable() or not name or name in found:
-            raise DeclarationError(
-                f"{row.where}: "
-                + (f"profile '{name}' is listed twice" if name in found else "it has no name")
-            )
-        found[name] = Profile(
-            name,
-            {key: _size(row, key, text, sizes[key]) for key, text in cells.items()},
-            table,
+    sizes = {
+        name: _size_of(read.head.where, name, unit)
+        for name, unit in zip(names, read.units, strict=True)
+        if name != "name"
+    }
+    return tuple(
+        Profile(
+            name, {key: row.positive(key, cells[key], size) for key, size in sizes.items()}, table
         )
-    if not found:
-        raise DeclarationError(f"{head.where}: expected a line for every profile below this head")
-    return tuple(found.values())
+        for row, name, cells in read.named("profile")
+    )
 
 
 def _size_of(place: str, name: str, unit: str) -> int:
@@ -124,10 +116,3 @@ def _size_of(place: str, name: str, unit: str) -> int:
             " [mm]"
         )
     return _UNITS[unit]
-
-
-def _size(row: Row, key: str, text: str, unit: int) -> float:
-    value = row.number(text, unit)
-    if not value > 0.0:
-        raise DeclarationError(f"{row.where}: {key}: expected a positive number, got '{text}'")
-    return value

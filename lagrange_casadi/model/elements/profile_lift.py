@@ -18,7 +18,7 @@ import numpy as np
 from ...base.arguments import Numeric, public
 from ...base.arrays import Array, Expression
 from ...base.bernstein import of_powers, slope, value, zeros
-from ...base.csv_rows import headings, read_rows
+from ...base.csv_table import Table
 from ...errors import DeclarationError, one_line
 from ..curves import Curve, curve
 from ..joints import Joint
@@ -26,7 +26,7 @@ from ..mechanism import Mechanism
 from ..parts import Point
 from .cam import layout_of
 
-_UNITS = {"m": 1, "mm": 1000, "um": 1_000_000}
+_UNITS = {"": 1, "m": 1, "mm": 1000, "um": 1_000_000}
 _LEAST = 16
 
 
@@ -69,32 +69,13 @@ def read_profile(path: str | os.PathLike[str]) -> Array:
     DeclarationError
         For missing columns, and for a line without numbers in them.
     """
-    rows = read_rows(path, "the columns x and y")
-    first = next(rows)
-    names, units = zip(*headings(first.cells), strict=True)
-    places = []
-    for column in "xy":
-        if names.count(column) != 1:
-            raise DeclarationError(
-                f"{first.where}: expected one column '{column}', as in x [mm], got"
-                f" {', '.join(first.cells)}"
-            )
-        unit = units[names.index(column)] or "m"
-        if unit not in _UNITS:
-            raise DeclarationError(
-                f"{first.where}: column '{column}' cannot be in '{unit}'; valid:"
-                f" {', '.join(_UNITS)}"
-            )
-        places.append((names.index(column), _UNITS[unit]))
-    points = []
-    for row in rows:
-        points.append([row.number(row.cells[place], unit) for place, unit in places])
-        for column, (place, _), number in zip("xy", places, points[-1], strict=True):
-            if math.isnan(number):
-                raise DeclarationError(
-                    f"{row.where}: expected a finite number for {column}, got {row.cells[place]!r}"
-                )
-    return np.array(points).reshape(-1, 2)
+    table = Table.read(path, "the columns x and y")
+    sizes = table.sizes({"x": _UNITS, "y": _UNITS})
+    points = [
+        [row.finite(name, cells[name], size) for name, size in sizes.items()]
+        for row, cells in table.entries("point")
+    ]
+    return np.array(points)
 
 
 @public

@@ -13,12 +13,13 @@ import math
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
+from decimal import Decimal
 
 import numpy as np
 
 from ...base.arguments import NotNegative, Positive, public
 from ...base.brief import Brief
-from ...base.csv_rows import read_rows
+from ...base.csv_table import Per, Table
 from ...base.units import count as whole
 from ...errors import DeclarationError, NoDesignError
 from ...model.fitted import Rolling
@@ -51,6 +52,18 @@ _F0 = (
     11.6,
 )
 """Factor f0 of ISO 76 for ball over pitch diameters 0, 0.01, ..., 0.3."""
+
+_MM: dict[str, Per] = {"mm": 1000}
+_KN: dict[str, Per] = {"kN": Decimal("0.001")}
+_COLUMNS: dict[str, dict[str, Per]] = {
+    "name": {"": 1},
+    "bore": _MM,
+    "outer": _MM,
+    "width": _MM,
+    "dynamic": _KN,
+    "static": _KN,
+}
+"""Columns of a table, and their units."""
 
 _LEADING = 0.41 * 98.0665 * 0.95
 """The constant of f_c in ISO/TR 1281-1 [N], with the reduction 0.95 for radial contact grooves."""
@@ -199,29 +212,16 @@ def read_bearings(path: str | os.PathLike[str]) -> tuple[RollingBearing, ...]:
     DeclarationError
         For a column that is missing or a cell that is not valid, with the number of its line.
     """
-    needed = ("name", "bore [mm]", "outer [mm]", "width [mm]", "dynamic [kN]", "static [kN]")
-    rows = read_rows(path, f"the columns {', '.join(needed)}")
-    head = next(rows)
-    if missing := [column for column in needed if head.cells.count(column) != 1]:
-        raise DeclarationError(
-            f"{head.where}: expected one column '{missing[0]}' of {', '.join(needed)}"
-        )
+    table = Table.read(path, "the columns name, bore, outer, width [mm], dynamic, static [kN]")
+    sizes = table.sizes(_COLUMNS)
     found = []
-    for row in rows:
-        cells = dict(zip(head.cells, row.cells, strict=True))
-        sizes = [
-            row.number(cells[name], 1000) * (1.0 if "mm" in name else 1e6) for name in needed[1:]
-        ]
-        for name, size in zip(needed[1:], sizes, strict=True):
-            if not size > 0.0:
-                raise DeclarationError(
-                    f"{row.where}: {name}: expected a positive number, got '{cells[name]}'"
-                )
-        bore, outer, width, dynamic, static = sizes
+    for row, cells in table.entries("bearing"):
+        bore, outer, width, dynamic, static = (
+            row.positive(name, cells[name], sizes[name])
+            for name in ("bore", "outer", "width", "dynamic", "static")
+        )
         source = cells.get("source", str(path))
         found.append(RollingBearing(cells["name"], bore, outer, width, dynamic, static, source))
-    if not found:
-        raise DeclarationError(f"{head.where}: expected a line for every bearing below this head")
     return tuple(found)
 
 

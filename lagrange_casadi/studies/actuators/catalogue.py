@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 import os
+from collections.abc import Mapping
 from pathlib import Path
 
 from ...base.arguments import public
-from ...base.csv_rows import Row, headings, read_rows
+from ...base.csv_table import Row, Table
 from ...errors import DeclarationError
 from .classes import CLASSES
 from .motor import Motor
@@ -61,67 +62,46 @@ def read_motors(path: str | os.PathLike[str]) -> list[Motor]:
     if str(path) in CLASSES and not Path(path).exists():
         return CLASSES[str(path)].motors(str(path))
     classes = f"classes: {', '.join(CLASSES)}"
-    rows = read_rows(path, f"the columns name, {', '.join(_ROTARY)}", names=classes)
-    head = next(rows)
-    names = [name for name, _ in headings(head.cells)]
-    linear = any(name in names for name in ("stall_force", "rated_force", "peak_force"))
+    table = Table.read(path, f"the columns name, {', '.join(_ROTARY)}", others=classes)
+    linear = not {"stall_force", "rated_force", "peak_force"}.isdisjoint(table.names)
     needed, knee = (_LINEAR if linear else _ROTARY), _KNEE[linear]
-    if missing := [column for column in ("name", *needed) if column not in names]:
+    if sum(column in table.names for column in knee) == 1:
         raise DeclarationError(
-            f"{head.where}: it lacks the column '{missing[0]}'; expected name, {', '.join(needed)}"
+            f"{table.head.where}: expected both columns {' and '.join(knee)}, or none"
         )
-    if sum(column in names for column in knee) == 1:
-        raise DeclarationError(f"{head.where}: expected both columns {' and '.join(knee)}, or none")
-    if twice := [column for column in ("name", *needed, *knee, _LASTS) if names.count(column) > 1]:
-        raise DeclarationError(f"{head.where}: the column '{twice[0]}' is listed twice")
-    units = {
-        column: _unit(head, column, unit, linear)
-        for column, unit in headings(head.cells)
-        if column in (*needed, *knee, _LASTS)
-    }
-    motors: dict[str, Motor] = {}
-    for row in rows:
-        motor = _motor(row, names, units, needed, knee, linear)
-        if motor.name in motors:
-            raise DeclarationError(f"{row.where}: motor '{motor.name}' is listed twice")
-        motors[motor.name] = motor
-    if not motors:
-        raise DeclarationError(f"{head.where}: expected at least one motor below the heads")
-    return list(motors.values())
+    units = table.sizes(
+        {"name": {"": 1.0}, **{column: _units(column, linear) for column in needed}},
+        {column: _units(column, linear) for column in (*knee, _LASTS)},
+    )
+    del units["name"]
+    return [
+        _motor(row, name, cells, units, needed, knee, linear)
+        for row, name, cells in table.named("motor")
+    ]
 
 
-def _unit(head: Row, column: str, unit: str, linear: bool) -> float:
-    """SI unit of a column."""
+def _units(column: str, linear: bool) -> dict[str, float]:
+    """Units that a column may have, and their sizes."""
     kind = column.rpartition("_")[2]
     units = _UNITS[("sliding" if linear else "turning") if kind == "speed" else kind]
-    if unit and unit not in units:
-        raise DeclarationError(
-            f"{head.where}: column '{column}' cannot be in '{unit}'; valid: {', '.join(units)}"
-        )
-    return units[unit] if unit else next(iter(units.values()))
+    return {"": next(iter(units.values())), **units}
 
 
 def _motor(
     row: Row,
-    names: list[str],
+    name: str,
+    cells: Mapping[str, str],
     units: dict[str, float],
     needed: tuple[str, ...],
     knee: tuple[str, str],
     linear: bool,
 ) -> Motor:
-    cells = dict(zip(names, row.cells, strict=True))
-    if not cells["name"]:
-        raise DeclarationError(f"{row.where}: a motor without a name")
-    numbers: dict[str, float] = {}
-    for column, unit in units.items():
-        if column not in needed and not cells[column]:
-            continue
-        number = row.number(cells[column])
-        if not number >= 0.0 or (number == 0.0 and column not in (needed[-1], *knee)):
-            raise DeclarationError(
-                f"{row.where}: {column} must be a positive number, got {cells[column]!r}"
-            )
-        numbers[column] = number * unit
+    zeros = (needed[-1], *knee)
+    numbers = {
+        column: unit * row.positive(column, cells[column], zero=column in zeros)
+        for column, unit in units.items()
+        if column in needed or cells[column]
+    }
     stall, rated, rated_speed, peak, most, inertia = (numbers[column] for column in needed)
     if rated > stall or stall > peak or rated_speed > most:
         relation = f"{needed[1]} <= {needed[0]} <= {needed[3]}"
@@ -134,4 +114,4 @@ def _motor(
         )
     limits = numbers.get(knee[0]), numbers.get(knee[1]), numbers.get(_LASTS, math.inf)
     main = stall, rated, rated_speed, peak, most, inertia
-    return Motor(cells["name"], *main, *limits, linear=linear)
+    return Motor(name, *main, *limits, linear=linear)

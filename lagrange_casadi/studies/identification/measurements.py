@@ -15,7 +15,7 @@ import numpy.typing as npt
 from ...base.arguments import NotNegative, Positive, public
 from ...base.arrays import Array
 from ...base.brief import Brief
-from ...base.recorded_table import MEASURED, SIZES, RecordedTable, count_sizes
+from ...base.csv_table import MEASURED, SIZES, Table, count_sizes
 from ...base.units import UNITS
 from ...errors import DeclarationError, UnknownNameError
 from ...model.curves import curve, derivatives
@@ -281,8 +281,8 @@ def read_measurements(
         counts.
     """
     path = Path(path)
-    table = RecordedTable.read(path, "columns of times, motion and forces")
-    if not table.heads:
+    table = Table.recorded(path, "columns of times, motion and forces")
+    if not table.names:
         raise DeclarationError(
             f"{path.name}: expected names of columns in the first line, as 't [s]', got numbers"
         )

@@ -12,7 +12,7 @@ from collections.abc import Collection, Sequence
 import numpy as np
 
 from ...base.arguments import public
-from ...base.csv_rows import Row, headings, read_rows
+from ...base.csv_table import Row, Table
 from ...base.units import typed
 from ...errors import DeclarationError
 from .axes import Listed, check_known, not_parameter
@@ -46,19 +46,18 @@ def read_designs(path: str | os.PathLike[str], parameters: Collection[str] | Non
     DeclarationError
         For a wrong name or cell, with its line and column.
     """
-    rows = read_rows(path, "a first line of parameters' names")
-    head = next(rows)
-    names, in_head = zip(*headings(head.cells), strict=True)
+    table = Table.read(path, "a first line of parameters' names")
+    head, names = table.head, table.names
     _check_head(head, names)
     if parameters is not None:
         check_known(names, parameters, head.where)
     values, lines, units = array("d"), array("q"), dict[str, str]()
-    for row in rows:
-        for name, column_unit, cell in zip(names, in_head, row.cells, strict=True):
+    for row in table.rows:
+        for name, column_unit, cell in zip(names, table.units, row.cells, strict=True):
             value, unit = typed(row.pointed(cell))
             if column_unit and not unit:
                 value, unit = typed(f"{value} {column_unit}")
-            values.append(value if unit else _number(row, name, cell))
+            values.append(value if unit else row.finite(name, cell))
             unit = unit or column_unit
             if unit and units.setdefault(name, unit) != unit:
                 raise DeclarationError(
@@ -85,12 +84,3 @@ def _check_head(head: Row, names: Sequence[str]) -> None:
             raise DeclarationError(f"{place}: {not_parameter(name)}")
         if names.index(name) != column - 1:
             raise DeclarationError(f"{place}: '{name}' is already column {names.index(name) + 1}")
-
-
-def _number(row: Row, name: str, cell: str) -> float:
-    value = row.number(cell)
-    if math.isnan(value):
-        raise DeclarationError(
-            f"{row.where}, column '{name}': expected a finite number, got '{cell}'"
-        )
-    return value
