@@ -21,7 +21,6 @@ from numpy.polynomial import chebyshev
 from ...base.arguments import Numeric, public
 from ...base.arrays import Array
 from ...base.bernstein import interpolation, product, zeros
-from ...base.interpolation import interpolation as chebyshev_nodes
 from ...errors import DeclarationError, UnknownNameError
 from ...model.end_conditions import ends_of
 from ..sizes import largest
@@ -167,7 +166,8 @@ class Deflection:
         the names of section forces.
         """
         member = self.member
-        x, weights = chebyshev_nodes(member.strain_degree)
+        x = chebyshev.chebpts1(member.strain_degree + 1)
+        weights = np.linalg.inv(chebyshev.chebvander(x, member.strain_degree)).T
         low, width = member.edges[:, :-1, None], np.diff(member.edges, axis=1)[:, :, None]
         u = (low + width * (x + 1.0) / 2.0).reshape(member.t.size, -1)
         strains = self.compliance.strains(member.at(u), member.index_at(u), u).reshape(
