@@ -98,7 +98,8 @@ class Comparison:
         for i in self._some(_CLOSED_AT):
             self._closes(i, path)
         for i in self._some(_INSTANTS):
-            if self.solution.t[i] <= path.end:
+            # An instant that is asked for by a drive's coordinate is exact to some roundings.
+            if self.solution.t[i] - path.end <= 64 * ROUNDING * max(1.0, abs(path.end)):
                 self._compare(i, path)
         self._weigh()
         self._look_at_peaks(peaks, path)
