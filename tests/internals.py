@@ -22,7 +22,6 @@ from lagrange_casadi.engine.instants.evaluation_method import EvaluationMethod, 
 from lagrange_casadi.engine.instants.refusing import refusal as refusal_refusal
 from lagrange_casadi.interop.formats import case_of
 from lagrange_casadi.model import laws
-from lagrange_casadi.model.declared import Declared
 from lagrange_casadi.model.even_points import points
 from lagrange_casadi.model.kinks import Smooth
 from lagrange_casadi.model.scene import Wanted

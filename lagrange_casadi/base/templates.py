@@ -7,9 +7,9 @@ A text names only dataclasses that its reader lists, so reading one calls nothin
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass
-from typing import Any
+from typing import Any, Generic, TypeVar, cast
 
 import casadi as ca
 import numpy as np
@@ -17,6 +17,9 @@ import numpy as np
 from .arrays import Array, Expression, Json
 from .scalars import column
 from .symbolic import Graphs, symbolic
+
+Tree = TypeVar("Tree")
+Part = TypeVar("Part")
 
 
 def mapped(tree: Any, leaf: Callable[[Any], object]) -> Any:
@@ -26,27 +29,38 @@ def mapped(tree: Any, leaf: Callable[[Any], object]) -> Any:
         return {key: mapped(part, leaf) for key, part in tree.items()}
     if kind is tuple or kind is list:
         return kind([mapped(part, leaf) for part in tree])
-    if hasattr(kind, "__dataclass_fields__"):
-        return kind(*[mapped(getattr(tree, name), leaf) for name in kind.__dataclass_fields__])
+    if is_dataclass(kind):
+        return _again(kind, [mapped(part, leaf) for part in _parts(tree)])
     return leaf(tree)
 
 
-class Place(int):
+def _parts(tree: Any) -> list[Any]:
+    return [getattr(tree, entry.name) for entry in fields(tree)]
+
+
+def _again(kind: type[Any], parts: Iterable[object]) -> object:
+    """Make a dataclass of parts that were checked when the first of the kind was made."""
+    made = object.__new__(kind)
+    vars(made).update(zip((entry.name for entry in fields(kind)), parts, strict=True))
+    return made
+
+
+class Leaf(int):
     """The number of an expression of a tree among all of them."""
 
 
 @dataclass(frozen=True, eq=False)
-class Template(Graphs):
-    """A tree for any parameters: ``content`` has a :class:`Place` for each expression, and
+class Template(Graphs, Generic[Tree]):
+    """A tree for any parameters: ``content`` has a :class:`Leaf` for each expression, and
     ``numbers(p)`` is a column of all expressions.
     """
 
-    content: Any
+    content: Tree
     numbers: ca.Function
 
     @classmethod
     @symbolic
-    def of(cls, tree: object, symbols: ca.SX) -> Template:
+    def of(cls, tree: Tree, symbols: ca.SX) -> Template[Tree]:
         """Make the template of a tree with expressions of the ``symbols`` of parameters."""
         found: list[ca.SX] = []
 
@@ -54,22 +68,26 @@ class Template(Graphs):
             if not isinstance(leaf, ca.SX):
                 return leaf
             found.append(leaf)
-            return Place(len(found) - 1)
+            return Leaf(len(found) - 1)
 
         content, numbers = mapped(tree, place), ca.densify(column(found))
         return cls(content, ca.Function("numbers", [symbols], [numbers], ["p"], ["numbers"]))
 
-    def at(self, p: Sequence[float] | Array) -> Any:
+    def at(self, p: Sequence[float] | Array) -> Tree:
         """Return the tree of numbers for parameters ``p``."""
         numbers = self.numbers(np.asarray(p, float)).full().ravel().tolist()
-        return mapped(self.content, lambda leaf: numbers[leaf] if type(leaf) is Place else leaf)
+        return _filled(self.content, numbers)
 
-    def placed(self, content: Any, p: Expression) -> Any:
+    def placed(self, content: Part, p: Expression) -> Part:
         """Return a part of the content with expressions of parameters ``p``, and with numbers for
         constant ones.
         """
         numbers = [float(x) if x.is_constant() else x for x in ca.vertsplit(ca.SX(self.numbers(p)))]
-        return mapped(content, lambda leaf: numbers[leaf] if type(leaf) is Place else leaf)
+        return _filled(content, numbers)
+
+
+def _filled(tree: Part, numbers: Sequence[Expression]) -> Part:
+    return cast(Part, mapped(tree, lambda leaf: numbers[leaf] if type(leaf) is Leaf else leaf))
 
 
 _READ: dict[str, Callable[[Any], object]] = {
@@ -106,7 +124,10 @@ def loads(text: str, kinds: tuple[type[Any], ...]) -> Any:
 
     def read(written: dict[str, Any]) -> object:
         ((name, content),) = written.items()
-        return known[name](*content) if name in known else _READ[name](content)
+        if name not in known:
+            return _READ[name](content)
+        kind = known[name]
+        return _again(kind, content) if is_dataclass(kind) else kind(*content)
 
     return json.loads(text, object_hook=read)
 
@@ -126,5 +147,5 @@ def _plain(tree: Any, leaf: Callable[[object], Json]) -> Json:
     if isinstance(tree, Mapping):
         return {"mapping": [[_plain(part, leaf) for part in item] for item in tree.items()]}
     if is_dataclass(tree) and not isinstance(tree, type):
-        return {kind.__name__: [_plain(getattr(tree, e.name), leaf) for e in fields(tree)]}
+        return {kind.__name__: [_plain(part, leaf) for part in _parts(tree)]}
     return leaf(tree)

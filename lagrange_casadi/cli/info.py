@@ -11,7 +11,7 @@ import click
 from ..engine.derive import compile_scene
 from ..engine.model_data import template
 from ..engine.scene_lines import scene_lines
-from ..model.description import Description, coordinates_of
+from ..model.description import Description, JointNumbers
 from ..model.scene import Scene, kinds
 from ..results.solution import Solution
 from ..results.store import runs as store
@@ -20,7 +20,7 @@ from ..studies.sweep import Sweep, is_sweep
 from ..studies.sweep.axes import counted
 from ..studies.sweep.checking import progress, unfinished
 from ..studies.sweep.meanings import in_words
-from ..studies.sweep.plan import Identity
+from ..studies.sweep.plan import Identity, described_in
 from .echo import echo
 from .options import HDF5
 from .report import Rows, asked_line
@@ -84,15 +84,12 @@ def _describe_file(solution: Solution) -> None:
 
 
 def _describe_sweep(identity: Identity) -> None:
-    _describe_mechanism(identity["mechanism"])
+    described = described_in(identity)
+    _describe_mechanism(described)
     for name, words in identity["grid"].items():
         echo(f"swept {name}: {words}")
     asked, xi = identity["t"][:4], identity["xi"]
-    echo(
-        asked_line(
-            asked, len(asked) > 3 and coordinates_of(identity["mechanism"])[asked[3]] == "slide"
-        )
-    )
+    echo(asked_line(asked, len(asked) > 3 and described.coordinates[asked[3]] == "slide"))
     if xi:
         echo(f"xi/l: {xi[0]:g} to {xi[1]:g}, {xi[2]} points")
     made = (identity["backend"], identity["precision"], identity["compiler"], identity["flags"])
@@ -119,74 +116,67 @@ def _describe_whole(sweep: Sweep) -> None:
 
 
 def _describe_mechanism(description: Description) -> None:
-    echo(f"mechanism: {description['name']}")
-    for name, p in description["parameters"].items():
+    echo(f"mechanism: {description.name}")
+    for name, p in description.parameters.items():
         limits = (
-            ""
-            if math.isinf(p["low"]) and math.isinf(p["high"])
-            else f" (range {p['low']:g} to {p['high']:g})"
+            "" if math.isinf(p.low) and math.isinf(p.high) else f" (range {p.low:g} to {p.high:g})"
         )
-        echo(f"  parameter {name} = {p['value']:g} {p['unit']}{limits}")
-    for name, body in description["bodies"].items():
-        size = "point mass" if body["length"] is None else f"link of {body['length']:g} m,"
-        thick = ", slices with rotary inertia" if "slices" in body.get("density", {}) else ""
-        echo(f"  {size} {name}: {body['mass']:g} kg{thick}")
-    for name, joint in description["joints"].items():
-        points = [[p[k] for k in "xyz" if k in p] for p in (joint["parent"], joint["child"])]
-        ends = " - ".join(
-            f"{p['body']} {_vector(at)}"
-            for p, at in zip((joint["parent"], joint["child"]), points, strict=True)
-        )
-        moves = _in_space(joint, description) if "coordinates" in joint else _in_plane(joint)
-        echo(f"  {joint['kind']} joint {name}: {ends}{moves}")
-    echo(f"  gravity: {_vector(description['gravity'])} m/s^2")
-    if description.get("bars"):
-        echo(f"  two-force links, whose spin has no effect: {', '.join(description['bars'])}")
+        echo(f"  parameter {name} = {p.value:g} {p.unit}{limits}")
+    for name, body in description.bodies.items():
+        size = "point mass" if body.length is None else f"link of {body.length:g} m,"
+        thick = ", slices with rotary inertia" if body.slices else ""
+        echo(f"  {size} {name}: {body.mass:g} kg{thick}")
+    for name, joint in description.joints.items():
+        ends = " - ".join(f"{p.body} {_vector(description.components(p.at))}" for p in joint.ends)
+        moves = (_in_space if description.space else _in_plane)(joint, description)
+        echo(f"  {joint.kind} joint {name}: {ends}{moves}")
+    echo(f"  gravity: {_vector(description.components(description.gravity))} m/s^2")
+    if description.bars:
+        echo(f"  two-force links, whose spin has no effect: {', '.join(description.bars)}")
 
 
-def _in_plane(joint: Description) -> str:
+def _in_plane(joint: JointNumbers, description: Description) -> str:
     """Describe a joint of a plane."""
     along = (
-        f", along {_vector(joint['axis'])} of {joint['parent']['body']}"
-        if joint["kind"] in ("prismatic", "slot")
+        f", along {_vector(joint.triad[0][:2])} of {joint.parent.body}"
+        if joint.kind in ("prismatic", "slot")
         else ""
     )
-    turned = (
-        f", at {joint['angle']:g} rad ({math.degrees(joint['angle']):g} deg)"
-        if joint["angle"]
-        else ""
-    )
-    return f"{along}{turned}{', driven' if joint['driven'] else ''}"
+    cosine, sine, _ = joint.turned[0]
+    angle = math.atan2(sine, cosine)
+    turned = f", at {angle:g} rad ({math.degrees(angle):g} deg)" if angle else ""
+    driven = (_driven(axis.coordinate, description) for axis in joint.axes)
+    return f"{along}{turned}{''.join(driven)}"
 
 
-def _in_space(joint: Description, description: Description) -> str:
+def _in_space(joint: JointNumbers, description: Description) -> str:
     """Describe a joint in space: the axis of each of its coordinates, and what drives it."""
-    text, unmeasured = "", set(description["unmeasured"])
-    for (name, kind), axis in zip(joint["coordinates"].items(), joint["axes"], strict=True):
-        if name not in unmeasured:
+    text, unmeasured = "", set(description.unmeasured)
+    for axis in joint.axes:
+        if (name := axis.coordinate) not in unmeasured:
             part = name.partition(":")[2]
-            lead = f" ({joint['pitch'] * math.tau:g} m a turn)" if joint["pitch"] else ""
+            lead = f" ({joint.pitch * math.tau:g} m a turn)" if joint.pitch else ""
             word = (
-                f"{'along' if kind == 'slide' else 'about'}"
-                f" {_vector(axis)}{'' if text else ' of ' + joint['parent']['body']}"
+                f"{'along' if axis.kind == 'slide' else 'about'}"
+                f" {_vector(axis.direction)}{'' if text else ' of ' + joint.parent.body}"
             )
-            text += f", {part + ' ' if part else ''}{word}{lead}{_driven(name, joint, description)}"
-    barred = {joint["parent"]["body"], joint["child"]["body"]} & set(description["bars"])
+            text += f", {part + ' ' if part else ''}{word}{lead}{_driven(name, description)}"
+    barred = {joint.parent.body, joint.child.body} & set(description.bars)
     return (
         text
-        if barred or not unmeasured & set(joint["coordinates"])
+        if barred or not unmeasured & {axis.coordinate for axis in joint.axes}
         else f"{text}, closes a loop: its angles are not evaluated"
     )
 
 
-def _driven(coordinate: str, joint: Description, description: Description) -> str:
+def _driven(coordinate: str, description: Description) -> str:
     """Describe whether an effort drives a coordinate, and whether its motion is given, if the two
     differ.
     """
-    given, drives = coordinate in joint["driven"], description.get("drives")
-    if drives is None:
+    given, drives = coordinate in description.driven, coordinate in description.drives
+    if {*description.driven} == {*description.drives, *description.rows.values()}:
         return ", driven" if given else ""
-    return f"{', driven' if coordinate in drives else ''}{', motion given' if given else ''}"
+    return f"{', driven' if drives else ''}{', motion given' if given else ''}"
 
 
 def _vector(components: Sequence[float]) -> str:

@@ -11,7 +11,6 @@ from functools import cached_property
 import numpy as np
 
 from ..base.quantities import Output
-from ..model.description import bends_of
 from ..results.histories import Peak
 from ..results.ordering import error_of, ordered
 from ..results.solution import Solution
@@ -74,7 +73,7 @@ class Rows:
         listed.
         """
         peaks = {peak.name: peak for peak in refined}
-        inner = () if verbose else bends_of(solution.description)
+        inner = () if verbose else solution.description.bends
         outputs = [
             output
             for output in ordered(solution)

@@ -21,7 +21,6 @@ from ..base.vocabulary import Backend
 from ..engine.instants.backends import peak_search
 from ..errors import CompilerError, DeclarationError
 from ..model import revolutions
-from ..model.description import beams_of, fitted_of, kinds_of_described, pieces_of, values_of
 from ..model.scene import Scene
 from ..model.times import Timing
 from ..model.wanted_names import among
@@ -114,7 +113,7 @@ def run(
     rest = [*slope_lines(solution, scene, given["backend"]), *details, *rows.notes()]
     rest += _notes(scene, solution, scene.timing(given["t"], given["over"]))
     if folder and not loaded.figures:
-        parts = [*beams_of(solution.description), *fitted_of(solution.description)]
+        parts = [*solution.description.beams, *solution.description.fitted]
         rest += not_evaluated_lines(solution, among("safety", parts, shown))
     if not no_certificate:
         rest.append(summary(solution.certificate))
@@ -140,7 +139,7 @@ def _grids(
     solution: Solution, grids: bool | None, wanted: Sequence[str]
 ) -> bool | list[str] | None:
     """Links whose grids are stored: pieces of bent bars where they were asked for by name."""
-    pieces = pieces_of(solution.description)
+    pieces = solution.description.pieces
     links = solution.links_with_sections
     asked = {link for link in links if link in pieces and f"section:{link}" in wanted}
     if grids is not None or not asked:
@@ -183,10 +182,8 @@ def _head(solution: Solution, refined: bool | None) -> str:
 
 
 def _notes(scene: Scene, solution: Solution, timing: Timing) -> Iterator[str]:
-    values = np.array([list(values_of(solution.description).values())])
-    turning = revolutions.note(
-        scene.prescribed, kinds_of_described(solution.description), timing, values
-    )
+    values = np.array([list(solution.description.values.values())])
+    turning = revolutions.note(scene.prescribed, solution.description.kinds, timing, values)
     yield from (f"note: {note}" for note in (*solution.notes, turning) if note)
 
 
@@ -195,7 +192,7 @@ _FROM = {"ends": "from the line between its ends", "base": "from its axis at the
 
 def elastic_lines(solution: Solution, wanted: Sequence[str]) -> Iterator[str]:
     """Write the deflections that are wanted of links that have a beam, or why there are none."""
-    if links := among("deflection", beams_of(solution.description), wanted):
+    if links := among("deflection", solution.description.beams, wanted):
         yield "deflections across the links, largest in size:"
         for link in links:
             yield from evaluated(link, lambda name: list(_lines(solution, name)))
@@ -208,7 +205,7 @@ def elastic_card(solution: Solution, wanted: Sequence[str]) -> Iterator[str]:
         line = next(_lines(solution, link))
         return -solution.deflection(link).peak().value, card("deflection", line)
 
-    yield from worst(among("deflection", beams_of(solution.description), wanted), deflection)
+    yield from worst(among("deflection", solution.description.beams, wanted), deflection)
 
 
 def _lines(solution: Solution, link: str) -> Iterator[str]:
@@ -242,7 +239,7 @@ def slope_lines(solution: Solution, scene: Scene, backend: Backend) -> Iterator[
     except (CompilerError, DeclarationError) as error:  # such as of a very rough table
         yield f"derivatives of peaks are not available: {error}"
         return
-    units = {name: solution.description["parameters"][name]["unit"] for name in by}
+    units = {name: solution.description.parameters[name].unit for name in by}
     yield "derivatives of peaks, between the instants too, per unit of"
     yield f"{'':<30}" + " ".join(f"{f'{name} [{units[name]}]':>{_WIDTH}}" for name in by)
     for name, change in zip(names, changes, strict=True):

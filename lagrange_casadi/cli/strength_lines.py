@@ -7,7 +7,6 @@ from collections.abc import Callable, Collection, Iterator, Sequence
 
 from ..engine.stress import KINDS
 from ..errors import DeclarationError
-from ..model.description import beams_of, fitted_of
 from ..model.scene import Scene
 from ..model.wanted_names import among
 from ..results.solution import Solution
@@ -30,12 +29,12 @@ def strength_lines(
 
     Peaks are those of all times if the ``scene`` is given, else those of the instants.
     """
-    beams = beams_of(solution.description)
+    beams = solution.description.beams
     if links := among("stress", beams, wanted):
         yield "stresses along the links, largest in size:"
         for link in links:
             yield from evaluated(link, lambda name: list(_stresses(solution, name, scene)))
-    if parts := among("safety", [*beams, *fitted_of(solution.description)], wanted):
+    if parts := among("safety", [*beams, *solution.description.fitted], wanted):
         yield "factors of safety; utilisation is one over the least of them:"
         for part in parts:
             yield from evaluated(
@@ -54,7 +53,7 @@ def strength_cards(
 
     What is ``wanted`` and ``scene`` are as in :func:`strength_lines`.
     """
-    beams = beams_of(solution.description)
+    beams = solution.description.beams
 
     def stress(link: str) -> tuple[float, str]:
         peak = _stress_peak(solution, solution.stress(link), "von_mises", False, scene)
@@ -66,7 +65,7 @@ def strength_cards(
 
     yield from worst(among("stress", beams, wanted), stress)
     yield from worst(among("life", beams, wanted), life)
-    if parts := among("safety", [*beams, *fitted_of(solution.description)], wanted):
+    if parts := among("safety", [*beams, *solution.description.fitted], wanted):
         yield "least factor of safety of each part:"
         for part in parts:
             yield from evaluated(part, lambda name: [_least(_safety(solution, name, scene))])
@@ -121,7 +120,7 @@ def _least(found: Safety) -> str:
 
 
 def _safety(solution: Solution, part: str, scene: Scene | None) -> Safety:
-    if scene is None or part in solution.description["joints"]:
+    if scene is None or part in solution.description.joints:
         return solution.safety(part)
     return refine_safety(scene, solution, part)
 

@@ -60,14 +60,12 @@ class LinkForm:
     def of(cls, inputs: SectionInputs, density: Density | NumericDensity, beam: Beam) -> LinkForm:
         """Return the form of a link."""
         course = beam.course
-        shapes = list(course.shapes())
-        number = {id(shape): k for k, shape in enumerate(shapes)}
         return cls(
             inputs.alike(),
             (tuple(density.breaks), tuple(map(len, density.cells))),
             course.breaks,
-            tuple((shape.kind, tuple(shape.dimensions)) for shape in shapes),
-            tuple((number[id(first)], number[id(last)]) for first, last in course.cells),
+            tuple((shape.kind, tuple(shape.dimensions)) for shape in course.shapes),
+            course.ends,
             tuple(beam.notches),
         )
 
@@ -77,10 +75,10 @@ class LinkForm:
         breaks, sizes = self.density
         length = ca.SX.sym("length")
         cells = tuple(tuple(ca.vertsplit(ca.SX.sym("density", size))) for size in sizes)
-        shapes = [
+        shapes = (
             Shape(kind, {name: ca.SX.sym(name) for name in names}) for kind, names in self.shapes
-        ]
-        course = Course(self.breaks, tuple((shapes[a], shapes[b]) for a, b in self.cells))
+        )
+        course = Course(self.breaks, tuple(shapes), self.cells)
         density = Density(breaks, cells, per_length=False)
         beam = Beam(course, Material("", 1.0), self.notches)
         numbers = column(numbers_of(length, density, beam))
@@ -96,7 +94,7 @@ def numbers_of(
     return [
         length,
         *itertools.chain.from_iterable(density.cells),
-        *(x for shape in beam.course.shapes() for x in shape.dimensions.values()),
+        *(x for shape in beam.course.shapes for x in shape.dimensions.values()),
     ]
 
 

@@ -5,7 +5,7 @@ parameters.
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -21,17 +21,10 @@ from ..base.tables import table_of
 from ..base.templates import Template
 from ..base.vocabulary import PRECISIONS, Precision
 from ..errors import UnknownNameError
-from ..model.beams.beam import Beam, beam_of
-from ..model.beams.material import Material
+from ..model.beams.beam import Beam
 from ..model.corners import Corners
 from ..model.density import Density
-from ..model.description import (
-    Description,
-    beams_of,
-    described,
-    in_space,
-    kinds_of_described,
-)
+from ..model.description import Description
 from ..model.laws import Laws
 from ..model.mass_properties import ALL
 from ..model.parts import LineLoad, Link, Parameter
@@ -44,40 +37,35 @@ from .section_function import Section
 from .tree import span
 
 
-def materials_of(description: Description) -> dict[str, Material]:
-    """Return what links with a beam are made of."""
-    return {
-        name: Material(**description["bodies"][name]["beam"]["material"])
-        for name in beams_of(description)
-    }
-
-
 @symbolic
-def beam_at(described: Template, link: str, p: Expression) -> Beam:
+def beam_at(described: Template[Description], link: str, p: Expression) -> Beam:
     """Return the beam of a link, its numbers as expressions of parameters ``p``, or as numbers
     where these are numbers.
     """
-    return beam_of(described.placed(described.content["bodies"][link]["beam"], p))
+    return described.placed(described.content.beams[link], p)
 
 
 @symbolic
 @functools.lru_cache(maxsize=32)
-def template(scene: Scene) -> Template:
+def template(scene: Scene) -> Template[Description]:
     """The description of a scene's mechanism but for its numbers.
 
     In space it names the ``two_force_links``, links whose spin about their own axis is idle and
     taken to be none, and the coordinates that are ``unmeasured``.
     """
     mechanism = scene.mechanism
-    content = described(mechanism, scene.laws, scene.weights)
+    content = Description.of(mechanism, scene.laws, scene.weights)
     if mechanism.space:
         tree = span(scene.guided, scene.laws)
-        content["bars"] = [one.link.name for one in tree.two_force_links]
-        content["unmeasured"] = [
-            name
-            for name, (joint, axis) in mechanism.coordinates.items()
-            if not tree.measures(joint, axis)
-        ]
+        content = replace(
+            content,
+            bars=tuple(one.link.name for one in tree.two_force_links),
+            unmeasured=tuple(
+                name
+                for name, (joint, axis) in mechanism.coordinates.items()
+                if not tree.measures(joint, axis)
+            ),
+        )
     return Template.of(content, mechanism.symbols)
 
 
@@ -106,8 +94,8 @@ class ModelData(Graphs, Brief):
     corners: Corners
     partial: tuple[str, ...]
     jumps: Mapping[str, tuple[float, ...]]
-    stated: Template
-    template: Template
+    stated: Template[Stated]
+    template: Template[Description]
 
     @classmethod
     def of(cls, scene: Scene, laws: Laws) -> ModelData:
@@ -146,21 +134,26 @@ class ModelData(Graphs, Brief):
         return replace(self, timing=scene.timing(), rounding=_rounding(scene))
 
     @property
+    def content(self) -> Description:
+        """The description, with a :class:`.Leaf` for each number that parameters change."""
+        return self.template.content
+
+    @property
     def name(self) -> str:
         """The mechanism's name."""
-        return str(self.template.content["name"])
+        return self.content.name
 
     @property
     def space(self) -> bool:
         """True if it lies in space."""
-        return in_space(self.template.content)
+        return self.content.space
 
     @cached_property
     def kinds(self) -> Kinds:
         """The kinds of coordinates, those of guides too, and of frictions, and the units of the
         user's outputs.
         """
-        return kinds_of_described(self.template.content)
+        return self.content.kinds
 
     @cached_property
     def defaults(self) -> Array:
@@ -173,7 +166,7 @@ class ModelData(Graphs, Brief):
 
     def at(self, p: Sequence[float] | Array) -> Description:
         """Describe the mechanism in plain numbers, for parameters ``p``."""
-        return dict(self.template.at(p))
+        return self.template.at(p)
 
     @property
     @symbolic
@@ -187,25 +180,19 @@ class ModelData(Graphs, Brief):
 
         Raises :class:`.UnknownNameError` for anything else.
         """
-        bodies = self.template.content["bodies"]
+        bodies = self.content.bodies
         if part not in (*bodies, ALL):
             raise UnknownNameError("part with a mass", part, (*bodies, ALL))
         some = bodies.values() if part == ALL else [bodies[part]]
-        return ca.SX(sum(self.template.placed([body["mass"] for body in some], p)))
-
-    @cached_property
-    def materials(self) -> dict[str, Material]:
-        """Materials of links with a beam."""
-        return materials_of(self.template.content)
+        return ca.SX(sum(self.template.placed([body.mass for body in some], p)))
 
     @symbolic
     def mass_properties(self, link: str, p: ca.SX) -> tuple[ca.SX, Density]:
         """The length of a link [m] and its density, per unit of xi/l, as expressions of parameters
         ``p``.
         """
-        body = self.template.placed(self.template.content["bodies"][link], p)
-        cells = tuple(map(tuple, body["density"]["cells"]))
-        return body["length"], Density(tuple(body["density"]["breaks"]), cells, per_length=False)
+        length, density = self.template.placed(self.content.bodies[link].length_and_density, p)
+        return ca.SX(length), Density(density.breaks, density.cells, per_length=False)
 
     @symbolic
     def link(self, name: str, p: Expression) -> Link:
@@ -218,11 +205,11 @@ class ModelData(Graphs, Brief):
 
     def closing(self, part: str) -> str:
         """Describe the part that closes a loop."""
-        content = self.template.content
-        kinds = (
-            ("joint", content["joints"]),
-            ("path", content.get("paths", ())),
-            ("two-force link", content["bodies"]),
+        content = self.content
+        kinds: Sequence[tuple[str, Collection[str]]] = (
+            ("joint", content.joints),
+            ("path", content.paths),
+            ("two-force link", content.bodies),
         )
         return f"{next((kind for kind, parts in kinds if part in parts), 'constraint')} '{part}'"
 

@@ -16,7 +16,6 @@ from ..base.quantities import Check, Column, Output, force_members, motions_of
 from ..base.scalars import column
 from ..base.tables import ANGLE
 from ..base.vectors import ZERO, dot
-from ..model.description import kinds_of_described
 from ..model.ends import beyond_ends
 from ..model.laws import Laws
 from ..model.limits import parameters_note
@@ -141,7 +140,7 @@ class Moving:
         """
         mechanism, body, solved = self.scene.mechanism, self.body, self.solved
         motions = _motion_columns(mechanism, body, solved, self.laws.joints)
-        kinds = kinds_of_described(template(self.scene).content)
+        kinds = template(self.scene).content.kinds
         angles = [c for c in body.coordinates if c.kind == "angle"]
         wrapped: dict[Column, Any] = {
             _known_by(c): c.value for c in angles if c.name in solved.wrapped

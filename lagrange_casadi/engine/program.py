@@ -16,10 +16,11 @@ from ..base.brief import listed
 from ..base.quantities import Check, Column, Output
 from ..base.scalars import graph, inputs_of
 from ..base.symbolic import Graphs, symbolic, symbolic_property
-from ..base.templates import Place, Template, dumps, loads
+from ..base.templates import Leaf, Template, dumps, loads
 from ..base.vocabulary import Precision
 from ..errors import PickleError
 from ..model.corners import Corners
+from ..model.description import DESCRIBED
 from ..model.kinks import Smooth
 from ..model.laws import Laws
 from ..model.limits import END
@@ -216,7 +217,7 @@ class Program(Graphs):
         return {
             link: LinkStress.of(self.outputs, self.data.link(link, p), p)
             for link in self.links
-            if link in self.data.materials
+            if link in self.data.content.materials
         }
 
     @cached_property
@@ -269,6 +270,6 @@ class Program(Graphs):
 
 _PARTS = (
     *(Check, Completion, Corners, Entry, Equation, Laws, LoadLaw, Margins, ModelData, NewtonLoop),
-    *(Output, Parameter, Place, Smooth, Stated, Template, Timing, Touch, Wanted),
+    *(Output, Parameter, Leaf, Smooth, Stated, Template, Timing, Touch, Wanted, *DESCRIBED),
 )
 """Kinds of what a program is made of."""

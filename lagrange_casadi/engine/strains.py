@@ -27,7 +27,7 @@ def moduli_of(beam: Beam, what: str, *, space: bool) -> Moduli:
     ``what`` needs.
     """
     found = beam.material.needs(what, "elasticity", "shear_modulus")
-    for shape in beam.course.shapes() if space else ():
+    for shape in beam.course.shapes if space else ():
         if shape.properties().torsion is None:
             how = "use beams.given with its properties, torsion included"
             raise DeclarationError(

@@ -85,7 +85,7 @@ class Loaded:
     def has_formula(self) -> bool:
         """True if stresses have a formula: in space torsion must have one."""
         return not self.space or all(
-            shape.properties().torsion is not None for shape in self.course.shapes()
+            shape.properties().torsion is not None for shape in self.course.shapes
         )
 
     @cached_property

@@ -1,248 +1,498 @@
-"""A mechanism at given parameters as plain numbers: what a file keeps of it, and what a drawing is
-made from.
+"""A mechanism as one tree of frozen dataclasses. Its leaves are expressions of the parameters, or
+their numbers: then a file keeps it, pictures are drawn from it, and a certificate checks against
+it.
+
+All of it comes from the declaration and nothing from the derivation, so a wrong derivation cannot
+hide. Places and directions have three components; a plane is z = 0.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
-from typing import Any
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import asdict, dataclass, field, replace
+from functools import cached_property
+from typing import Any, Literal, TypeAlias
 
 import casadi as ca
+import numpy as np
 
-from ..base.arrays import Expression
+from ..base.arrays import Expression, Json
+from ..base.brief import Brief
 from ..base.quantities import Kinds
 from ..base.vectors import cross
-from .beams.beam import beam_to_numbers
+from .beams.beam import Beam, Notch
+from .beams.material import Material
+from .beams.shape import Course, Shape
 from .density import Density, NumericDensity
-from .fitted import parts_to_numbers
+from .fitted import Fittings, Pin, Plain, Rolling
 from .joints import Joint
 from .mass_properties import mass_of
 from .mechanism import Mechanism
 from .parts import Friction, Link, Load, Point, PointMass, RigidMass
 
-Description = dict[str, Any]
+Triple: TypeAlias = tuple[float, float, float]
+"""A vector."""
 
-_PLACE = {"body": str, "x": float, "y": float}
+Rows: TypeAlias = tuple[Triple, Triple, Triple]
+"""Three directions, or a matrix by its rows."""
 
-_VECTOR = [float, float, float]
-_MATRIX = [_VECTOR, _VECTOR, _VECTOR]
-_DENSITY = {"breaks": [float], "cells": [[float]]}
+Pair: TypeAlias = tuple[float, float]
 
+CoordinateKind: TypeAlias = Literal["angle", "slide"]
 
-def _shape(
-    place: Expression, centre: Expression, gravity: Expression, joint: Any, load: Any
-) -> dict[str, Any]:
-    body = {"length": float, "mass": float}
-    return {
-        "name": str,
-        "parameters": {str: {"value": float, "unit": str, "low": float, "high": float}},
-        "gravity": gravity,
-        "bodies": {
-            str: (
-                {"length": None, "mass": float},
-                body | {"centre": centre},
-                body | {"density": _DENSITY},
-                body
-                | {
-                    "density": _DENSITY
-                    | {"slices": {"yy": _DENSITY, "zz": _DENSITY, "yz": _DENSITY}}
-                },
-            )
-        },
-        "joints": {str: {"kind": str, "parent": place, "child": place} | joint},
-        "loads": {str: {"kind": str, "points": [place]} | load},
-        "rows": {str: str},
-        "constraints": [str],
-    }
+_X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+_ORIGIN = (0.0, 0.0, 0.0)
 
 
-IN_PLANE = _shape(
-    place=_PLACE,
-    centre={"x": float, "y": float, "inertia": float},
-    gravity=[float],
-    joint={"coordinate": (str, None), "driven": bool, "axis": [float], "angle": float},
-    load={},
-)
-"""Form of every description of a planar mechanism, in the words of :mod:`.untrusted`."""
+@dataclass(frozen=True)
+class ParameterNumbers:
+    """A parameter: its value and its range, in its unit."""
 
-IN_SPACE = _shape(
-    place=_PLACE | {"z": float},
-    centre={"x": float, "y": float, "z": float, "inertia": _MATRIX},
-    gravity=_VECTOR,
-    joint={
-        "coordinates": {str: str},
-        "driven": [str],
-        "axes": [_VECTOR],
-        "triad": _MATRIX,
-        "turned": _MATRIX,
-        "pitch": float,
-    },
-    load={"turning": bool},
-) | {"bars": [str], "unmeasured": [str]}
-"""Form of the description of a mechanism in space."""
+    value: float
+    unit: str
+    low: float
+    high: float
 
 
-def in_space(description: Description) -> bool:
-    """Return whether a described mechanism lies in space: its gravity has a z."""
-    return len(description["gravity"]) > 2
+@dataclass(frozen=True)
+class Place:
+    """A place on a body, in the body's axes [m]."""
+
+    body: str
+    at: Triple
 
 
-def shape_of(value: Any) -> dict[str, Any]:
-    """Form of a description: that of a planar mechanism, or that of one in space."""
-    gravity = value.get("gravity") if isinstance(value, dict) else None
-    shape = IN_SPACE if isinstance(gravity, list) and len(gravity) > 2 else IN_PLANE
-    optional = {
-        "outlines": {str: [[[float, float]]]},
-        "rollers": {str: _PLACE | {"radius": float}},
-        "losses": [str],
-        "beside": {str: _VECTOR},
-        "rounded": {str: [float]},
-        "snapped": {str: [float]},
-        "unturned": [str],
-    }
-    return shape | {
-        name: kind for name, kind in optional.items() if isinstance(value, dict) and name in value
-    }
+@dataclass(frozen=True)
+class RollerNumbers:
+    """A roller that pictures show: its centre, and its radius [m]."""
+
+    centre: Place
+    radius: float
 
 
-def check_places(description: Description) -> None:
-    """Raise ``ValueError`` where a joint or a load is at a place on a body that there is not."""
-    ends = (
-        (name, joint[end])
-        for name, joint in description["joints"].items()
-        for end in ("parent", "child")
-    )
-    for name, place in (
-        *ends,
-        *((name, point) for name, load in description["loads"].items() for point in load["points"]),
-    ):
-        if place["body"] != "ground" and place["body"] not in description["bodies"]:
-            raise ValueError(
-                f"'{name}' is at a place on '{place['body']}', which is not a body of the mechanism"
-            )
-
-
-def density_of(body: Description) -> NumericDensity:
-    """The density of a described link that has sections."""
-    return _density(body["density"])
-
-
-def oriented(description: Description, body: str) -> bool:
-    """Return whether a body has a direction; a point mass has none."""
-    return body == "ground" or description["bodies"][body]["length"] is not None
-
-
-def slice_densities(body: Description) -> tuple[NumericDensity, ...]:
-    """The second moments yy, zz and yz of slices along a described link, each like a density; none
-    of a link whose slices have no rotary inertia.
+@dataclass(frozen=True)
+class MassNumbers:
+    """The mass of a body [kg], its centre [m], and the inertia about the centre [kg m^2], on the
+    body's axes.
     """
-    slices = body["density"].get("slices")
-    return tuple(_density(slices[name]) for name in ("yy", "zz", "yz")) if slices else ()
+
+    mass: float
+    centre: Triple = _ORIGIN
+    inertia: Rows = (_ORIGIN,) * 3
 
 
-def slices_of(body: Description) -> tuple[float, float, float]:
-    """The second moments yy, zz, yz of all slices of a described link [kg m^2]."""
-    if not (moments := slice_densities(body)):
-        return 0.0, 0.0, 0.0
-    yy, zz, yz = (moment.mass for moment in moments)
-    return yy, zz, yz
+@dataclass(frozen=True, repr=False)
+class BodyNumbers(Brief):
+    """A body: its length [m], None for a point mass, and its mass [kg].
+
+    A rigid body has a ``centre`` [m] and the ``inertia`` about the centre [kg m^2], on the body's
+    axes. A link with sections has a ``density``, and may have a ``beam`` and the second moments yy,
+    zz and yz of its ``slices``, each like a density.
+    """
+
+    length: float | None
+    mass: float
+    centre: Triple | None = None
+    inertia: Rows | None = None
+    density: NumericDensity | None = None
+    slices: tuple[NumericDensity, ...] = ()
+    beam: Beam | None = None
+
+    @property
+    def length_and_density(self) -> tuple[float, NumericDensity]:
+        """The length [m] and the density of a link with sections.
+
+        Raises ``ValueError`` for another body.
+        """
+        if self.length is None or self.density is None:
+            raise ValueError("a body without a density has no sections")
+        return self.length, self.density
+
+    @cached_property
+    def whole(self) -> MassNumbers:
+        """Mass, centre and inertia; of a link with sections from the density.
+
+        Not with the mass above, which is computed as the derivation does it.
+        """
+        if self.centre is not None and self.inertia is not None:
+            return MassNumbers(self.mass, self.centre, self.inertia)
+        if self.length is None or self.density is None:
+            return MassNumbers(self.mass)
+        mass, first, second = (float(tail[0]) for tail in self.density.tails(np.zeros(1)))
+        if mass == 0.0:
+            return MassNumbers(mass)
+        middle = first / mass
+        across = (second - first * middle) * self.length**2
+        yy, zz, yz = (one.mass for one in self.slices) if self.slices else _ORIGIN
+        inertia = (yy + zz, 0.0, 0.0), (0.0, across + zz, -yz), (0.0, -yz, across + yy)
+        return MassNumbers(mass, (middle * self.length, 0.0, 0.0), inertia)
 
 
-def _density(entry: Description) -> NumericDensity:
-    return NumericDensity(tuple(entry["breaks"]), tuple(tuple(cell) for cell in entry["cells"]))
+@dataclass(frozen=True)
+class AxisNumbers:
+    """A coordinate of a joint by its full name, and its direction in the parent's axes where all
+    coordinates are zero.
+    """
+
+    coordinate: str
+    kind: CoordinateKind
+    direction: Triple
 
 
-def coordinates_of(description: Description) -> dict[str, str]:
-    """The coordinates of all joints, with their kinds: "angle" or "slide"."""
-    if not in_space(description):
-        return {
-            name: joint["coordinate"]
-            for name, joint in description["joints"].items()
-            if joint["coordinate"]
+@dataclass(frozen=True, repr=False)
+class JointNumbers(Brief):
+    """A joint between two places; see :class:`.Joint`.
+
+    ``axes`` are in sequence. The first direction of the ``triad`` is that of the joint's axis.
+    ``turned`` are the child's axes in the parent's where all coordinates are zero, a row each.
+    ``free`` says whether it turns about an axis that no coordinate describes. ``fitted`` are its
+    pin and bearings; ``turning`` is the coordinate by which a shaft turns in a bearing.
+    """
+
+    kind: str
+    parent: Place
+    child: Place
+    triad: Rows
+    turned: Rows
+    axes: tuple[AxisNumbers, ...] = ()
+    pitch: float = 0.0
+    free: bool = False
+    fitted: Fittings | None = None
+    turning: str | None = None
+
+    @property
+    def ends(self) -> tuple[Place, Place]:
+        """The places on the parent and on the child."""
+        return self.parent, self.child
+
+
+@dataclass(frozen=True)
+class LoadNumbers:
+    """The places of a load, the second one bearing the opposite; of a friction its coordinate and
+    its numbers by their words.
+    """
+
+    kind: str
+    points: tuple[Place, ...]
+    turning: bool = False
+    coordinate: str = ""
+    friction: Mapping[str, float] | None = None
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Description(Brief):
+    """A mechanism, with expressions or numbers.
+
+    ``rows`` have the drives that they replace. ``driven`` are the coordinates whose motion is
+    given, those of guides too (:mod:`.guiding`), and their kinds; ``drives`` those whose efforts
+    make the motion. ``beside`` are the directions in ground axes that were declared for y axes of
+    links. ``losses`` are transmissions with friction. ``unturned`` are the joints whose child is a
+    slender link that slides in a direction that was not declared. ``rounded`` and ``snapped`` are
+    the corrections of a rounded drawing [rad and m]. ``bars`` are two-force links in space, whose
+    spin about their own axis is taken to be none, and ``unmeasured`` coordinates without a value.
+    """
+
+    name: str
+    space: bool
+    parameters: Mapping[str, ParameterNumbers] = field(default_factory=dict)
+    gravity: Triple = _ORIGIN
+    bodies: Mapping[str, BodyNumbers] = field(default_factory=dict)
+    joints: Mapping[str, JointNumbers] = field(default_factory=dict)
+    loads: Mapping[str, LoadNumbers] = field(default_factory=dict)
+    rows: Mapping[str, str] = field(default_factory=dict)
+    constraints: tuple[str, ...] = ()
+    driven: Mapping[str, CoordinateKind] = field(default_factory=dict)
+    drives: tuple[str, ...] = ()
+    outputs: Mapping[str, str] = field(default_factory=dict)
+    paths: Mapping[str, Place] = field(default_factory=dict)
+    outlines: Mapping[str, tuple[tuple[Pair, ...], ...]] = field(default_factory=dict)
+    rollers: Mapping[str, RollerNumbers] = field(default_factory=dict)
+    losses: tuple[str, ...] = ()
+    beside: Mapping[str, Triple] = field(default_factory=dict)
+    unturned: tuple[str, ...] = ()
+    rounded: Mapping[str, Pair] = field(default_factory=dict)
+    snapped: Mapping[str, Pair] = field(default_factory=dict)
+    bars: tuple[str, ...] = ()
+    unmeasured: tuple[str, ...] = ()
+
+    @classmethod
+    def of(
+        cls, mechanism: Mechanism, driven: Collection[str], drives: Collection[str] | None
+    ) -> Description:
+        """Describe a mechanism in expressions of its parameters.
+
+        ``driven`` are the coordinates whose motion is given, ``drives`` those whose efforts make
+        it, if others were declared.
+        """
+        rows = {name: row.replaces for name, row in mechanism.rows.items()}
+        moved = [name for name in mechanism.coordinates if name in driven]
+        given = dict.fromkeys([*moved, *(driven if drives else ())])
+        usual = [name for name in moved if name not in rows.values()]
+        return cls(
+            name=mechanism.name,
+            space=mechanism.space,
+            gravity=_vector(mechanism.gravity),
+            parameters={
+                name: ParameterNumbers(_number(one.symbol), one.unit, one.low, one.high)
+                for name, one in mechanism.parameters.items()
+            },
+            bodies={body.name: _body(mechanism, body) for body in mechanism.moving},
+            joints={name: _joint(mechanism, one) for name, one in mechanism.joints.items()},
+            loads={name: _load(load) for name, load in mechanism.loads.items()},
+            rows=rows,
+            constraints=tuple(mechanism.constraints),
+            driven={name: _kind(mechanism, name) for name in given},
+            drives=tuple(
+                name for name in (drives or usual) if not drives or name in mechanism.coordinates
+            ),
+            outputs={name: output.unit for name, output in mechanism.outputs.items()},
+            paths={name: _place(path.point) for name, path in mechanism.paths.items()},
+            outlines={
+                body: tuple(
+                    tuple((_number(x), _number(y)) for x, y in outline) for outline in outlines
+                )
+                for body, outlines in mechanism.outlines.items()
+            },
+            rollers={
+                name: RollerNumbers(_place(roller.centre), _number(roller.radius))
+                for name, roller in mechanism.rollers.items()
+            },
+            losses=tuple(
+                name
+                for name, one in mechanism.constraints.items()
+                if one.transmission is not None and one.transmission.loss is not None
+            ),
+            beside={
+                name: _vector(link.beside)
+                for name, link in mechanism.links.items()
+                if link.beside is not None
+            },
+            unturned=tuple(
+                name for name, joint in mechanism.joints.items() if _lies_by_default(joint)
+            ),
+            rounded=dict(mechanism.rounded),
+            snapped=dict(mechanism.snapped),
+        )
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Description) and self.plain() == other.plain()
+
+    def plain(self) -> dict[str, Json]:
+        """Return it as JSON has it, without what is empty or has no value."""
+        return asdict(
+            self,
+            dict_factory=lambda items: {
+                key: value for key, value in items if value not in (None, (), {})
+            },
+        )
+
+    def check_places(self) -> None:
+        """Raise ``ValueError`` where a joint or a load is at a place on a body that there is
+        not.
+        """
+        places = [(name, end) for name, joint in self.joints.items() for end in joint.ends]
+        places += [(name, point) for name, load in self.loads.items() for point in load.points]
+        for name, place in places:
+            if place.body != "ground" and place.body not in self.bodies:
+                raise ValueError(
+                    f"'{name}' is at a place on '{place.body}', which is not a body of the"
+                    " mechanism"
+                )
+
+    @cached_property
+    def size(self) -> float:
+        """The length of all links [m]."""
+        return sum(body.length or 0.0 for body in self.bodies.values()) or 1.0
+
+    @cached_property
+    def extent(self) -> float:
+        """The size of the mechanism, and how far from the origin it
+        stands: the largest of places.
+        """
+        points = [end for joint in self.joints.values() for end in joint.ends]
+        points += [place for load in self.loads.values() for place in load.points]
+        return self.size + max(
+            (abs(x) for place in points if place.body == "ground" for x in place.at), default=0.0
+        )
+
+    @cached_property
+    def coordinates(self) -> dict[str, CoordinateKind]:
+        """The coordinates of all joints, with their kinds."""
+        return {axis.coordinate: axis.kind for joint in self.joints.values() for axis in joint.axes}
+
+    @cached_property
+    def kinds(self) -> Kinds:
+        """The kinds of coordinates, those of guides too, and of frictions, and the units of the
+        user's outputs.
+        """
+        coordinates = {**self.coordinates, **self.driven}
+        frictions = {
+            name: coordinates[load.coordinate]
+            for name, load in self.loads.items()
+            if load.coordinate
         }
-    return {
-        name: kind
-        for joint in description["joints"].values()
-        for name, kind in joint["coordinates"].items()
-    }
+        return Kinds(coordinates, frictions, self.outputs)
+
+    @property
+    def values(self) -> dict[str, float]:
+        """The values of all parameters."""
+        return {name: parameter.value for name, parameter in self.parameters.items()}
+
+    @property
+    def multipliers(self) -> tuple[str, ...]:
+        """The names of all constraints and rows."""
+        return *self.constraints, *self.rows
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """The names of all parts that outputs are of."""
+        tables = (self.bodies, self.joints, self.constraints, self.rows, self.loads, self.outputs)
+        return tuple(part for table in tables for part in table)
+
+    @property
+    def links(self) -> list[str]:
+        """The bodies with a length: all but point masses."""
+        return [name for name, body in self.bodies.items() if body.length is not None]
+
+    @property
+    def beams(self) -> dict[str, Beam]:
+        """The beams of the links that have sections and a beam."""
+        return {name: body.beam for name, body in self.bodies.items() if body.beam is not None}
+
+    @property
+    def materials(self) -> dict[str, Material]:
+        """The materials of the links with a beam."""
+        return {name: beam.material for name, beam in self.beams.items()}
+
+    @property
+    def springs(self) -> dict[str, tuple[Place, ...]]:
+        """The two ends of each spring and damper."""
+        return {name: one.points for name, one in self.loads.items() if one.kind == "spring"}
+
+    @property
+    def fitted(self) -> list[str]:
+        """The joints that have a pin or a bearing."""
+        return [name for name, joint in self.joints.items() if joint.fitted]
+
+    @property
+    def shaft_bearings(self) -> list[str]:
+        """The joints of shafts in a fixed and a floating bearing in space: those that say by which
+        coordinate the shaft turns in them.
+        """
+        return [name for name, joint in self.joints.items() if joint.turning is not None]
+
+    @property
+    def bends(self) -> list[str]:
+        """The welds between the pieces of bent bars, by the names that they get there."""
+        found = []
+        for name, joint in self.joints.items():
+            bar, bend, number = name.rpartition("_bend_")
+            if bend and number.isdigit() and joint.kind == "weld":
+                pieces = joint.parent.body, joint.child.body
+                if pieces == (f"{bar}_{number}", f"{bar}_{int(number) + 1}"):
+                    found.append(name)
+        return found
+
+    @property
+    def pieces(self) -> set[str]:
+        """The links that bent bars were cut into."""
+        return {end.body for name in self.bends for end in self.joints[name].ends}
+
+    @property
+    def has_friction(self) -> bool:
+        """True if a joint or a transmission has friction."""
+        return bool(self.losses) or any(load.friction for load in self.loads.values())
+
+    def components(self, vector: Triple) -> tuple[float, ...]:
+        """The components of a vector that may differ from zero: in a plane x and y."""
+        return vector if self.space else vector[:2]
+
+    def oriented(self, body: str) -> bool:
+        """Return whether a body has a direction; a point mass has none."""
+        return body == "ground" or self.bodies[body].length is not None
 
 
-def kinds_of_described(description: Description) -> Kinds:
-    """The kinds of coordinates, those of guides too, and of frictions of a described mechanism, and
-    the units of its outputs.
-    """
-    coordinates = coordinates_of(description) | motions_of(description)
-    sliding = {
-        name: load["friction"]["coordinate"]
-        for name, load in description["loads"].items()
-        if "friction" in load
-    }
-    frictions = {name: coordinates[coordinate] for name, coordinate in sliding.items()}
-    return Kinds(coordinates, frictions, description.get("outputs", {}))
+DESCRIBED = (
+    *(AxisNumbers, BodyNumbers, Description, JointNumbers, LoadNumbers, NumericDensity),
+    *(ParameterNumbers, Place, RollerNumbers),
+    *(Beam, Course, Shape, Material, Notch, Fittings, Pin, Plain, Rolling),
+)
+"""Kinds of what a description is made of."""
 
 
-def _driven(description: Description) -> list[str]:
-    joints = description["joints"].items()
-    if not in_space(description):
-        return [name for name, joint in joints if joint["driven"]]
-    return [name for _, joint in joints for name in joint["driven"]]
+def _number(value: Expression) -> Any:
+    return ca.SX(value)
 
 
-def drives_of(description: Description) -> list[str]:
-    """The coordinates whose efforts make the motion."""
-    drives = description.get("drives")
-    if drives is None:
-        return [name for name in _driven(description) if name not in description["rows"].values()]
-    known = coordinates_of(description)
-    return [name for name in drives if name in known]
+def _vector(components: Iterable[Expression]) -> Triple:
+    x, y, z = map(_number, components)
+    return x, y, z
 
 
-def values_of(description: Description) -> dict[str, float]:
-    """Return the values of all parameters."""
-    return {name: parameter["value"] for name, parameter in description["parameters"].items()}
+def _place(point: Point) -> Place:
+    return Place(point.body.name, _vector(point.place))
 
 
-def beams_of(description: Description) -> list[str]:
-    """Return the links that have sections and a beam."""
-    return [name for name, body in description["bodies"].items() if "beam" in body]
-
-
-def fitted_of(description: Description) -> list[str]:
-    """Return the joints that have a pin or a bearing."""
-    return [name for name, joint in description["joints"].items() if "fitted" in joint]
-
-
-def shaft_bearings_of(description: Description) -> list[str]:
-    """Return the joints of shafts in a fixed and a floating bearing in space: those that say by
-    which coordinate the shaft turns in them.
-    """
-    return [name for name, joint in description["joints"].items() if "turning" in joint]
-
-
-def bends_of(description: Description) -> list[str]:
-    """Return the welds between the pieces of bent bars, by the names that they get there."""
-    found = []
-    for name, joint in description["joints"].items():
-        bar, bend, number = name.rpartition("_bend_")
-        if bend and number.isdigit() and joint["kind"] == "weld":
-            pieces = joint["parent"]["body"], joint["child"]["body"]
-            if pieces == (f"{bar}_{number}", f"{bar}_{int(number) + 1}"):
-                found.append(name)
-    return found
-
-
-def pieces_of(description: Description) -> set[str]:
-    """Return the links that bent bars were cut into."""
-    joints = (description["joints"][name] for name in bends_of(description))
-    return {joint[end]["body"] for joint in joints for end in ("parent", "child")}
-
-
-def parts_of(description: Description) -> list[str]:
-    """The names of all parts that outputs are of."""
-    tables = ("bodies", "joints", "constraints", "rows", "loads")
-    return [part for table in tables for part in description[table]] + list(
-        description.get("outputs", ())
+def _body(mechanism: Mechanism, body: Link | PointMass) -> BodyNumbers:
+    if isinstance(body, PointMass):
+        return BodyNumbers(None, _number(mass_of(body)))
+    length, mass = _number(body.length), body.mass
+    if isinstance(mass, RigidMass):
+        x, y, z = (*mass.centre, 0.0)[:3]
+        plane = (_ORIGIN, _ORIGIN, (0.0, 0.0, mass.inertia))
+        rows = map(_vector, mass.inertia if mechanism.space else plane)
+        return BodyNumbers(length, _number(mass_of(body)), _vector((x, y, z)), _rows(rows))
+    return BodyNumbers(
+        length,
+        _number(mass_of(body)),
+        density=_along(body, mass),
+        slices=tuple(_along(body, one) for one in mass.slices.each) if mass.slices else (),
+        beam=None if body.beam is None else replace(body.beam, shape=body.beam.course),
     )
+
+
+def _along(link: Link, density: Density) -> NumericDensity:
+    """The density over the ratio xi/l."""
+    scale = link.length if density.per_length else 1.0
+    return NumericDensity(
+        density.breaks, tuple(tuple(_number(c * scale) for c in cell) for cell in density.cells)
+    )
+
+
+def _joint(mechanism: Mechanism, joint: Joint) -> JointNumbers:
+    """A joint; of the plane, one whose child turns about z."""
+    if joint.turned is not None:
+        x, y = joint.turned
+        triad, turned = joint.triad, (x, y, cross(x, y))
+    else:
+        c, s = ca.cos(joint.angle), ca.sin(joint.angle)
+        triad = joint.triad if joint.kind in ("prismatic", "slot") else (_Z, _X, _Y)
+        turned = ((c, s, 0.0), (-s, c, 0.0), _Z)
+    return JointNumbers(
+        joint.kind,
+        _place(joint.parent),
+        _place(joint.child),
+        _rows(map(_vector, triad)),
+        _rows(map(_vector, turned)),
+        tuple(AxisNumbers(a.coordinate, a.kind, _vector(a.direction)) for a in joint.axes),
+        _number(joint.pitch),
+        joint.turned is None and joint.kind == "slot",
+        mechanism.fitted.get(joint.name),
+        mechanism.turning.get(joint.name) or None,
+    )
+
+
+def _rows(rows: Iterable[Triple]) -> Rows:
+    x, y, z = rows
+    return x, y, z
+
+
+def _load(load: Load) -> LoadNumbers:
+    found = type(load).__name__.lower(), tuple(map(_place, load.points))
+    if isinstance(load, Friction):
+        numbers = {word: _number(value) for word, value in load.numbers.items()}
+        return LoadNumbers(*found, coordinate=load.axis.coordinate, friction=numbers)
+    return LoadNumbers(*found, getattr(load, "turning", False))
 
 
 def _lies_by_default(joint: Joint) -> bool:
@@ -254,160 +504,8 @@ def _lies_by_default(joint: Joint) -> bool:
     return slender and joint.kind in ("prismatic", "cylindrical", "screw") and not joint.turn_given
 
 
-def _kind(mechanism: Mechanism, name: str) -> str:
+def _kind(mechanism: Mechanism, name: str) -> CoordinateKind:
     """The kind of a coordinate whose motion is given, of a joint or a guide (:mod:`.guiding`)."""
     if name in mechanism.coordinates:
         return mechanism.coordinates[name][1].kind
     return "angle" if name.endswith(".angle") else "slide"
-
-
-def motions_of(description: Description) -> dict[str, str]:
-    """The coordinates whose motion is given, of joints and of guides, with their kinds: "angle" or
-    "slide".
-    """
-    kinds = coordinates_of(description)
-    driven = {name: kinds[name] for name in _driven(description)}
-    return driven | {str(name): str(kind) for name, kind in description.get("motions", {}).items()}
-
-
-def described(
-    mechanism: Mechanism, driven: Collection[str], drives: Collection[str] | None
-) -> Description:
-    """Bodies with their length [m] (None for a point mass) and mass [kg], and joints with the
-    places they join; in place of numbers expressions of the parameters.
-
-    ``driven`` are the coordinates whose motion is given, ``drives`` those whose efforts make it,
-    where these are others. A joint in space has its coordinates in sequence, with their kinds;
-    their ``axes`` and how the child's axes are ``turned``, both where all coordinates are zero; and
-    its own axes, the ``triad``. Directions are in the parent's axes, a row each.
-    """
-
-    def place(point: Point) -> Description:
-        found = {"body": point.body.name, "x": ca.SX(point.x), "y": ca.SX(point.y)}
-        return found | {"z": ca.SX(point.z)} if mechanism.space else found
-
-    def vector(components: Iterable[Expression]) -> list[ca.SX]:
-        return [ca.SX(component) for component in components]
-
-    def centre(mass: RigidMass) -> Description:
-        found = dict(zip("xyz", vector(mass.centre), strict=False))
-        return found | {
-            "inertia": [vector(row) for row in mass.inertia]
-            if mechanism.space
-            else ca.SX(mass.inertia)
-        }
-
-    def mass_properties(body: Link | PointMass) -> Description:
-        if isinstance(body, PointMass):
-            return {"length": None, "mass": mass_of(body)}
-        found: Description = {"length": ca.SX(body.length), "mass": mass_of(body)}
-        if isinstance(body.mass, RigidMass):
-            return found | {"centre": centre(body.mass)}
-        entry = along(body, body.mass)
-        if body.mass.slices is not None:
-            names = zip(("yy", "zz", "yz"), body.mass.slices.each, strict=True)
-            entry["slices"] = {name: along(body, moment) for name, moment in names}
-        beam = {} if body.beam is None else {"beam": beam_to_numbers(body.beam, ca.SX)}
-        return found | {"density": entry} | beam
-
-    def along(link: Link, density: Density) -> Description:
-        scale = link.length if density.per_length else 1.0
-        return {
-            "breaks": list(density.breaks),
-            "cells": [vector(c * scale for c in cell) for cell in density.cells],
-        }
-
-    def fitted(joint: Joint) -> Description:
-        parts = mechanism.fitted.get(joint.name)
-        turning = mechanism.turning.get(joint.name)
-        found: Description = {"fitted": parts_to_numbers(parts, ca.SX)} if parts else {}
-        return found | {"turning": turning} if turning else found
-
-    def freedoms(joint: Joint) -> Description:
-        if joint.turned is None:
-            entry: Description = {"coordinate": joint.coordinate, "driven": joint.name in driven}
-            ends = {"parent": place(joint.parent), "child": place(joint.child)}
-            return entry | ends | {"axis": vector(joint.axis), "angle": ca.SX(joint.angle)}
-        x, y = joint.turned
-        return {
-            "coordinates": {axis.coordinate: axis.kind for axis in joint.axes},
-            "driven": [axis.coordinate for axis in joint.axes if axis.coordinate in driven],
-            "parent": place(joint.parent),
-            "child": place(joint.child),
-            "axes": [vector(axis.direction) for axis in joint.axes],
-            "triad": [vector(direction) for direction in joint.triad],
-            "turned": [vector(direction) for direction in (x, y, cross(x, y))],
-            "pitch": ca.SX(joint.pitch),
-        }
-
-    def load_of(load: Load) -> Description:
-        found: Description = {
-            "kind": type(load).__name__.lower(),
-            "points": [place(point) for point in load.points],
-        }
-        if mechanism.space:
-            found["turning"] = getattr(load, "turning", False)
-        if isinstance(load, Friction):
-            numbers = {word: ca.SX(value) for word, value in load.numbers.items()}
-            found["friction"] = {"coordinate": load.axis.coordinate, "numbers": numbers}
-        return found
-
-    bodies = {body.name: mass_properties(body) for body in mechanism.moving}
-    loads = {name: load_of(load) for name, load in mechanism.loads.items()}
-    joints = {
-        joint.name: {"kind": joint.kind} | freedoms(joint) | fitted(joint)
-        for joint in mechanism.joints.values()
-    }
-    parameters = {
-        name: {
-            "value": parameter.symbol,
-            "unit": parameter.unit,
-            "low": parameter.low,
-            "high": parameter.high,
-        }
-        for name, parameter in mechanism.parameters.items()
-    }
-    paths = {name: place(path.point) for name, path in mechanism.paths.items()}
-    beside = {
-        name: vector(link.beside)
-        for name, link in mechanism.links.items()
-        if link.beside is not None
-    }
-    outlines = {
-        body: [[vector(corner) for corner in outline] for outline in found]
-        for body, found in mechanism.outlines.items()
-    }
-    rollers = {
-        name: place(roller.centre) | {"radius": ca.SX(roller.radius)}
-        for name, roller in mechanism.rollers.items()
-    }
-    lossy = [
-        c.name
-        for c in mechanism.constraints.values()
-        if c.transmission is not None and c.transmission.loss is not None
-    ]
-    unturned = [joint.name for joint in mechanism.joints.values() if _lies_by_default(joint)]
-    optional = (
-        ("paths", paths),
-        ("outlines", outlines),
-        ("rollers", rollers),
-        ("losses", lossy),
-        ("beside", beside),
-        ("unturned", unturned),
-        ("outputs", {name: output.unit for name, output in mechanism.outputs.items()}),
-        ("rounded", {name: list(by) for name, by in mechanism.rounded.items()}),
-        ("snapped", {name: list(by) for name, by in mechanism.snapped.items()}),
-        ("drives", list(drives or ())),
-        ("motions", {name: _kind(mechanism, name) for name in driven} if drives else {}),
-    )
-    content: Description = {
-        "name": mechanism.name,
-        "parameters": parameters,
-        "gravity": vector(mechanism.gravity[: 3 if mechanism.space else 2]),
-        "bodies": bodies,
-        "joints": joints,
-        "loads": loads,
-        "rows": {name: row.replaces for name, row in mechanism.rows.items()},
-        "constraints": list(mechanism.constraints),
-    }
-    return content | {name: found for name, found in optional if found}

@@ -8,7 +8,7 @@ from typing import Literal
 
 from ..base.arguments import public
 from ..errors import DeclarationError, UnknownNameError, shown
-from .description import Description, in_space
+from .description import Description
 
 _END = 1e-9
 _SLIDING = ("prismatic", "slot", "cylindrical", "planar", "screw")
@@ -26,7 +26,7 @@ def effective_lengths(description: Description, link: str) -> tuple[float, float
 
     Parameters
     ----------
-    description : Mapping
+    description : Description
         The description of a solution, ``solution.description``.
     link : str
         Name of the link.
@@ -50,18 +50,14 @@ def effective_lengths(description: Description, link: str) -> tuple[float, float
     2 if an end is free. These are the theoretical numbers (Timoshenko and Gere, *Theory of Elastic
     Stability*, section 2.4).
     """
-    if not {"bodies", "joints"} <= {*description}:
+    if not isinstance(description, Description):
         raise DeclarationError(
             f"effective_lengths: expected the description of a solution, got {shown(description)}"
         )
-    if link not in description["bodies"] or description["bodies"][link]["length"] is None:
-        raise UnknownNameError(
-            "link",
-            link,
-            [name for name, body in description["bodies"].items() if body["length"] is not None],
-        )
+    if link not in description.links:
+        raise UnknownNameError("link", link, description.links)
     ends = held_ends(description, link)
-    if in_space(description):
+    if description.space:
         return (1.0, 1.0) if all(ends) else (2.0, 2.0)
     across = 0.5 if all(ends) else 2.0
     return (1.0 if ends[0] == ends[1] and ends[0] else 2.0), across
@@ -70,7 +66,7 @@ def effective_lengths(description: Description, link: str) -> tuple[float, float
 def ends_of(description: Description, link: str) -> Ends:
     """Supports of base and tip, by the rule for columns."""
     base, tip = held_ends(description, link)
-    space = in_space(description)
+    space = description.space
     if not (base or tip):
         return "free", "free"
     if base and tip:
@@ -93,23 +89,24 @@ def held_ends(description: Description, link: str) -> tuple[str, str]:
 
 def _holds(description: Description, link: str, tip: bool) -> str:
     """Support of an end: "turns", "held", or none."""
-    length, found = description["bodies"][link]["length"], ""
-    for joint in description["joints"].values():
-        for place, other in ((joint["parent"], joint["child"]), (joint["child"], joint["parent"])):
-            if place["body"] != link or abs(place["x"] - (length if tip else 0.0)) > _END * length:
+    length, found = description.bodies[link].length or 0.0, ""
+    for joint in description.joints.values():
+        for place, other in ((joint.parent, joint.child), (joint.child, joint.parent)):
+            if place.body != link or abs(place.at[0] - (length if tip else 0.0)) > _END * length:
                 continue
-            if place is joint["parent"] and joint["kind"] in _SLIDING:
+            if place is joint.parent and joint.kind in _SLIDING:
                 continue  # what slides along it is elsewhere
-            lone = description["bodies"].get(other["body"], {"length": 0.0})["length"] is None
+            lone = not description.oriented(other.body)
             if (
                 lone
                 and sum(
-                    other["body"] in (j["parent"]["body"], j["child"]["body"])
-                    for j in description["joints"].values()
+                    other.body in (j.parent.body, j.child.body) for j in description.joints.values()
                 )
                 < 2
             ):
                 continue  # a mass that hangs on nothing else
-            held = joint["kind"] in ("weld", "prismatic") or bool(joint["driven"])
+            held = joint.kind in ("weld", "prismatic") or any(
+                axis.coordinate in description.driven for axis in joint.axes
+            )
             found = "held" if held and not lone else found or "turns"
     return found

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass, fields
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from ..base.arguments import NotNegative, Positive, Symbolic, public
-from ..base.arrays import Expression, Json, Operand
+from ..base.arrays import Operand
 from ..base.brief import Brief
 from ..errors import DeclarationError, shown
 from .beams.material import Material
@@ -71,11 +70,22 @@ class Rolling:
 
 
 Fitted = Pin | Plain | Rolling
-KINDS: Mapping[str, type[Pin] | type[Plain] | type[Rolling]] = {
-    "pin": Pin,
-    "plain": Plain,
-    "rolling": Rolling,
-}
+
+
+@dataclass(frozen=True, eq=False)
+class Fittings:
+    """The parts that are fitted to a joint: one of each kind at most."""
+
+    pin: Pin | None = None
+    plain: Plain | None = None
+    rolling: Rolling | None = None
+
+    @property
+    def parts(self) -> list[Fitted]:
+        """Parts that are fitted."""
+        return [part for part in (self.pin, self.plain, self.rolling) if part is not None]
+
+
 _UNITS = dict.fromkeys(("diameter", "eye", "cheek", "gap", "bore", "width"), "m") | {"speed": "m/s"}
 _MAY_BE_ZERO = ("gap", "axial", "radial")
 
@@ -116,28 +126,23 @@ def fit(mechanism: Mechanism, joint: Joint, *parts: Fitted) -> None:
     pinned = joint.kind in ("revolute", "cylindrical")
     slides = joint.kind in ("prismatic", "slot")
     takes = ("plain", "rolling") if turning else ("plain",) if slides else ()
-    found: dict[str, Fitted] = dict(mechanism.fitted.get(joint.name, {}))
+    found = mechanism.fitted.get(joint.name, Fittings())
     for part in parts:
-        kind = next(name for name, known in KINDS.items() if isinstance(part, known))
+        kind = type(part).__name__.lower()
         if not pinned and kind not in takes:
             also = f"; it takes a {' or a '.join(takes)} bearing" if takes else ""
             raise DeclarationError(
                 f"{what}: expected a revolute or cylindrical joint for a pin or a bearing, got a"
                 f" {joint.kind} one{also}"
             )
-        if kind in found:
+        if getattr(found, kind) is not None:
             raise DeclarationError(f"{what}: the joint already has a {kind} part")
-        found[kind] = type(part)(
-            **{
-                name: _checked(mechanism, f"{what}: {kind}", name, value)
-                for name, value in _numbers(part)
-            }
-        )
+        numbers = {
+            name: _checked(mechanism, f"{what}: {kind}", name, value)
+            for name, value in vars(part).items()
+        }
+        found = Fittings(**vars(found) | {kind: type(part)(**numbers)})
     mechanism.fitted[joint.name] = found
-
-
-def _numbers(part: Fitted) -> list[tuple[str, float | None]]:
-    return [(entry.name, getattr(part, entry.name)) for entry in fields(part)]
 
 
 def _checked(mechanism: Mechanism, what: str, name: str, value: float | None) -> Operand:
@@ -154,31 +159,3 @@ def _checked(mechanism: Mechanism, what: str, name: str, value: float | None) ->
 def positive(name: str, number: float) -> bool:
     """Check that a number of a part is positive."""
     return 0.0 <= number < math.inf if name in _MAY_BE_ZERO else 0.0 < number < math.inf
-
-
-def parts_to_numbers(
-    parts: Mapping[str, Fitted], number: Callable[[Expression], Expression]
-) -> dict[str, Json]:
-    """Parts in plain numbers, as a file keeps them."""
-
-    def plain(name: str, value: Operand) -> Json:
-        return asdict(value) if name == "material" else None if value is None else number(value)
-
-    return {
-        kind: {name: plain(name, value) for name, value in _numbers(part)}
-        for kind, part in parts.items()
-    }
-
-
-def parts_from_numbers(record: Mapping[str, Any]) -> dict[str, Fitted]:
-    """The parts of such numbers.
-
-    Raises ``LookupError`` or ``TypeError`` for what are none, as in a forged file.
-    """
-    found: dict[str, Fitted] = {}
-    for kind, numbers in record.items():
-        words = dict(numbers)
-        if "material" in words:
-            words["material"] = Material(**words["material"])
-        found[kind] = KINDS[kind](**words)
-    return found

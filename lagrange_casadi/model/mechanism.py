@@ -24,7 +24,7 @@ from ..errors import DeclarationError
 from .beams.beam import Beam
 from .density import Density
 from .expressions import bound, check_line, check_name, unit_vector, value_of
-from .fitted import Fitted
+from .fitted import Fittings
 from .joints import Axis, Joint, JointKind, check_ends
 from .limits import check_connected, parameter_values
 from .loads import Between, LoadDensity, friction, line_load
@@ -82,7 +82,7 @@ class Mechanism(Graphs):
     rows: dict[str, Row] = field(default_factory=dict, init=False)
     outputs: dict[str, UserOutput] = field(default_factory=dict, init=False)
     paths: dict[str, Path] = field(default_factory=dict, init=False)
-    fitted: dict[str, dict[str, Fitted]] = field(default_factory=dict, init=False)
+    fitted: dict[str, Fittings] = field(default_factory=dict, init=False)
     turning: dict[str, str] = field(default_factory=dict, init=False)
     rough: dict[str, float] = field(default_factory=dict, init=False)
     snapped: dict[str, tuple[float, float]] = field(default_factory=dict, init=False)

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from ..base.arrays import Array
 from ..base.quantities import Output
-from .description import Description, drives_of, in_space, motions_of
+from .description import Description, JointNumbers
 from .limits import ROUNDED
 
 _EDGE = 1e-9
@@ -30,8 +30,8 @@ def notes(
     As far as efforts, the motion of the joint, or the sections of the link, are among the outputs:
     those that are determined.
     """
-    drives = drives_of(description)
-    moved = len(motions_of(description)) - len(description["rows"])
+    drives = description.drives
+    moved = len(description.driven) - len(description.rows)
     if len(drives) > moved and Output("effort", drives[0]) in outputs:
         text = (
             f"{len(drives)} drives ({', '.join(drives)}) for {moved}"
@@ -42,7 +42,7 @@ def notes(
     if resting.any():
         yield rest_note(t, outputs, resting)
     yield from drawing_notes(description)
-    for name, joint in description["joints"].items():
+    for name, joint in description.joints.items():
         if (second := _locked(joint, outputs)) is not None:
             near = t[int(np.argmin(np.abs(np.cos(second))))]
             yield (
@@ -50,23 +50,21 @@ def notes(
                 " all their rates are not evaluated; choose other instants, or another axis and"
                 " second"
             )
-        body = description["bodies"].get(joint["parent"]["body"], {})
-        directions = _along(name, joint)
-        if not directions or "density" not in body:
+        body = description.bodies.get(joint.parent.body)
+        directions = _along(joint)
+        if not directions or body is None or body.density is None:
             continue
-        ratio = outputs.get(Output("station", joint["parent"]["body"], "station", name))
+        ratio = outputs.get(Output("station", joint.parent.body, "station", name))
         if ratio is None and directions.keys() <= outputs.keys():
-            ratio = (
-                joint["parent"]["x"]
-                + sum(direction * outputs[motion] for motion, direction in directions.items())
-            ) / body["length"]
+            along = (direction * outputs[motion] for motion, direction in directions.items())
+            ratio = sum(along, np.full(t.shape, joint.parent.at[0])) / body.length_and_density[0]
         if ratio is None:
             continue
         away = np.flatnonzero((ratio < -_EDGE) | (ratio > 1.0 + _EDGE))
         if away.size:
             low, high = (round(float(end), 9) + 0.0 for end in (ratio.min(), ratio.max()))
             yield (
-                f"joint '{name}' leaves link '{joint['parent']['body']}' at t = {t[away[0]]:.6g} s"
+                f"joint '{name}' leaves link '{joint.parent.body}' at t = {t[away[0]]:.6g} s"
                 f" (xi/l from {low:.4g} to {high:.4g}); beyond the end of the link the"
                 " joint's force acts on that end, as through a rigid bracket"
             )
@@ -76,7 +74,7 @@ def drawing_notes(description: Description) -> Iterator[str]:
     """Corrections of rounded drawings, and their size: at ends of links and right angles, and so
     that loops close.
     """
-    snapped = description.get("snapped", {})
+    snapped = description.snapped
     for k, what, exact, unit in (
         (0, "axes", "at right angles", "rad"),
         (1, "places", "ends of links", "m"),
@@ -86,7 +84,7 @@ def drawing_notes(description: Description) -> Iterator[str]:
                 f"{what} of {', '.join(moved)} are taken as {exact}, moved by up to"
                 f" {max(moved.values()):.2g} {unit}"
             )
-    if rounded := description.get("rounded"):
+    if rounded := description.rounded:
         angle, distance = (max(by[k] for by in rounded.values()) for k in (0, 1))
         yield (
             f"loops close only within the rounding of the numbers given, for {', '.join(rounded)}:"
@@ -99,18 +97,13 @@ def _across(description: Description) -> Iterator[str]:
     """Each slender link that slides in a direction that is not its axis, where nothing was said of
     how it lies.
     """
-    for name in description.get("unturned", ()):
-        joint = description["joints"][name]
-        space = in_space(description)
-        along, axis = (
-            (joint["triad"][0], joint["turned"][0])
-            if space
-            else ([*joint["axis"], 0.0], [1.0, 0.0, 0.0])
-        )
+    for name in description.unturned:
+        joint = description.joints[name]
+        along, axis = joint.triad[0], joint.turned[0]
         off = math.atan2(np.linalg.norm(np.cross(along, axis)), abs(np.dot(along, axis)))
-        if off <= ROUNDED or _is_carrier(description, joint["child"]["body"]):
+        if off <= ROUNDED or _is_carrier(description, joint.child.body):
             continue
-        if space:
+        if description.space:
             directions = "turned= says how it lies"
         else:
             directions = (
@@ -118,7 +111,7 @@ def _across(description: Description) -> Iterator[str]:
                 " angle=0 says that it is meant"
             )
         yield (
-            f"link '{joint['child']['body']}' slides along joint '{name}' at"
+            f"link '{joint.child.body}' slides along joint '{name}' at"
             f" {math.degrees(off):.3g} deg to its axis, because the joint's axis does not turn it:"
             f" {directions}"
         )
@@ -128,16 +121,12 @@ def _is_carrier(description: Description, link: str) -> bool:
     """Return whether a link has no mass, and all joins and loads at one place: then its direction
     has no effect.
     """
-    ends = [joint[end] for joint in description["joints"].values() for end in ("parent", "child")]
-    loaded = [point for load in description["loads"].values() for point in load["points"]]
+    ends = [end for joint in description.joints.values() for end in joint.ends]
+    loaded = [point for load in description.loads.values() for point in load.points]
     places = [
-        point
-        for point in [*ends, *loaded, *description.get("paths", {}).values()]
-        if point["body"] == link
+        point for point in [*ends, *loaded, *description.paths.values()] if point.body == link
     ]
-    return description["bodies"][link]["mass"] == 0.0 and all(
-        place == places[0] for place in places
-    )
+    return description.bodies[link].mass == 0.0 and all(place == places[0] for place in places)
 
 
 def rest_note(t: Array, outputs: Mapping[Output, Array], resting: npt.NDArray[np.bool_]) -> str:
@@ -162,25 +151,21 @@ def rest_note(t: Array, outputs: Mapping[Output, Array], resting: npt.NDArray[np
     )
 
 
-def _along(name: str, joint: Description) -> dict[Output, float]:
+def _along(joint: JointNumbers) -> dict[Output, float]:
     """Distance of a joint's point along its parent's axis, from the motions that move it; empty if
     it does not slide.
     """
-    if "coordinates" not in joint:
-        if joint["kind"] in ("prismatic", "slot"):
-            return {Output("motion", name): joint["axis"][0]}
-        return {}
-    each = zip(joint["coordinates"].items(), joint["axes"], strict=True)
     found = {
-        Output("motion", own): axis[0] * (1.0 if kind == "slide" else joint["pitch"])
-        for (own, kind), axis in each
+        Output("motion", axis.coordinate): axis.direction[0]
+        * (1.0 if axis.kind == "slide" else joint.pitch)
+        for axis in joint.axes
     }
     return {motion: direction for motion, direction in found.items() if direction}
 
 
-def _locked(joint: Description, outputs: Mapping[Output, Array]) -> Array | None:
+def _locked(joint: JointNumbers, outputs: Mapping[Output, Array]) -> Array | None:
     """The second of a joint's three turns, if the first is indeterminate because of gimbal lock."""
-    rotations = [name for name, kind in joint.get("coordinates", {}).items() if kind == "angle"]
+    rotations = [axis.coordinate for axis in joint.axes if axis.kind == "angle"]
     first, second = (
         (outputs.get(Output("motion", name)) for name in rotations[:2])
         if len(rotations) == 3

@@ -17,13 +17,11 @@ from ..base.arrays import Array, Expression
 from ..base.scalars import column
 from ..base.symbolic import Graphs, symbolic
 from ..base.templates import Template
+from .description import Triple
 from .mechanism import Mechanism
 from .meshes import Transmission, Wrench
 from .motion import Motion
 from .parts import Constraint, Force, Friction, LineLoad, Point, Row, Spring, Torque
-
-Triple = tuple[float, float, float]
-"""A vector in plain numbers."""
 
 EntryKind = Literal["coordinate", "x", "y", "z", "direction"]
 
@@ -204,7 +202,7 @@ class Stated:
 
     @classmethod
     @symbolic
-    def of(cls, mechanism: Mechanism, motions: Mapping[str, Motion]) -> Template:
+    def of(cls, mechanism: Mechanism, motions: Mapping[str, Motion]) -> Template[Stated]:
         """Declared facts of a mechanism whose coordinates, those of guides too, have ``motions``,
         for any parameters.
 
@@ -230,6 +228,10 @@ class Stated:
             ),
         )
         return Template.of(found, mechanism.symbols)
+
+
+NOTHING = Stated()
+"""Nothing is known of it, as of a mechanism in a file."""
 
 
 def _parameters(mechanism: Mechanism) -> tuple[Any, ...]:

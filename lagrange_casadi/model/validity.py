@@ -180,7 +180,7 @@ def _numbers(mechanism: Mechanism) -> Iterator[tuple[str, list[Expression]]]:
         else:
             densities = (mass, *(mass.slices.each if mass.slices else ()))
             numbers += [c for density in densities for cell in density.cells for c in cell]
-        for shape in () if body.beam is None else body.beam.course.shapes():
+        for shape in () if body.beam is None else body.beam.course.shapes:
             numbers += shape.dimensions.values()
         yield f"link '{body.name}'", numbers
     for joint in mechanism.joints.values():
@@ -281,7 +281,7 @@ def _of_beam(what: str, link: Link) -> list[Demand]:
     """Conditions on the dimensions of a cross-section; between two breaks they are linear, and so
     are the conditions.
     """
-    shapes = () if link.beam is None else link.beam.course.shapes()
+    shapes = () if link.beam is None else link.beam.course.shapes
     return [
         Demand.saying(
             value, True, f"{what}: {words} of its {shape.kind} must be positive, got {{got}}"

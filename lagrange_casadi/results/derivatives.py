@@ -90,10 +90,10 @@ class Derivative:
 
 def derivatives(histories: Histories, sensitivities: Derivatives) -> Iterator[Derivative]:
     """All derivatives of histories."""
-    parameters = histories.description["parameters"]
+    parameters = histories.description.parameters
     for name, found in sensitivities.by.items():
         for output, values in found.items():
-            unit = quotient(histories.unit(output), str(parameters[name]["unit"]))
+            unit = quotient(histories.unit(output), parameters[name].unit)
             quantity = output.meant(histories.table)
             words = quantity.attributes | {
                 "long_name": f"{quantity.long_name}: derivative by {name}"

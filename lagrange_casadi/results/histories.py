@@ -19,7 +19,7 @@ from ..base.quantities import Kinds, Output, motions_of
 from ..base.tables import Table, table_of
 from ..engine.instants.evaluation_method import Provenance
 from ..errors import DeclarationError, UnknownNameError, shown
-from ..model.description import Description, density_of, in_space, kinds_of_described
+from ..model.description import Description
 from ..model.limits import no_sections
 from ..model.times import DriveAxis
 from .laws import law_of, made_of
@@ -81,12 +81,12 @@ class Histories:
     @cached_property
     def table(self) -> Table:
         """Table of quantities: that of planar mechanisms, or that of spatial ones."""
-        return table_of(in_space(self.description))
+        return table_of(self.description.space)
 
     @cached_property
     def _kinds(self) -> Kinds:
         """Kinds of coordinates, which determine the units of outputs."""
-        return kinds_of_described(self.description)
+        return self.description.kinds
 
     @cached_property
     def series(self) -> Mapping[str, Array]:
@@ -217,14 +217,14 @@ class Histories:
         """
         if link in self._sections:
             return self._sections[link]
-        bodies = self.description["bodies"]
+        bodies = self.description.bodies
         if link not in bodies:
             raise UnknownNameError("link with sections", link, self._sections)
-        if "density" in bodies[link]:
+        if bodies[link].density is not None:
             raise DeclarationError(
                 f"the sections of link '{link}' were not evaluated; add section:{link} too"
             )
-        links = [name for name, body in bodies.items() if body["length"] is not None]
+        links = self.description.links
         raise DeclarationError(no_sections(link, link=link in links, links=links))
 
     @property
@@ -238,9 +238,7 @@ class Histories:
         NaN there.
         """
         found = np.zeros(self.t.size, dtype=bool)
-        if "losses" in self.description or any(
-            "friction" in load for load in self.description["loads"].values()
-        ):
+        if self.description.has_friction:
             for output, values in self.outputs.items():
                 if output not in self.indeterminate:
                     found |= np.isnan(values)
@@ -432,15 +430,10 @@ class Histories:
 
     @cached_property
     def _sections(self) -> dict[str, Section]:
-        links = {
-            output.part: self.description["bodies"][output.part]
-            for output in self.outputs
-            if output.group == "law"
-        }
-        precision = self.provenance.precision
+        bodies, precision = self.description.bodies, self.provenance.precision
         laws = {
-            link: law_of(link, self.outputs, body["length"], density_of(body), precision)
-            for link, body in links.items()
+            link: law_of(link, self.outputs, *bodies[link].length_and_density, precision)
+            for link in dict.fromkeys(one.part for one in self.outputs if one.group == "law")
         }
         return {link: Section(law, self.xi) for link, law in laws.items()}
 

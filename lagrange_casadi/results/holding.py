@@ -36,7 +36,6 @@ from ..engine.instants.beyond_equilibrium import Holding
 from ..engine.instants.evaluation_method import EvaluationMethod
 from ..engine.program import Program
 from ..engine.verdicts import OPEN
-from ..model.description import values_of
 from ..model.scene import Scene
 from .histories import Histories
 from .solution import Solution
@@ -87,7 +86,7 @@ def held_at_rest(scene: Scene, histories: Histories) -> dict[str, Holding]:
     if not open_at:
         return {}
     at = np.flatnonzero(np.any([*open_at.values()], axis=0))
-    values = values_of(histories.description)
+    values = histories.description.values
     program, near = derived(scene, ["effort"], values)
     held, p = held_efforts(near), np.array([*values.values()])
     tried, why = _tried(held, _inputs(program, histories.t, p, at))

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from ..base.arrays import Array
 from ..base.quantities import Output
 from ..base.tables import LARGEST, table_of
-from ..model.description import Description, in_space, parts_of
+from ..model.description import Description
 from .histories import Histories
 from .solution import Solution
 
@@ -22,7 +22,7 @@ def in_order(outputs: Mapping[Output, Array], description: Description) -> dict[
 
     Raises ``ValueError`` for one of a part that is not declared.
     """
-    order = _order(tuple(outputs), tuple(parts_of(description)), in_space(description))
+    order = _order(tuple(outputs), tuple(description.parts), description.space)
     return {output: outputs[output] for output in order}
 
 

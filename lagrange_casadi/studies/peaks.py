@@ -31,7 +31,6 @@ from ..engine.reciprocals import differentiable
 from ..engine.section_function import Side
 from ..engine.sharpness import Sharpness
 from ..errors import DeclarationError
-from ..model.description import values_of
 from ..model.even_points import EvenPoints, are_even
 from ..model.scene import Scene
 from ..model.times import Over, Times, span_of
@@ -277,10 +276,10 @@ class ContinuousSolution(Brief):
         )
         if (
             scene.name != solution.case
-            or scene.parameters.keys() != solution.description["parameters"].keys()
+            or scene.parameters.keys() != solution.description.parameters.keys()
         ):
             raise other
-        values = scene.values(values_of(solution.description))
+        values = scene.values(solution.description.values)
         wanted = list(dict.fromkeys(map(wanted_for, solution.outputs)))
         program = compile_scene(scene, wanted, parameters=values)
         p = np.array(list(values.values()))

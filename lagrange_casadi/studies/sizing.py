@@ -20,7 +20,7 @@ from ..engine.model_data import beam_at, template
 from ..engine.two_force_links import unaimed
 from ..errors import DeclarationError, LagrangeCasadiError, NoDesignError, UnknownNameError
 from ..model.beams.profiles import Profile
-from ..model.description import beams_of, values_of
+from ..model.description import Description
 from ..model.end_conditions import ends_of
 from ..model.parts import Parameter
 from ..model.scene import Scene
@@ -186,7 +186,7 @@ class _Enough:
 class _Search:
     evaluated: Callable[..., Solution]
     request: Request
-    template: Template
+    template: Template[Description]
     slots: dict[str, _Slot]
     enough: _Enough
     left: Mapping[str, str]
@@ -206,7 +206,7 @@ class _Search:
         if not profiles:
             raise DeclarationError("size: expected at least one profile")
         described = template(scene)
-        content, having = described.content, beams_of(described.content)
+        content, having = described.content, described.content.beams
         if not having:
             raise DeclarationError(
                 "size: no link has a cross-section, so there is nothing to size; declare one with"
@@ -217,9 +217,7 @@ class _Search:
         slots: dict[str, _Slot] = {}
         remaining: dict[str, str] = {}
         defaults = scene.values(request.parameters)
-        spinning = [
-            name for name in content.get("bars", ()) if name not in content.get("beside", ())
-        ]
+        spinning = [name for name in content.bars if name not in content.beside]
         for name in having if links is None else [name for name in having if name in links]:
             try:
                 if name in spinning and not beam_at(described, name, list(defaults.values())).round:
@@ -266,7 +264,7 @@ class _Search:
         criteria, else until one fails.
         """
         member = Member.of(solution, name)
-        slot, values = self.slots[name], values_of(solution.description)
+        slot, values = self.slots[name], solution.description.values
         values |= slot.values(slot.profiles[k])
         other = replace(member, beam=beam_at(self.template, name, list(values.values())))
         criterion, yield_criterion = self.enough.criterion, self.enough.yield_criterion
@@ -354,7 +352,7 @@ class _Search:
         solution = self.evaluated(asked)
         links = []
         for name, k in choice.items():
-            slot, mass = self.slots[name], solution.description["bodies"][name]["mass"]
+            slot, mass = self.slots[name], solution.description.bodies[name].mass
             before = None
             if k:
                 before = (
@@ -379,7 +377,7 @@ class _UnfitError(LagrangeCasadiError):
 
 
 def _slot(
-    described: Template,
+    described: Template[Description],
     link: str,
     profiles: Sequence[Profile],
     parameters: Mapping[str, Parameter],
@@ -390,7 +388,7 @@ def _slot(
     """
     owners: dict[str, str] = {}
     shapes = list(
-        beam_at(described, link, column(one.symbol for one in parameters.values())).course.shapes()
+        beam_at(described, link, column(one.symbol for one in parameters.values())).course.shapes
     )
     for name in profiles[0].dimensions:
         if lacking := [shape.kind for shape in shapes if name not in shape.dimensions]:
@@ -416,14 +414,14 @@ def _slot(
             if fault := parameters[owners[name]].fault(value):
                 raise _UnfitError(f"profile '{profile.name}': {fault}")
         beam = beam_at(described, link, list((dict(defaults) | values).values()))
-        for shape in beam.course.shapes():
+        for shape in beam.course.shapes:
             for value, words in shape.parameter_constraints():
                 if not float(value) > 0.0:
                     raise _UnfitError(
                         f"profile '{profile.name}': {words} of its {shape.kind} must be positive,"
                         f" got {readable(float(value))}"
                     )
-        areas = [float(shape.area) for shape in beam.course.shapes()]
+        areas = [float(shape.area) for shape in beam.course.shapes]
         weights.append(sum(areas) / len(areas))
     order = sorted(range(len(profiles)), key=lambda k: weights[k])
     return _Slot(owners, tuple(profiles[k] for k in order))

@@ -19,7 +19,6 @@ from ..base.arrays import Array
 from ..base.brief import Brief
 from ..engine.model_data import template
 from ..errors import DeclarationError
-from ..model.description import beams_of
 from ..model.parts import Body, Point
 from ..model.pushed import with_push
 from ..model.scene import Scene
@@ -94,7 +93,7 @@ def tool_deflection(
         As :func:`.evaluate`.
     """
     pushed, pushes, body = with_push(scene, point)
-    links = beams_of(template(scene).content)
+    links = [*template(scene).content.beams]
     if not links:
         raise DeclarationError("tool_deflection: no link has a beam=, so all are rigid")
 

@@ -4,7 +4,7 @@ import base64
 import functools
 import json
 import tempfile
-from dataclasses import replace
+from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -99,8 +99,10 @@ def hostile():
     def renamed(value):
         if isinstance(value, dict):
             return {names.get(key, key): renamed(one) for key, one in value.items()}
-        if isinstance(value, list):
-            return [renamed(one) for one in value]
+        if isinstance(value, list | tuple):
+            return type(value)(map(renamed, value))
+        if is_dataclass(value):
+            return type(value)(*(renamed(getattr(value, one.name)) for one in fields(value)))
         return names.get(value, value) if isinstance(value, str) else value
 
     outputs = {

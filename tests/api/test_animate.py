@@ -255,19 +255,16 @@ def test_bodies_are_where_the_solution_has_them(tmp_path, name):
     solution = every_kind() if name == "every" else solved(name)
     told, array = read(written(solution, tmp_path / "a.glb", Film(rate=25, seconds=3.0)))
     chosen = at_keys(solution, told, array, 3.0)
-    size = max(
-        np.ptp(places_of(solution, body, (0, 0, 0))) for body in solution.description["bodies"]
-    )
-    for joint in solution.description["joints"].values():
-        for end in (joint["child"], joint["parent"]):
-            if end["body"] != "ground":
-                place = (end["x"], end["y"], end.get("z", 0.0))
-                exact = places_of(solution, end["body"], place)[chosen]
-                found = moved(told, array, end["body"])(place)
+    size = max(np.ptp(places_of(solution, body, (0, 0, 0))) for body in solution.description.bodies)
+    for joint in solution.description.joints.values():
+        for end in (joint.child, joint.parent):
+            if end.body != "ground":
+                exact = places_of(solution, end.body, end.at)[chosen]
+                found = moved(told, array, end.body)(end.at)
                 np.testing.assert_allclose(found, exact, rtol=0, atol=1e-5 * size)
     (top,) = told["scenes"][0]["nodes"]
-    gravity = np.array(solution.description["gravity"])
-    if gravity.size > 2:
+    if solution.description.space:
+        gravity = np.array(solution.description.gravity)
         up = turned(np.array([told["nodes"][top]["rotation"]]), -gravity / np.linalg.norm(gravity))
         np.testing.assert_allclose(up, [[0.0, 1.0, 0.0]], atol=1e-12)
     for channel in told["animations"][0]["channels"]:
@@ -285,13 +282,13 @@ def test_arrows_are_forces_at_their_places_to_the_scale_that_is_told(tmp_path, n
     told, array = read(written(solution, tmp_path / "a.glb", film))
     chosen = at_keys(solution, told, array, 2.0)
     extras = {node["name"]: node["extras"] for node in told["nodes"] if "extras" in node}
-    joints, bodies = solution.description["joints"], solution.description["bodies"]
+    joints, bodies = solution.description.joints, solution.description.bodies
     size = max(np.ptp(places_of(solution, body, (0, 0, 0))) for body in bodies)
     assert {one for one in extras if one.startswith("reaction ")} == {
         f"reaction {j}" for j in joints
     }
     for joint, described in joints.items():
-        end, one = described["child"], f"reaction {joint}"
+        end, one = described.child, f"reaction {joint}"
         found = solution.reaction(joint)
         parts = [found.fx, found.fy, 0 * found.fx if name == "excavator" else found.fz]
         force = np.column_stack(parts)[chosen]
@@ -301,8 +298,7 @@ def test_arrows_are_forces_at_their_places_to_the_scale_that_is_told(tmp_path, n
         tail, tip = (moved(told, array, one)(place) for place in ((0, 0, 0), (1, 0, 0)))
         scaled = extras[one]["metres_per_unit"] * force
         np.testing.assert_allclose(tip - tail, scaled, rtol=0, atol=1e-5 * size)
-        place = (end["x"], end["y"], end.get("z", 0.0))
-        exact = places_of(solution, end["body"], place)[chosen]
+        exact = places_of(solution, end.body, end.at)[chosen]
         np.testing.assert_allclose(tail, exact, rtol=0, atol=1e-5 * size)
     for one in (one for one in extras if one.startswith("effort ")):
         tail, tip = (moved(told, array, one)(place) for place in ((0, 0, 0), (1, 0, 0)))

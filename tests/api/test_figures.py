@@ -221,9 +221,9 @@ def test_drawings_in_space_have_links_where_their_poses_put_them_and_name_all(na
     figure = MechanismDrawing().draw(solution)
     written = [text.get_text().replace("\n", " ") for text in figure.axes[1].texts]
     told = {name for text in written for name in text.split(", ")}
-    assert told >= {*solution.description["joints"], *solution.description.get("paths", {})}
+    assert told >= {*solution.description.joints, *solution.description.paths}
     bodies = {text.get_text() for text in figure.legends[0].get_texts()}
-    assert bodies >= {*solution.description["bodies"]} - {"ground"}
+    assert bodies >= {*solution.description.bodies} - {"ground"}
     if name == "rssr":
         pose = solution.pose("coupler")
         base = np.array([pose.x[0], pose.y[0], pose.z[0]])

@@ -72,7 +72,7 @@ def test_loads_and_inertia_are_in_equilibrium(name, links):
             largest = max(np.linalg.norm(load.force) for load in case.loads)
             assert np.abs(force + case.mass * field(case, case.centre)).max() < 1e-12 * largest
             inertia, omega = np.array(case.inertia), np.array(case.omega)
-            if solution.description["bodies"][link]["length"] is not None:
+            if solution.description.bodies[link].length is not None:
                 spun = inertia @ case.alpha + np.cross(omega, inertia @ omega)
                 scale = np.abs([load.moment for load in case.loads]).max()
                 assert np.abs(moment - spun).max() < 1e-12 * max(largest, scale)
@@ -171,8 +171,8 @@ def first_of(solution):
 def open_link():
     """A link between cranks of which one is too many."""
     solution = evaluate(parallelogram(), wanted=["all"], backend="vm")
-    joint = solution.description["joints"][solution.indeterminate[0].part]
-    ends = (joint[end]["body"] for end in ("child", "parent"))
+    joint = solution.description.joints[solution.indeterminate[0].part]
+    ends = (end.body for end in (joint.child, joint.parent))
     link_load_cases(solution, next(body for body in ends if body != "ground"))
 
 

@@ -96,7 +96,7 @@ def moved(scene, **changes):
 
 def same(one, other):
     """Two solutions have their links at the same places; a turn more or less is none."""
-    for name in one.description["bodies"]:
+    for name in one.description.bodies:
         a, b = one.pose(name), other.pose(name)
         turn = 0.0 if a.angle is None else math.remainder(a.angle[0] - b.angle[0], math.tau)
         if max(abs(a.x[0] - b.x[0]), abs(a.y[0] - b.y[0]), abs(turn)) > 1e-9:

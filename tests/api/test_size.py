@@ -57,7 +57,7 @@ def test_a_link_may_be_left_as_it_is(scene):
     found = size(scene, BARS, links=["fore"], parameters={"d1": 0.025})
     assert [one.link for one in found.links] == ["fore"]
     assert set(found.parameters) == {"d2"}
-    assert found.solution.description["parameters"]["d1"]["value"] == 0.025
+    assert found.solution.description.parameters["d1"].value == 0.025
 
 
 def test_a_link_is_stiff(scene):

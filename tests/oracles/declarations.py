@@ -1,10 +1,8 @@
-"""What certificates read of a scene, without anything that is derived."""
+"""What certificates read of a scene beside its numbers, without anything that is derived."""
 
-from internals import Declared, Stated
+from internals import Stated
 
 
 def declaration(scene, solution):
-    """The mechanism in plain numbers as a solution has them, and what was stated of it."""
-    values = [one["value"] for one in solution.description["parameters"].values()]
-    stated = Stated.of(scene.mechanism, scene.laws).at(values)
-    return Declared.of(solution.description, stated)
+    """What was stated of the mechanism of a solution."""
+    return Stated.of(scene.mechanism, scene.laws).at([*solution.description.values.values()])

@@ -125,17 +125,13 @@ def of_solution(solution, i, sections, loads=(), accelerations=None):
     in ground axes; ``accelerations`` tells the acceleration of a link's place x.
     """
     told, frame, nodes = solution.description, Frame(), {}
-    space = len(told["gravity"]) > 2
-    gravity = np.array([*told["gravity"], 0.0][:3])
-    places = {
-        name: {0.0, body["length"]}
-        for name, body in told["bodies"].items()
-        if body["length"] is not None
-    }
-    for joint in told["joints"].values():
-        for end in (joint["parent"], joint["child"]):
-            if end["body"] in places:
-                places[end["body"]].add(end["x"])
+    space = told.space
+    gravity, bodies = np.array(told.gravity), told.bodies.items()
+    places = {name: {0.0, body.length} for name, body in bodies if body.length is not None}
+    for joint in told.joints.values():
+        for end in (joint.parent, joint.child):
+            if end.body in places:
+                places[end.body].add(end.at[0])
     for link, x, *_ in loads:
         places[link].add(x)
     axes_of = {"ground": np.eye(3)}
@@ -167,31 +163,24 @@ def of_solution(solution, i, sections, loads=(), accelerations=None):
         for node in range(len(frame.places)):
             for k in (2, 3, 4):
                 frame.tie(None, node, np.eye(6)[k])
-    for name, body in told["bodies"].items():
-        if body["length"] is None:
+    for name, body in bodies:
+        if body.length is None:
             pose = solution.pose(name)
             node = nodes[name, 0.0] = frame.node(
                 [pose.x[i], pose.y[i], pose.z[i] if space else 0.0]
             )
-            frame.push(node, body["mass"] * gravity)
+            frame.push(node, body.mass * gravity)
             for k in (3, 4, 5) if space else (2, 3, 4, 5):
                 frame.tie(None, node, np.eye(6)[k])
     rows = {}
-    for name, joint in told["joints"].items():
-        ends = [joint["parent"], joint["child"]]
-        parent, child = (nodes.get((end["body"], end["x"])) for end in ends)
-        axes = axes_of[ends[0]["body"]]
-        kind, driven = joint["kind"], bool(joint["driven"])
-        triad = (
-            np.array(joint["triad"]) @ axes
-            if space
-            else np.array([[0, 0, 1.0], [1.0, 0, 0], [0, 1.0, 0]])
-        )
+    for name, joint in told.joints.items():
+        parent, child = (nodes.get((end.body, end.at[0])) for end in (joint.parent, joint.child))
+        kind, driven = joint.kind, any(axis.coordinate in told.driven for axis in joint.axes)
+        triad = np.array(joint.triad) @ axes_of[joint.parent.body]
         if kind == "prismatic":
-            along = axes.T @ np.array([*joint["axis"], 0.0]) if not space else triad[0]
-            across = list(np.linalg.svd(along[None])[2][1:])
+            across = list(np.linalg.svd(triad[:1])[2][1:])
             moves, turns = across, list(triad)
-            driving = [[*along, 0, 0, 0]]
+            driving = [[*triad[0], 0, 0, 0]]
         else:
             moves = list(np.eye(3))
             turns = {"revolute": list(triad[1:]), "weld": list(triad), "spherical": []}[kind]
@@ -199,7 +188,7 @@ def of_solution(solution, i, sections, loads=(), accelerations=None):
         if not space:
             moves = [d for d in moves if abs(d[2]) < 0.5]
             turns = [d for d in turns if abs(d[2]) > 0.5]
-        if told["bodies"].get(ends[1]["body"], {"length": 1})["length"] is None:
+        if not told.oriented(joint.child.body):
             turns = []
         own = [[*d, 0, 0, 0] for d in moves] + [[0, 0, 0, *d] for d in turns]
         rows[name] = [(frame.tie(parent, child, row), np.array(row, float)) for row in own]

@@ -67,7 +67,7 @@ def compare(drawn, solution, true, rounding=1e-12):
                 )[k]
                 assert abs(own - float(value)) < rounding * size, (joint, member)
         for body, pose in one.poses.items():
-            if body != GROUND and body not in solution.description["bars"]:
+            if body != GROUND and body not in solution.description.bars:
                 assert np.allclose(
                     solution.pose(body).axes[k], np.array(pose.R, float).T, rtol=0, atol=rounding
                 ), body

@@ -95,7 +95,7 @@ def compare(name, seed, instants):
     )
     solution = evaluate(scene, xi=(0, 1, 5))
     assert solution.certified
-    assert {*solution.description["bars"]} == find_two_force_links(drawn)
+    assert {*solution.description.bars} == find_two_force_links(drawn)
     compared = set()
     for k in instants:
         true = drawn.solve(float(solution.t[k]))

@@ -114,7 +114,7 @@ def hung(noise):
 def test_a_bar_of_hard_points_may_be_loaded(noise):
     found = vm(hung(noise))
     assert rounded(found)
-    assert 0.0 < found.description["rounded"]["pull"][1] < 2 * noise
+    assert 0.0 < found.description.rounded["pull"][1] < 2 * noise
     assert_near(found, vm(hung(0.0)), noise)
 
 
@@ -155,7 +155,7 @@ def pressing(noise, tilt=None):
 def test_a_tilt_that_was_meant_stays_beside_a_loop_that_was_rounded():
     """The joint that carries it closes no loop."""
     found = vm(pressing(1e-9, 1e-7))
-    assert "swing" not in found.description["rounded"]
+    assert "swing" not in found.description.rounded
     assert_near(found, vm(pressing(0.0, 1e-7)), 1e-9)
 
 
@@ -177,8 +177,8 @@ def test_what_is_made_of_a_corrected_scene(tmp_path):
     """Peaks of designs, and files, which hold by how much axes were moved."""
     noise, grid = 1e-8, {"length": (0.06, 0.12, 3), "tilt": [0.0, 1e-7, 0.1]}
     one, other = (sweep(pressing(off), grid, wanted=["effort"]) for off in (0.0, noise))
-    assert "rounded" not in one.description
-    assert 0.0 < max(map(max, other.description["rounded"].values())) < 2 * noise
+    assert not one.description.rounded
+    assert 0.0 < max(map(max, other.description.rounded.values())) < 2 * noise
     for name in ("peak:effort:swing", "peak:effort:O"):
         peaks, found = (
             np.array([kept.values(k, name)[name] for k in range(kept.size)])
@@ -188,7 +188,7 @@ def test_what_is_made_of_a_corrected_scene(tmp_path):
     solution = evaluate(pressing(noise), wanted=["all"], parameters={"length": 0.09})
     save(solution, tmp_path / "rough.h5")
     kept = load(tmp_path / "rough.h5")
-    assert kept.description["rounded"] == solution.description["rounded"]
+    assert kept.description.rounded == solution.description.rounded
     assert kept.certified
     assert rounded(kept)
 

@@ -88,7 +88,7 @@ def compare_errors(drawn, solution, force, moment):
     one = drawn.solve(float(solution.t[k]), 30)
     told = {full: value for full, (value, key) in named(drawn, one).items() if key not in one.open}
     own = {full: solution.outputs.get(Output.of(full), np.full(k + 1, np.nan))[k] for full in told}
-    for rod in {*drawn.rods} - {*solution.description["bars"]}:
+    for rod in {*drawn.rods} - {*solution.description.bars}:
         for i in range(1, RATIOS - 1):  # ends have sides
             there = one.sections[rod].at(float(solution.xi[i]))
             for member, value in zip(SECTION, there, strict=True):
@@ -108,7 +108,7 @@ def compare_peaks(drawn, scene, solution, seed):
     told = {*named(drawn, drawn.solve(0.0))}
     told |= {
         f"section:{rod}:{member}"
-        for rod in {*drawn.rods} - {*solution.description["bars"]}
+        for rod in {*drawn.rods} - {*solution.description.bars}
         for member in SECTION
     }
     told = [full for full in forces(solution) if full in told and solution.determined(full)]
@@ -135,14 +135,14 @@ def compare_motion(drawn, solution, k, one):
         *(abs(float(x)) for _, rate, change in one.coordinates.values() for x in (rate, change)),
     )
     for name, value in places.items():
-        if name in solution.description["unmeasured"]:
+        if name in solution.description.unmeasured:
             continue
         gap = solution.motion(name).value[k] - value
         angle = solution.unit(f"motion:{name}") == "rad"
         assert abs(gap - (math.tau * round(gap / math.tau) if angle else 0.0)) < 1e-11, name
     for (joint, number), (_, rate, change) in one.coordinates.items():
         name = coordinate(drawn.mechanism.joint(joint), number)
-        if name not in solution.description["unmeasured"]:
+        if name not in solution.description.unmeasured:
             own = solution.motion(name)
             assert near(own.rate[k], rate, 10 * fast), name
             assert near(own.acceleration[k], change, 100 * fast), name
@@ -151,7 +151,7 @@ def compare_motion(drawn, solution, k, one):
         assert np.allclose(
             [told.x[k], told.y[k], told.z[k]], pose.r.astype(float), rtol=0, atol=1e-12
         ), body
-        spun = body in solution.description["bars"]
+        spun = body in solution.description.bars
         axes = np.array(pose.R, float).T
         assert np.allclose(
             told.axes[k][: 1 if spun else 3], axes[: 1 if spun else 3], rtol=0, atol=1e-12
@@ -164,7 +164,7 @@ def compare_sections(drawn, solution, k, one, rod, force, moment):
         told = one.sections[rod].at(float(xi)).astype(float)
         shut = ~np.array(one.open_section(rod, float(xi)))
         own = np.array([getattr(section, name)[k, i] for name in SECTION])
-        if rod in solution.description["bars"]:
+        if rod in solution.description.bars:
             # A bar's cross-section has axes of its own: its spin is anyone's.
             own = spun(own)
             told = spun(told)

@@ -41,7 +41,7 @@ def test_the_cross_section_of_11_t_t(even):
     assert p.iz == pytest.approx(419 / 12 * T**4, rel=1e-12)
     assert p.iy == pytest.approx(131 / 12 * T**4, rel=1e-12)
     assert 3.0 < p.iz / p.iy < 3.5
-    assert even.description["bodies"]["rod"]["mass"] == pytest.approx(11 * T**2 * 8000 * LENGTH)
+    assert even.description.bodies["rod"].mass == pytest.approx(11 * T**2 * 8000 * LENGTH)
 
 
 def test_the_gas_force(even):
@@ -78,7 +78,7 @@ def test_the_bearings_bear_the_gas_force(scene):
     and 29 mm, 58 mm wide.
     """
     for joint, ratio, pressure in (("crankpin", 1.3, 10.0), ("piston_pin", 2.0, 15.0)):
-        bearing = scene.mechanism.fitted[joint]["plain"]
+        bearing = scene.mechanism.fitted[joint].plain
         assert bearing.pressure == pressure * 1e6
         assert 1e3 * bearing.bore == math.ceil(math.sqrt(24_740 / (ratio * pressure)))
         assert 1e3 * bearing.width == math.ceil(1e3 * ratio * bearing.bore)

@@ -214,7 +214,7 @@ def test_mass_follows_from_area_and_density_along_a_taper(kind):
     ]
     expected = STEEL.density * 0.4 * float(np.dot(weights / 2, areas))
     description = evaluate(arm(beams.Beam(course, STEEL)), certificate=False).description
-    assert description["bodies"]["arm"]["mass"] == pytest.approx(
+    assert description.bodies["arm"].mass == pytest.approx(
         expected if kind != "given" else STEEL.density * 0.4 * 4.8e-4, rel=1e-13
     )
 

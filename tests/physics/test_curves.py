@@ -212,8 +212,8 @@ def test_a_part_beyond_the_ends_is_refused_by_name():
     length = curve([1, 2, 3, 4], [0.2, 0.3, 0.5, 0.9])(m.parameter("size", 2.0))
     m.revolute("J", m.ground, m.link("arm", length=length, mass=1.0))
     scene = Scene(m, {"J": motion.polynomial(0.0, 1.0)}, t=(0, 1, 11))
-    found = evaluate(scene, parameters={"size": 4.0}).description["bodies"]["arm"]
-    assert found["length"] == pytest.approx(0.9, rel=1e-14)
+    found = evaluate(scene, parameters={"size": 4.0}).description.bodies["arm"]
+    assert found.length == pytest.approx(0.9, rel=1e-14)
     says = r"link 'arm': .* curve, from 1 to 4, is outside the curve's range"
     with pytest.raises(ParameterError, match=says):
         evaluate(scene, parameters={"size": 4.1})

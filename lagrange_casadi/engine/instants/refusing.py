@@ -199,8 +199,8 @@ def _beyond(program: Program, p: Array, precision: Precision, at: str) -> str | 
     """Message if the square of a link's length overflows in a precision."""
     numbers = np.finfo(DTYPES[precision])
     low, high = math.sqrt(numbers.tiny), math.sqrt(numbers.max)
-    for name, body in program.data.at(p)["bodies"].items():
-        length = body["length"]
+    for name, body in program.data.at(p).bodies.items():
+        length = body.length
         if length is not None and not low <= length <= high:
             what = (
                 f"link '{name}' is {length:.3g} m long, but squares in {precision} precision need"

@@ -7,7 +7,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from ...errors import DeclarationError
-from ...model.description import Description
 from ..portable.contract import Contract
 from ..portable.source import Source
 from ..portable.text import number_rows, numbers, quoted, template
@@ -23,8 +22,8 @@ def control(source: Source) -> dict[str, str]:
     if not efforts:
         raise DeclarationError(f"a header for controllers needs efforts; '{c.name}' exports none")
     settings = bool(c.settings)
-    content: Description = source.exported.program.data.template.content
-    friction = any("friction" in load for load in content["loads"].values())
+    loads = source.exported.program.data.content.loads
+    friction = any(load.friction for load in loads.values())
     columns = [k for k, _ in efforts]
     words = source.words | {
         "n_coordinates": len(c.drives),

@@ -18,7 +18,7 @@ def counting(source: Source) -> dict[str, str]:
     and an ultimate strength.
     """
     program = source.exported.program
-    materials = program.data.materials
+    materials = program.data.content.materials
     found = {}
     for name in dict.fromkeys((*program.wanted.stressed, *program.wanted.used)):
         material = materials.get(name)

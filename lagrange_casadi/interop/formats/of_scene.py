@@ -7,7 +7,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -15,16 +14,13 @@ import numpy as np
 from ...base.arrays import Array
 from ...base.interpret import Arithmetic, interpret
 from ...errors import DeclarationError
-from ...model.declared import BodyNumbers, Declared, JointNumbers
-from ...model.description import density_of, slices_of
+from ...model.description import BodyNumbers, JointNumbers
 from ...model.scene import Scene
 from ...results.solution import Solution
 from ...studies.evaluate import evaluate
 from .frames import Frame, turned
 from .laws import ONE_NUMBER, LawError, parsed
 from .record import Body, Joint, Law, Model
-
-Data = dict[str, Any]
 
 SAMPLES = 1001
 """Instants of a motion that has no expression, as one from measured points."""
@@ -61,22 +57,21 @@ def model_of(scene: Scene, parameters: Mapping[str, float], file: Path) -> Model
         scene, t=(start, start, 1), wanted=["motion"], parameters=parameters, backend="vm"
     )
     described = solution.description
-    model = Model(described["name"], file, span=(start, stop, 101 if stop > start else 1))
+    model = Model(described.name, file, span=(start, stop, 101 if stop > start else 1))
     what = f"mechanism '{model.name}'"
-    for name in (*described["constraints"], *described["rows"]):
+    for name in (*described.constraints, *described.rows):
         raise DeclarationError(f"{what}: constraint '{name}' cannot be written into a model file")
-    if described["loads"]:
-        model.notes.append(f"Loads are not exported: {', '.join(described['loads'])}.")
-    model.gravity = np.array([*described["gravity"], 0.0][:3])
-    declared = Declared.of(described)
-    for name, body in described["bodies"].items():
-        model.bodies[name] = _body(name, body, declared.bodies[name], _frame(solution, name))
-        if "density" in body and model.bodies[name].rod is None:
+    if described.loads:
+        model.notes.append(f"Loads are not exported: {', '.join(described.loads)}.")
+    model.gravity = np.array(described.gravity)
+    for name, body in described.bodies.items():
+        model.bodies[name] = _body(name, body, _frame(solution, name), described.space)
+        if body.density is not None and model.bodies[name].rod is None:
             model.notes.append(
                 f"The mass of '{name}' is exported as a total, without its distribution along"
                 " the link."
             )
-    for name, joint in declared.joints.items():
+    for name, joint in described.joints.items():
         model.joints[name] = _joint(name, joint)
     known = [name for joint in model.joints.values() for name in joint.coordinates]
     values = ca.DM(list(scene.values(parameters).values()))
@@ -108,20 +103,22 @@ def _frame(solution: Solution, body: str) -> Frame:
     return Frame(place, turned(np.array([0.0, 0.0, 1.0]), angle))
 
 
-def _body(name: str, described: Data, numbers: BodyNumbers, frame: Frame) -> Body:
-    mass, zero = numbers.mass, np.zeros(3)
-    if numbers.length is None:
-        return Body(name, mass, zero, None, frame, point=True)
-    if "centre" not in described:
-        density = density_of(described)
-        if len(density.cells) == 1 and len(density.cells[0]) == 1 and not any(slices_of(described)):
-            rod = Body.slender(name, mass, (zero, np.array([numbers.length, 0.0, 0.0])))
-            return Body(name, mass, rod.centre, rod.inertia, frame, rod=rod.rod)
-    inertia = np.array(numbers.inertia)
-    if "centre" in described and not isinstance(described["centre"]["inertia"], list):
+def _body(name: str, body: BodyNumbers, frame: Frame, space: bool) -> Body:
+    whole, zero = body.whole, np.zeros(3)
+    if body.length is None:
+        return Body(name, whole.mass, zero, None, frame, point=True)
+    if (
+        body.density is not None
+        and [*map(len, body.density.cells)] == [1]
+        and not any(one.mass for one in body.slices)
+    ):
+        rod = Body.slender(name, whole.mass, (zero, np.array([body.length, 0.0, 0.0])))
+        return Body(name, whole.mass, rod.centre, rod.inertia, frame, rod=rod.rod)
+    inertia = np.array(whole.inertia)
+    if body.density is None and not space:
         # In a plane one moment is given; two more that a body may have.
         inertia[0, 0] = inertia[1, 1] = inertia[2, 2] / 2.0
-    return Body(name, mass, np.array(numbers.centre), inertia, frame)
+    return Body(name, whole.mass, np.array(whole.centre), inertia, frame)
 
 
 def _joint(name: str, numbers: JointNumbers) -> Joint:

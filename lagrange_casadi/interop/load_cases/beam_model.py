@@ -15,9 +15,9 @@ from collections.abc import Iterable, Iterator, Mapping
 import numpy as np
 
 from ...base.arrays import Array
-from ...model.beams.beam import Beam, beam_from_numbers
+from ...model.beams.beam import Beam
 from ...model.beams.shape import Shape, between
-from ...model.description import Description, density_of, slice_densities
+from ...model.description import BodyNumbers
 from ...results.verification.vectors import Axes, Vector
 from .loads import LoadCase, listed, nodes_of, on_own_axes, refused, title, turning, unlike
 
@@ -35,13 +35,13 @@ _COUPLES = np.array([(1 - _POINTS) / 2, 0 * _POINTS, (1 + _POINTS) / 2])
 """Linear ones, for couples: CalculiX takes none at nodes in the middle."""
 
 
-def modelled(case: LoadCase) -> tuple[Description, Beam, float, float]:
+def modelled(case: LoadCase) -> tuple[BodyNumbers, Beam, float, float]:
     """Return what a model is made of: the link and its beam, modulus of elasticity [Pa] and
     Poisson's ratio. Raises :class:`.DeclarationError` where something is missing.
     """
-    if case.rod is None:
+    if case.rod is None or case.rod.beam is None:
         raise refused(case.link, "format 'beam' needs a link with a beam")
-    beam = beam_from_numbers(case.rod["beam"])
+    beam = case.rod.beam
     material = beam.material
     young, shear = material.needs("a model for finite elements", "elasticity", "shear_modulus")
     poisson = young / (2.0 * shear) - 1.0
@@ -67,7 +67,7 @@ def beam_model(case: LoadCase, _number: int, nodes: Mapping[str, str]) -> Iterat
     yield "** SI units, on the axes of the link: x leads from its base to its tip."
     yield f"*NODE, NSET={every}"
     yield from (f"{k}, {listed([at, 0.0, 0.0])}" for k, at in enumerate(x, 1))
-    yield from _elements(case.link, beam, x / rod["length"])
+    yield from _elements(case.link, beam, x / rod.length_and_density[0])
     named = [(name, k + 1) for name, k in sets.items() if not name.isdecimal()]
     yield from (f"*NSET, NSET={name}\n{number}" for name, number in named)
     yield from ("*MATERIAL, NAME=MATERIAL", f"** {beam.material.name}", "*ELASTIC")
@@ -80,10 +80,10 @@ def beam_model(case: LoadCase, _number: int, nodes: Mapping[str, str]) -> Iterat
     yield from ("*NODE FILE", "U", "*EL FILE", "S", "*END STEP")
 
 
-def _mesh(rod: Description, beam: Beam, places: Iterable[float]) -> Array:
+def _mesh(rod: BodyNumbers, beam: Beam, places: Iterable[float]) -> Array:
     """Return the x of all nodes: load points, steps of section and density are ends of elements."""
-    length, ratios = rod["length"], {0.0, 1.0, *beam.course.breaks}
-    ratios |= {b for one in (density_of(rod), *slice_densities(rod)) for b in one.breaks}
+    (length, density), ratios = rod.length_and_density, {0.0, 1.0, *beam.course.breaks}
+    ratios |= {b for one in (density, *rod.slices) for b in one.breaks}
     kept = [0.0]
     for end in sorted({*ratios, *(min(max(x / length, 0.0), 1.0) for x in places)}):
         if end - kept[-1] > _SAME and (end == 1.0 or 1.0 - end > _SAME):
@@ -92,18 +92,19 @@ def _mesh(rod: Description, beam: Beam, places: Iterable[float]) -> Array:
     for start, stop in itertools.pairwise(kept):
         count = 2 * math.ceil(_ELEMENTS * (stop - start) - _SAME)
         found += np.linspace(start, stop, count + 1)[1:].tolist()
-    return np.array(found) * float(length)
+    return np.array(found) * length
 
 
-def _inertia(case: LoadCase, rod: Description, x: Array) -> Array:
+def _inertia(case: LoadCase, rod: BodyNumbers, x: Array) -> Array:
     """Return forces and moments of nodes (nodes, 6) of weight and inertia."""
     moved = on_own_axes(*(Vector(*one) for one in (case.acceleration, case.omega, case.alpha)))
     start, stop = x[:-2:2, None], x[2::2, None]
     at, share = (start + stop) / 2 + (stop - start) / 2 * _POINTS, stop - start
-    ratio, share = at / rod["length"], _WEIGHTS * share / (2 * rod["length"])
-    mass = share * density_of(rod).at(ratio)
+    length, density = rod.length_and_density
+    ratio, share = at / length, _WEIGHTS * share / (2 * length)
+    mass = share * density.at(ratio)
     force = mass * (Vector(*case.gravity) - moved.change_at(Vector(at, 0.0, 0.0)))
-    yy, zz, yz = [share * one.at(ratio) for one in slice_densities(rod)] or [0.0, 0.0, 0.0]
+    yy, zz, yz = [share * one.at(ratio) for one in rod.slices] or np.zeros((3, *ratio.shape))
     slices = Axes(Vector(yy + zz, 0.0, 0.0), Vector(0.0, zz, -yz), Vector(0.0, -yz, yy))
     loads = np.zeros((x.size, 6))
     for shapes, first, vector in ((_FORCES, 0, force), (_COUPLES, 3, -turning(moved, slices))):

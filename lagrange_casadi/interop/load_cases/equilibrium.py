@@ -14,10 +14,9 @@ import numpy.typing as npt
 from ...base.arguments import public
 from ...engine.derive import compile_scene
 from ...errors import CertificateError, DeclarationError, UnknownNameError
-from ...model.declared import BodyNumbers, Declared
-from ...model.description import values_of
+from ...model.description import BodyNumbers, Triple
 from ...model.scene import Scene
-from ...model.stated import Triple
+from ...model.stated import Stated
 from ...results.solution import Solution
 from ...results.verification.balance import Action, all_actions, forces_needed
 from ...results.verification.certificate import placed_of, reported_of
@@ -75,21 +74,21 @@ def link_load_cases(
     CertificateError
         If the loads are not in equilibrium within the tolerance of the solution.
     """
-    described = solution.description["bodies"]
+    described = solution.description.bodies
     if link not in described:
         raise UnknownNameError("link", link, described)
-    declared = _declared(solution, link, scene)
+    declared, stated = solution.description, _stated(solution, link, scene)
     needed = forces_needed(declared, link)
     if missing := [f"{one.group}:{one.part}" for one in needed if one not in solution.outputs]:
         raise DeclarationError(
             f"load cases of link '{link}' need {', '.join(missing)}, which the solution does not"
             " have; evaluate with wanted=['all']"
         )
-    if (placed := placed_of(declared, reported_of(solution, {}))) is None:
+    if (placed := placed_of(declared, stated, reported_of(solution, {}))) is None:
         why = "the motion is missing; evaluate with wanted=['motion', ...], or ['all']"
         raise refused(link, why)
     numbers = None if t is None else _numbers(solution, link, t)
-    loads, body = _loads_on(placed, link), declared.bodies[link]
+    loads, body = _loads_on(placed, link), described[link]
     known = _known(solution, link, loads, numbers)
     placing = placed.bodies[link]
     vectors = placing.change, placing.rate, placing.acceleration, Vector(*declared.gravity)
@@ -115,11 +114,11 @@ def link_load_cases(
             omega=_at(motion.rate, i),
             alpha=_at(motion.acceleration, i),
             gravity=_at(gravity, i),
-            mass=body.mass,
-            centre=body.centre,
-            inertia=body.inertia,
+            mass=body.whole.mass,
+            centre=body.whole.centre,
+            inertia=body.whole.inertia,
             residual=_at(residual, i)[:2],
-            rod=described[link] if "beam" in described[link] else None,
+            rod=described[link] if described[link].beam else None,
         )
         if not all(one <= solution.tolerance for one in case.residual):
             raise CertificateError(
@@ -131,21 +130,25 @@ def link_load_cases(
     return tuple(found)
 
 
-def _declared(solution: Solution, link: str, scene: Scene | Case | None) -> Declared:
-    """Return the mechanism in numbers, with its constraints where there are some."""
-    declared = Declared.of(solution.description)
+def _stated(solution: Solution, link: str, scene: Scene | Case | None) -> Stated:
+    """Return the constraints of the mechanism, if there are some, and all that stands beside
+    them.
+    """
+    declared = solution.description
     if not declared.multipliers:
-        return declared
+        return Stated()
     expected = "expected scene=, the scene of the solution"
     if scene is None:
         names = ", ".join(declared.multipliers)
         why = f"a solution does not say along which directions {names} act; {expected}"
         raise refused(link, why)
-    values = values_of(solution.description)
+    values = declared.values
     if [*scene_of(scene).parameters] == [*values]:
         data = compile_scene(scene_of(scene), ["motion"], parameters=values).data
-        stated = Declared.of(data.at([*values.values()]), data.stated.at([*values.values()]))
-        if (stated.bodies, stated.joints) == (declared.bodies, declared.joints):
+        found = data.at([*values.values()])
+        stated = data.stated.at([*values.values()])
+        own, known = found.plain(), declared.plain()
+        if (own["bodies"], own["joints"]) == (known["bodies"], known["joints"]):
             return stated
     raise refused(link, f"{expected}; the one given has other parameters, bodies or joints")
 
@@ -202,9 +205,10 @@ def _residual(
     body: BodyNumbers, motion: Moving, gravity: Vector, loads: Sequence[Action], known: _Instants
 ) -> tuple[Vector, float]:
     """Return the residuals of forces and of moments about the centre, and the largest force."""
-    centre, force, moment = Vector(*body.centre), NIL, NIL
-    weight = body.mass * (gravity - motion.change_at(centre))
-    inertia = Action("", "", centre, weight, -turning(motion, Axes.of(body.inertia)))
+    whole = body.whole
+    centre, force, moment = Vector(*whole.centre), NIL, NIL
+    weight = whole.mass * (gravity - motion.change_at(centre))
+    inertia = Action("", "", centre, weight, -turning(motion, Axes.of(whole.inertia)))
     for one in (acting := [inertia, *loads]):
         force = force + one.force
         moment = moment + one.couple + (one.at - centre).cross(one.force)

@@ -11,8 +11,7 @@ import numpy as np
 from ...base.arrays import Array
 from ...base.brief import Brief
 from ...errors import DeclarationError
-from ...model.description import Description
-from ...model.stated import Triple
+from ...model.description import BodyNumbers, Triple
 from ...results.verification.placing import Moving
 from ...results.verification.vectors import GROUND, NIL, Axes, Vector
 
@@ -59,7 +58,7 @@ class LoadCase(Brief):
     centre: Triple
     inertia: tuple[Triple, Triple, Triple]
     residual: tuple[float, float]
-    rod: Description | None = field(default=None, repr=False, compare=False)
+    rod: BodyNumbers | None = field(default=None, repr=False, compare=False)
 
 
 def on_own_axes(acceleration: Vector, omega: Vector, alpha: Vector) -> Moving:

@@ -19,6 +19,7 @@ from ...base.symbolic import symbolic
 from ...base.tables import PLANE, Table, table_of
 from ...base.vocabulary import Precision
 from ...engine.program import Program
+from ...model.description import ParameterNumbers
 from ...results.solution import Solution
 from .naming import constants, members, prefix
 
@@ -218,7 +219,7 @@ def contract(
     """The contract of a graph whose evaluation over its cycle is ``solution``; ``fixed`` leaves no
     parameter open.
     """
-    values = solution.description["parameters"]
+    values = solution.description.parameters
     timed = _timed(program)
     settings = [] if fixed else [_setting(key, values[key]) for key in program.data.parameters]
     inputs = list(_inputs(program, precision, timed))
@@ -269,14 +270,11 @@ def _timed(program: Program) -> bool:
     )
 
 
-def _setting(key: str, parameter: dict[str, float]) -> Setting:
-    low, high = (
-        -math.inf if parameter["low"] is None else parameter["low"],
-        math.inf if parameter["high"] is None else parameter["high"],
-    )
+def _setting(key: str, parameter: ParameterNumbers) -> Setting:
+    low, high = parameter.low, parameter.high
     within = f"{_bracket(low, '[', '(')}{low:.6g}, {high:.6g}{_bracket(high, ']', ')')}"
-    unit = str(parameter["unit"])
-    default = parameter["value"]
+    unit = parameter.unit
+    default = parameter.value
     return Setting(
         name="",
         source=key,

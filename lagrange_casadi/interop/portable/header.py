@@ -114,10 +114,8 @@ def _follows(source: Source) -> str:
 
 
 def _gravity(source: Source) -> str:
-    return ", ".join(
-        f"{component:g}"
-        for component in source.exported.program.data.at([*source.values.values()])["gravity"]
-    )
+    described = source.exported.program.data.at([*source.values.values()])
+    return ", ".join(f"{component:g}" for component in described.components(described.gravity))
 
 
 def _parameters(source: Source) -> str:

@@ -18,7 +18,6 @@ from ...engine.instants.determinacy import determinate
 from ...engine.instants.evaluation_method import EvaluationMethod
 from ...engine.instants.from_table import drive_of, table_of
 from ...errors import CertificateError, DeclarationError
-from ...model.description import fitted_of
 from ...model.expressions import check_line
 from ...model.scene import Scene
 from ...model.times import checked_span, instants_of
@@ -56,7 +55,7 @@ def sourced(
     data = compiled.data
     name, by, wanted = name or data.name, by_parameters(data.parameters, names), others(names)
     check_line("name", name)
-    without_fitted(fitted_of(data.template.content), named, "exports")
+    without_fitted(data.content.fitted, named, "exports")
     if by:
         check_method(method)
     precision, newton, table = method.precision, method.newton, method.table

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import itertools
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, fields, replace
-from typing import Annotated, Any, TypeAlias
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Annotated, TypeAlias
 
 from ...base.arguments import Share, public
-from ...base.arrays import Expression, Json, Operand
+from ...base.arrays import Operand
 from ...base.brief import Brief
 from ...base.units import Within
 from ...errors import DeclarationError
 from .material import Material
-from .shape import Course, Shape, dimensions_of, kinds
+from .shape import Course, Shape
 
 Factor: TypeAlias = Annotated[float, Within(1.0)]
 
@@ -68,17 +67,18 @@ class Beam(Brief):
                     f"beam: expected two effective lengths, positive, got {self.columns!r}"
                 )
             object.__setattr__(self, "columns", pair)
+        object.__setattr__(self, "notches", tuple(self.notches))
 
     @property
     def course(self) -> Course:
         """Cross-sections along the link."""
         shape = self.shape
-        return shape if isinstance(shape, Course) else Course((0.0, 1.0), ((shape, shape),))
+        return shape if isinstance(shape, Course) else Course((0.0, 1.0), (shape,), ((0, 0),))
 
     @property
     def round(self) -> bool:
         """True if the cross-sections are the same about any axis across the link."""
-        return all(shape.round for shape in self.course.shapes())
+        return all(shape.round for shape in self.course.shapes)
 
     def mapped(self, change: Callable[[str, Operand], Operand]) -> Beam:
         """Return the beam with other dimensions.
@@ -123,61 +123,3 @@ class Beam(Brief):
             )
             found.append([self.material.density * power for power in powers])
         return found
-
-
-def beam_to_numbers(beam: Beam, number: Callable[[Operand], Expression]) -> dict[str, Json]:
-    """A beam, its expressions as numbers."""
-    course, shapes = beam.course, list(beam.course.shapes())
-    known: list[Json] = [
-        {
-            "kind": s.kind,
-            "dimensions": {name: number(value) for name, value in s.dimensions.items()},
-        }
-        for s in shapes
-    ]
-    places = [
-        [next(k for k, s in enumerate(shapes) if s is end) for end in cell] for cell in course.cells
-    ]
-    return {
-        "breaks": list(course.breaks),
-        "shapes": known,
-        "cells": places,
-        "material": asdict(beam.material),
-        "notches": [asdict(notch) for notch in beam.notches],
-        "columns": None if beam.columns is None else list(beam.columns),
-    }
-
-
-def beam_from_numbers(record: Mapping[str, Any]) -> Beam:
-    """The beam of such numbers.
-
-    Raises ``ValueError``, ``TypeError``, ``LookupError`` or :class:`.DeclarationError` for what is
-    none, as in a forged file.
-    """
-    for shape in record["shapes"]:
-        kind, numbers = shape["kind"], shape["dimensions"]
-        known = dimensions_of(kind)
-        if kind not in kinds() or (known is not None and tuple(numbers) != known):
-            raise ValueError(f"{kind!r} is no cross-section with these dimensions")
-        if not all(type(x) in (int, float) and math.isfinite(x) for x in numbers.values()):
-            raise ValueError(f"the dimensions of a {kind} are not numbers")
-    breaks = tuple(map(float, record["breaks"]))
-    if len(breaks) != len(record["cells"]) + 1 or any(
-        b <= a for a, b in itertools.pairwise(breaks)
-    ):
-        raise ValueError("the breaks of a beam do not fit its cells")
-    return beam_of(record)
-
-
-def beam_of(numbers: Mapping[str, Any]) -> Beam:
-    """Make the beam of what :func:`beam_to_numbers` wrote, be it numbers or expressions."""
-    shapes = [Shape(shape["kind"], dict(shape["dimensions"])) for shape in numbers["shapes"]]
-    breaks = tuple(map(float, numbers["breaks"]))
-    course = Course(
-        breaks, tuple((shapes[first], shapes[last]) for first, last in numbers["cells"])
-    )
-    material = Material(
-        **{entry.name: numbers["material"][entry.name] for entry in fields(Material)}
-    )
-    columns = None if numbers["columns"] is None else tuple(numbers["columns"])
-    return Beam(course, material, [Notch(**notch) for notch in numbers["notches"]], columns)

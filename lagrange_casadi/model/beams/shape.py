@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from ...base.arguments import Symbolic, public
@@ -33,6 +33,9 @@ class Shape:
     dimensions: Mapping[str, Any]
 
     def __post_init__(self) -> None:
+        known = dimensions_of(self.kind)
+        if self.kind not in _FORMS or (known is not None and tuple(self.dimensions) != known):
+            raise DeclarationError(f"{self.kind!r} is no cross-section with these dimensions")
         if any(isinstance(value, str) for value in self.dimensions.values()):
             read = {
                 name: _length(f"{self.kind}: {name}", value)
@@ -91,10 +94,23 @@ class Shape:
 class Course(Brief):
     """Cross-sections along a link: linear between two ``breaks``, ratios xi/l, from one shape to
     another of its kind.
+
+    ``ends`` are the numbers of both among the ``shapes``, for each stretch between two breaks.
     """
 
     breaks: tuple[float, ...]
-    cells: tuple[tuple[Shape, Shape], ...]
+    shapes: tuple[Shape, ...]
+    ends: tuple[tuple[int, int], ...]
+
+    def __post_init__(self) -> None:
+        rises = all(a < b for a, b in itertools.pairwise(self.breaks))
+        if len(self.breaks) != len(self.ends) + 1 or not rises:
+            raise DeclarationError("the breaks of a course of cross-sections do not fit its ends")
+
+    @property
+    def cells(self) -> tuple[tuple[Shape, Shape], ...]:
+        """The first and the last shape between two breaks."""
+        return tuple((self.shapes[first], self.shapes[last]) for first, last in self.ends)
 
     def mapped(self, change: Callable[[str, Operand], Operand]) -> Course:
         """Return the course with other dimensions.
@@ -109,14 +125,7 @@ class Course(Brief):
         Course
             The course, with the same breaks.
         """
-        made = {id(shape): shape.mapped(change) for cell in self.cells for shape in cell}
-        return Course(
-            self.breaks, tuple((made[id(first)], made[id(last)]) for first, last in self.cells)
-        )
-
-    def shapes(self) -> Iterator[Shape]:
-        """Shapes of the course, each once."""
-        yield from {id(shape): shape for cell in self.cells for shape in cell}.values()
+        return replace(self, shapes=tuple(shape.mapped(change) for shape in self.shapes))
 
 
 def _length(what: str, value: Operand | str) -> Operand:
@@ -487,7 +496,8 @@ def along(ratios: Sequence[float], shapes: Sequence[Shape]) -> Course:
             "along: ratios must rise from 0 to 1, got"
             f" {', '.join(f'{ratio:g}' for ratio in ratios)}"
         )
-    breaks, cells = [0.0], []
+    each, breaks, ends = {id(shape): shape for shape in shapes}, [0.0], []
+    number = {key: k for k, key in enumerate(each)}
     for (a, first), (b, last) in itertools.pairwise(zip(ratios, shapes, strict=True)):
         if a == b:
             continue
@@ -497,8 +507,10 @@ def along(ratios: Sequence[float], shapes: Sequence[Shape]) -> Course:
                 " put a step"
             )
         breaks.append(b)
-        cells.append((first, last))
-    return Course(tuple(breaks), tuple(cells))
+        ends.append((number[id(first)], number[id(last)]))
+    return Course(
+        tuple(breaks), tuple({id(shape): shape for shape in shapes}.values()), tuple(ends)
+    )
 
 
 @public
@@ -565,11 +577,6 @@ def between(first: Shape, last: Shape, share: Operand) -> Shape:
         for name, value in first.dimensions.items()
     }
     return Shape(first.kind, dimensions)
-
-
-def kinds() -> tuple[str, ...]:
-    """The kinds of shapes."""
-    return tuple(_FORMS)
 
 
 def dimensions_of(kind: str) -> tuple[str, ...] | None:

@@ -20,7 +20,7 @@ from ...base.arguments import public
 from ...base.arrays import Array
 from ...base.brief import Brief
 from ...errors import DeclarationError
-from ...model.description import Description, density_of
+from ...model.description import BodyNumbers
 from ...model.end_conditions import ENDS, Ends, ends_of
 from ..solution import Solution
 from ..strength.member import Member
@@ -121,7 +121,7 @@ def vibration(solution: Solution, link: str, ends: Ends | None = None) -> Vibrat
         )
     compliance = Compliance.of(Member.of(solution, link), f"vibration of '{link}'")
     held = ends or ends_of(solution.description, link)
-    body = solution.description["bodies"][link]
+    body = solution.description.bodies[link]
     planes = [
         _Plane.of(compliance, body, held, k) for k in ((0, 1) if compliance.member.space else (0,))
     ]
@@ -160,8 +160,8 @@ class _Plane:
     moments: Array
 
     @classmethod
-    def of(cls, compliance: Compliance, body: Description, ends: Ends, number: int) -> _Plane:
-        member, density = compliance.member, density_of(body)
+    def of(cls, compliance: Compliance, body: BodyNumbers, ends: Ends, number: int) -> _Plane:
+        member, (length, density) = compliance.member, body.length_and_density
         breaks = tuple(sorted({*member.beam.course.breaks, *density.breaks}))
         axis = (
             np.linalg.eigh(_stiffness(compliance, np.array([0.5]))[..., 0])[1][:, number]
@@ -173,9 +173,7 @@ class _Plane:
             found = _stiffness(compliance, u.ravel())
             return np.asarray(np.einsum("i,ijn,j->n", axis, found, axis)).reshape(u.shape)
 
-        mode = first_mode(
-            stiffness, lambda u: density.at(u) / body["length"], body["length"], breaks, ends
-        )
+        mode = first_mode(stiffness, lambda u: density.at(u) / length, length, breaks, ends)
         u = np.broadcast_to(mode.u, (member.t.size, mode.u.size))
         names = ("bending_y", "bending_z") if member.space else ("bending",)
         moments = sum(part * member.law.at(name, u) for part, name in zip(axis, names, strict=True))

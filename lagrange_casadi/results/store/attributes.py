@@ -10,10 +10,10 @@ from ...base.methods import method
 from ...base.quantities import Output
 from ...engine.instants.beyond_equilibrium import Elasticity
 from ...engine.instants.evaluation_method import Provenance
-from ...model.description import check_places, shape_of, values_of
+from ...model.description import Description
 from ..solution import Solution
 from .opening import SCHEMA
-from .untrusted import check_shape, number, parsed, shown
+from .untrusted import check_shape, number, parsed, read_json, shown, structured
 from .words import conventions
 
 Attributes: TypeAlias = Mapping[str, Any]
@@ -47,8 +47,8 @@ def _attributes(solution: Solution, figures: str, grids: Sequence[str]) -> Attri
         "schema_version": SCHEMA_VERSION,
         "case": solution.case,
         **conventions(solution.table),
-        "mechanism": json.dumps(solution.description),
-        "parameters": json.dumps(values_of(solution.description)),
+        "mechanism": json.dumps(solution.description.plain()),
+        "parameters": json.dumps(solution.description.values),
         "certified": solution.certified,
         "certificate_tolerance": solution.tolerance,
         "outputs": json.dumps(list(solution.series)),
@@ -85,8 +85,8 @@ def read_attributes(attributes: Attributes) -> tuple[dict[str, Any], dict[str, A
         text = attributes[key] if otherwise is None else attributes.get(key, otherwise)
         return parsed(text, shape, key)
 
-    description = stated("mechanism", shape_of)
-    check_places(description)
+    description = described(attributes["mechanism"])
+    description.check_places()
     words = {name: shown(attributes[key]) for key, name in _PROVENANCE.items()}
     completed, reasons = (stated(key, [str], "[]") for key in ("by_elasticity", "open_because"))
     return {
@@ -102,16 +102,22 @@ def read_attributes(attributes: Attributes) -> tuple[dict[str, Any], dict[str, A
     }
 
 
+def described(text: str) -> Description:
+    """The mechanism of a file. Raises ``ValueError`` for a text of another form."""
+    found: Description = structured(Description, read_json(text, "mechanism"), "mechanism")
+    return found
+
+
 def check_attributes(attributes: Attributes) -> Iterator[str]:
     """Faults of figures, and of the case and parameters, which are stated twice."""
     try:
         figures_of(attributes)
     except ValueError as error:
         yield str(error)
-    description = parsed(attributes["mechanism"], shape_of, "mechanism")
+    description = described(attributes["mechanism"])
     if (
-        parsed(attributes["parameters"], {str: float}, "parameters") != values_of(description)
-        or attributes["case"] != description["name"]
+        parsed(attributes["parameters"], {str: float}, "parameters") != description.values
+        or attributes["case"] != description.name
     ):
         yield "case or parameters: differ from those of the mechanism"
 

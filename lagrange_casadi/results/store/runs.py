@@ -26,7 +26,7 @@ from ...base.seal import kind_of, seal
 from ...base.tables import ANGLE, LENGTH
 from ...engine.instants.beyond_equilibrium import ENDS, Holding, held_outputs
 from ...errors import PathError, StoreError, UnknownNameError, one_line
-from ...model.description import Description, motions_of, pieces_of
+from ...model.description import Description
 from ...model.even_points import are_even
 from ...model.times import DriveAxis
 from ...model.wanted_names import SENSITIVITY
@@ -155,7 +155,7 @@ def _with_grids(solution: Solution, asked: bool | Sequence[str] | None) -> list[
     """Return the links whose grids are stored. Raises :class:`.UnknownNameError` for others."""
     links = solution.links_with_sections
     if asked is None:
-        pieces = pieces_of(solution.description)
+        pieces = solution.description.pieces
         return [link for link in links if link not in pieces]
     if isinstance(asked, bool):
         return list(links) if asked else []
@@ -519,7 +519,7 @@ def drive_axis(
         shown(dataset.attrs["joint"]),
         shown(dataset.attrs["units"]),
     )
-    kind = motions_of(description).get(joint)
+    kind = description.driven.get(joint)
     if kind is None or unit != (LENGTH if kind == "slide" else ANGLE):
         raise ValueError(
             f"the instants are over '{joint}' in {unit}, which is no drive's coordinate"

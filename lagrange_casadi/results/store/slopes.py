@@ -49,7 +49,7 @@ def slopes_of(
         group.visititems(
             lambda place, item: places.append(place) if isinstance(item, h5py.Dataset) else None
         )
-    if set(group) - histories.description["parameters"].keys():
+    if set(group) - histories.description.parameters.keys():
         raise ValueError("there are sensitivities by names that are not parameters")
     expected_names = {
         f"{name}/{str(o).replace(':', '/')}": (name, o) for name in group for o in expected
@@ -60,7 +60,7 @@ def slopes_of(
         shape = tuple(lengths[axis] for axis in output.quantity.axes)
         found.setdefault(name, {})[output] = numbers(group[place], shape)
     return Derivatives(
-        {name: found[name] for name in histories.description["parameters"] if name in found}
+        {name: found[name] for name in histories.description.parameters if name in found}
     )
 
 

@@ -13,13 +13,14 @@ import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from types import FunctionType
-from typing import Any
+from dataclasses import MISSING, fields, is_dataclass
+from types import FunctionType, NoneType, UnionType
+from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 
 import h5py
 import numpy as np
 
-from ...errors import LagrangeCasadiError, StoreError, one_line
+from ...errors import DeclarationError, LagrangeCasadiError, StoreError, one_line
 
 Shape = Any
 """``str``, ``int``, ``float`` or ``bool``, or None for null; a tuple of shapes, any of which will
@@ -65,6 +66,44 @@ def check_shape(value: object, shape: Shape, what: str) -> None:
     """Raise ``ValueError`` for what came from JSON and has another shape, with the place."""
     if place := _mismatch(value, shape, what):
         raise ValueError(f"{place} is not of the expected kind")
+
+
+def structured(kind: Any, value: Any, place: str) -> Any:
+    """Make a value of a type from JSON: of a dataclass, ``tuple``, ``Mapping``, ``Literal`` of
+    texts, the last of ``X | Y | None``, ``Any``, or ``str``, ``float`` or ``bool``.
+
+    Raises ``ValueError`` for JSON of another form, with the place.
+    """
+    origin, of = get_origin(kind), get_args(kind)
+    if kind is Any:
+        return value
+    if origin in (Union, UnionType):
+        *_, last = (one for one in of if one is not NoneType)
+        return None if value is None else structured(last, value, place)
+    if isinstance(kind, type) and is_dataclass(kind):
+        check_shape(value, {}, place)
+        hints = get_type_hints(kind)
+        given = {
+            one.name: structured(hints[one.name], value.get(one.name), f"{place}.{one.name}")
+            for one in fields(kind)
+            if one.name in value or one.default is one.default_factory is MISSING
+        }
+        try:
+            return kind(**given)
+        except DeclarationError as error:
+            raise ValueError(f"{place}: {error}") from None
+    if origin in (tuple, Sequence):
+        several = origin is Sequence or of[-1] is ...
+        each = of[:1] * len(value) if isinstance(value, list) and several else of
+        if not isinstance(value, list) or len(each) != len(value):
+            raise ValueError(f"{place} is not of the expected kind")
+        pairs = enumerate(zip(each, value, strict=True))
+        return tuple(structured(*pair, f"{place}[{k}]") for k, pair in pairs)
+    if origin is Mapping:
+        check_shape(value, {}, place)
+        return {name: structured(of[1], one, f"{place}.{name}") for name, one in value.items()}
+    check_shape(value, str if origin is Literal else kind, place)
+    return float(value) if kind is float else value
 
 
 def shown(value: str) -> str:

@@ -21,8 +21,7 @@ from ...base.arguments import NotNegative, Numeric, Positive, public
 from ...base.arrays import Array
 from ...base.quantities import Output
 from ...errors import DeclarationError, UnknownNameError
-from ...model.description import fitted_of
-from ...model.fitted import Fitted, Pin, Plain, Rolling, parts_from_numbers, positive
+from ...model.fitted import Fitted, Pin, Plain, Rolling, positive
 from ..solution import Solution
 from ..statistics import counted
 from .safety import Safety, Verdict
@@ -203,10 +202,10 @@ def joint_safety(solution: Solution, joint: str, parts: Sequence[Fitted] | None 
         If there is no such joint or nothing is fitted to it, if its reaction was not evaluated or
         is indeterminate, or if a number that depends on parameters is not positive.
     """
-    joints = solution.description["joints"]
-    fitted = joints.get(joint, {}).get("fitted", {})
+    joints = solution.description.joints
+    fitted = joints[joint].fitted if joint in joints else None
     if not fitted and parts is None:
-        having = ", ".join(fitted_of(solution.description))
+        having = ", ".join(solution.description.fitted)
         raise DeclarationError(
             f"nothing is fitted to joint '{joint}'; joints with a pin or a bearing:"
             f" {having or 'none'}"
@@ -216,7 +215,7 @@ def joint_safety(solution: Solution, joint: str, parts: Sequence[Fitted] | None 
     verdicts: list[Verdict] = []
     unknown: list[str] = []
     if parts is None:
-        parts = list(parts_from_numbers(fitted).values())
+        parts = fitted.parts if fitted else ()
     for part in parts:
         _check(joint, part)
         if isinstance(part, Pin):
@@ -239,7 +238,7 @@ def _reaction_sizes(solution: Solution, joint: str) -> tuple[Array, Array]:
     Raises :class:`.DeclarationError` for a joint that there is not, and a reaction that was not
     evaluated, or is indeterminate at all instants.
     """
-    joints = solution.description["joints"]
+    joints = solution.description.joints
     if joint not in joints:
         raise UnknownNameError("joint", joint, joints)
     members = [o for o in solution.outputs if o.group == "reaction" and o.part == joint]
@@ -273,17 +272,16 @@ def _check(joint: str, part: Fitted) -> None:
 
 def _joint_rate(solution: Solution, joint: str, kind: str) -> Array | None:
     """The rate at which a joint turns or slides; None if it was not evaluated, or there is none."""
-    entry = solution.description["joints"][joint]
-    kinds = entry.get("coordinates") or {joint: entry.get("coordinate")}
-    name = next((name for name, moves in kinds.items() if moves == kind), None)
+    entry = solution.description.joints[joint]
+    name = next((axis.coordinate for axis in entry.axes if axis.kind == kind), None)
     if kind == "angle":
-        name = entry.get("turning", name)
+        name = entry.turning or name
     return None if name is None else solution.outputs.get(Output("motion", name, "rate"))
 
 
 def _forces(solution: Solution, joint: str) -> tuple[Array, Array]:
     """The sizes of a reaction across the pin's axis, and along it."""
-    if "coordinates" not in solution.description["joints"][joint]:
+    if not solution.description.space:
         found = solution.reaction(joint)
         return np.hypot(found.fx, found.fy), np.zeros_like(found.fx)
     # In space reactions are given on the joint's own axes too, of which the first is the one it

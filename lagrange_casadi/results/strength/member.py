@@ -17,8 +17,7 @@ from ...engine.section_function import Side
 from ...engine.stress import FORCES, CrossSections
 from ...engine.two_force_links import unaimed
 from ...errors import DeclarationError, check_kind
-from ...model.beams.beam import Beam, beam_from_numbers
-from ...model.description import beams_of, in_space
+from ...model.beams.beam import Beam
 from ..laws import SectionLaw
 from ..solution import Solution
 from ..statistics import counted
@@ -94,13 +93,13 @@ class Member(Brief):
         is not known, or it is a bar whose cross-section is not round and has no declared direction.
         """
         check_kind("strength", solution, "a Solution", Solution)
-        law, body = solution.section(link).law, solution.description["bodies"][link]
-        if "beam" not in body:
-            having = ", ".join(beams_of(solution.description))
+        law, body = solution.section(link).law, solution.description.bodies[link]
+        if not body.beam:
+            having = ", ".join(solution.description.beams)
             raise DeclarationError(
                 f"link '{link}' has no beam=; links with a beam: {having or 'none'}"
             )
-        space = in_space(solution.description)
+        space = solution.description.space
         if indeterminate := [
             force for force in FORCES[space] if not solution.determined(f"section:{link}:{force}")
         ]:
@@ -109,10 +108,10 @@ class Member(Brief):
                 f"link '{link}': equilibrium does not determine {names}, so its strength is not"
                 " evaluated"
             )
-        member = cls(link, beam_from_numbers(body["beam"]), law, solution.t, solution.xi, space)
+        member = cls(link, body.beam, law, solution.t, solution.xi, space)
         member._check_torsion()
-        two_force_links = solution.description.get("bars", ())
-        aimed = solution.description.get("beside", ())
+        two_force_links = solution.description.bars
+        aimed = solution.description.beside
         if link in two_force_links and link not in aimed and not (spun or member.beam.round):
             raise DeclarationError(unaimed(link))
         return member

@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator
 
 from ...base.arguments import public
 from ...errors import DeclarationError
-from ...model.description import beams_of, fitted_of
 from ..solution import Solution
 from .bearings import joint_safety
 from .member import Member
@@ -62,10 +61,9 @@ def not_evaluated(solution: Solution) -> dict[str, str]:
 
 def _parts(solution: Solution) -> tuple[list[str], list[str]]:
     """The links that have a beam and sections, and the joints that have something fitted."""
-    beams = beams_of(solution.description)
-    return [link for link in solution.links_with_sections if link in beams], fitted_of(
-        solution.description
-    )
+    described = solution.description
+    links = [link for link in solution.links_with_sections if link in described.beams]
+    return links, described.fitted
 
 
 def part_safety(
@@ -74,14 +72,14 @@ def part_safety(
     """The factors of safety of a link, or of what is fitted to a joint: see :func:`.safety` and
     :func:`.joint_safety`.
     """
-    if part in solution.description["joints"]:
+    if part in solution.description.joints:
         return joint_safety(solution, part)
     return safety(solution, part, criterion=criterion, yield_criterion=yield_criterion)
 
 
 def fitted_in(solution: Solution) -> tuple[str, ...]:
     """The joints that have pins or bearings whose reactions were evaluated."""
-    fitted = fitted_of(solution.description)
+    fitted = solution.description.fitted
     forces = {
         name: [o for o in solution.outputs if o.group == "reaction" and o.part == name]
         for name in fitted
@@ -91,12 +89,12 @@ def fitted_in(solution: Solution) -> tuple[str, ...]:
 
 def strong_of(solution: Solution, *numbers: str) -> tuple[str, ...]:
     """The links whose stresses were evaluated, and whose material has some numbers."""
-    bodies = solution.description["bodies"]
+    materials = solution.description.materials
     known = (link for link in solution.links_with_sections if not _reason(solution.stress, link))
     return tuple(
         link
         for link in known
-        if all(bodies[link]["beam"]["material"][name] is not None for name in numbers)
+        if all(getattr(materials[link], name) is not None for name in numbers)
     )
 
 

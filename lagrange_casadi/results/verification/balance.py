@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from ...base.quantities import Output
-from ...model.declared import Declared
+from ...model.description import Description
 from ...model.stated import Equation
 from .closure import Residuals
 from .contacts import actions, sense
@@ -88,14 +88,14 @@ def forces_reported(placed: Placed) -> bool:
     multipliers act are known.
     """
     declared, outputs = placed.declared, placed.reported.outputs
-    if len(declared.stated.equations) < len(declared.multipliers):
+    if len(placed.stated.equations) < len(declared.multipliers):
         return False
     needed = [*forces_needed(declared)]
     needed += [output for output in outputs if output.group in ("reaction", "load")]
     return all(output in outputs and np.isfinite(outputs[output]).all() for output in needed)
 
 
-def forces_needed(declared: Declared, body: str = "") -> Iterator[Output]:
+def forces_needed(declared: Description, body: str = "") -> Iterator[Output]:
     """Yield an output of every force that acts on a body; of every force if no body is named."""
     everything, axes = not body, set[str]()
     for name, joint in declared.joints.items():
@@ -113,7 +113,7 @@ def balance(placed: Placed, digits: Digits) -> dict[str, list[Residuals]]:
     """The residuals of forces, each with what it is to be compared with."""
     acting = list(all_actions(placed))
     centres = {
-        name: placed.bodies[name].point(Vector(*body.centre))
+        name: placed.bodies[name].point(Vector(*body.whole.centre))
         for name, body in placed.declared.bodies.items()
     }
     sums = _sums(placed, acting, centres)
@@ -122,12 +122,12 @@ def balance(placed: Placed, digits: Digits) -> dict[str, list[Residuals]]:
     for name, body in placed.declared.bodies.items():
         motion = placed.bodies[name]
         (_, speed, change) = centres[name]
-        inertia = Axes.of(body.inertia)
-        inertial = body.mass * (change - gravity)
+        inertia = Axes.of(body.whole.inertia)
+        inertial = body.whole.mass * (change - gravity)
         spin = motion.axes.turn(inertia.turn(motion.axes.resolve(motion.rate)))
         gains = motion.axes.turn(inertia.turn(motion.axes.resolve(motion.acceleration)))
         turning, rate = gains + motion.rate.cross(spin), motion.sizes[2]
-        weight = _weight(placed, name, Vector(*body.centre).size)
+        weight = _weight(placed, name, Vector(*body.whole.centre).size)
         sums.bear(weight, gains.size + rate * spin.size, size)
         worst = np.maximum(worst, (sums.force.get(name, NIL) - inertial).size)
         if placed.declared.oriented(name):
@@ -185,7 +185,7 @@ def all_actions(placed: Placed) -> Iterator[Action]:
             place = load.points[0] if load.friction is not None else point
             at = placed.bodies[place.body].point(Vector(*place.at))[0]
             yield Action(f"load:{name}", point.body, at, sign * force, sign * couple)
-    for equation in declared.stated.equations:
+    for equation in placed.stated.equations:
         yield from _held(placed, equation)
 
 
@@ -258,7 +258,9 @@ def _weight(placed: Placed, body: str, reach: float) -> Scalar:
     """
     _, change, rate, acceleration = placed.bodies[body].sizes
     weight = Vector(*placed.declared.gravity).size + placed.rates[1] ** 2 / placed.declared.size
-    return placed.declared.bodies[body].mass * (change + (rate**2 + acceleration) * reach + weight)
+    return placed.declared.bodies[body].whole.mass * (
+        change + (rate**2 + acceleration) * reach + weight
+    )
 
 
 def _unlike(placed: Placed) -> Scalar:

@@ -19,8 +19,9 @@ from ...base.arrays import Array
 from ...base.quantities import Output
 from ...base.tables import SPACE
 from ...errors import CertificateError
-from ...model.declared import Declared
+from ...model.description import Description
 from ...model.scene import kinds
+from ...model.stated import NOTHING, Stated
 from ..histories import Histories
 from ..laws import SectionLaw
 from ..solution import Solution
@@ -45,7 +46,7 @@ _EDGE = 1e-9
 
 def certify(
     histories: Histories,
-    declared: Declared | None = None,
+    stated: Stated = NOTHING,
     hidden: Mapping[Output, Array] | None = None,
     phases: Mapping[Output, Array] | None = None,
 ) -> dict[str, Array]:
@@ -53,13 +54,12 @@ def certify(
     ``ends``, ``friction``, each where it can be had; where a joint that rubs is at rest,
     ``closure``, and ``friction`` of others.
 
-    ``declared`` is the mechanism, with its constraints and rows, which a solution does not hold:
-    without it, a solution of a mechanism that has some is looked at for ``closure`` alone.
+    ``stated`` are constraints, rows, motions and laws of loads, which a solution does not hold:
+    without them, a solution of a mechanism that has constraints is looked at for ``closure`` alone.
     ``hidden`` are forces that it does not give: multipliers that were not wanted, and what is open,
     which takes some value all the same. ``phases`` are angles that are known up to whole turns more
     closely than they are reported.
     """
-    declared = declared or Declared.of(histories.description)
     resting = histories.resting
     if resting.any() and not resting.all():
         merged: dict[str, Array] = {}
@@ -68,7 +68,7 @@ def certify(
                 {output: values[some] for output, values in (more or {}).items()}
                 for more in (hidden, phases)
             )
-            for name, distances in certify(histories.during(some), declared, *pick).items():
+            for name, distances in certify(histories.during(some), stated, *pick).items():
                 merged.setdefault(name, np.zeros_like(histories.t))[some] = distances
         return merged
     whole = replace(histories, outputs={**histories.outputs, **(hidden or {})}, indeterminate=())
@@ -80,7 +80,7 @@ def certify(
         block = (
             reported if whole.t.size <= _BLOCK else reported.during(slice(start, start + _BLOCK))
         )
-        for name, parts in _residuals(declared, block, digits).items():
+        for name, parts in _residuals(histories.description, stated, block, digits).items():
             for part, (distances, scale) in enumerate(parts):
                 found.setdefault((name, part), []).append(np.broadcast_to(distances, block.t.shape))
                 scales[name, part] = max(scales.get((name, part), 0.0), scale)
@@ -151,8 +151,8 @@ def reported_of(histories: Histories, phases: Mapping[Output, Array]) -> Reporte
         phases=phases,
         laws={link: _law_at_base(histories, link) for link in histories.links_with_sections},
         space=histories.table is SPACE,
-        two_force_links=description.get("bars", ()),
-        unmeasured=frozenset(description.get("unmeasured", ())),
+        two_force_links=description.bars,
+        unmeasured=frozenset(description.unmeasured),
     )
 
 
@@ -164,24 +164,24 @@ def _law_at_base(histories: Histories, link: str) -> SectionLaw:
     return replace(law, slack=max(_EDGE, law.slack))
 
 
-def placed_of(declared: Declared, reported: Reported) -> Placed | None:
+def placed_of(declared: Description, stated: Stated, reported: Reported) -> Placed | None:
     """Place every body by the reported motions; None where some is not reported."""
     if any(
         Output("motion", name) not in reported.outputs
-        for name in {*declared.kinds} - reported.unmeasured
+        for name in {*declared.coordinates} - reported.unmeasured
     ):
         return None
     if any(Output("pose", name, "x") not in reported.outputs for name in declared.bodies):
         return None
-    placed = place_all(place(declared, reported.without_locked(declared)))
+    placed = place_all(place(declared, stated, reported.without_locked(declared)))
     return placed if len(placed.bodies) == len(declared.bodies) + 1 else None
 
 
 def _residuals(
-    declared: Declared, reported: Reported, digits: Digits
+    declared: Description, stated: Stated, reported: Reported, digits: Digits
 ) -> dict[str, list[Residuals]]:
     """The gaps of each residual, each with the largest of what it is to be compared with."""
-    if (placed := placed_of(declared, reported)) is None:
+    if (placed := placed_of(declared, stated, reported)) is None:
         return {}
     found = {"closure": closure(placed, digits)}
     if (residuals := friction_residuals(placed, digits)) is not None:

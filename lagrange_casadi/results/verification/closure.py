@@ -72,7 +72,7 @@ def _of_motions(placed: Placed, digits: Digits) -> Iterator[tuple[bool, Array]]:
     Where a law jumps, rounding decides on which side of that an instant is.
     """
     t, size, (_, *fastest) = placed.reported.t, placed.declared.size, placed.rates
-    for motion in placed.declared.stated.motions:
+    for motion in placed.stated.motions:
         (entry,) = motion.entries
         if entry.part in placed.reported.unmeasured:
             continue
@@ -148,7 +148,7 @@ def _of_poses(placed: Placed, digits: Digits) -> Iterator[Scalar]:
 
 def _of_equations(placed: Placed, digits: Digits) -> Iterator[Scalar]:
     """Residuals of users' equations, over their slopes; and of the work of transmissions."""
-    for equation in placed.declared.stated.equations:
+    for equation in placed.stated.equations:
         yield _missed(placed, equation) * placed.declared.size
         for touch in equation.touches:
             yield idle(touch, placed.bodies, *placed.rates[:2]) * placed.declared.size

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...base.arrays import Array
 from ...base.quantities import Output
-from ...model.declared import Declared
+from ...model.description import Description
 from ...model.stated import Touch
 from .placing import Moving
 from .reported import Reported
@@ -21,7 +21,7 @@ _REST = 1e-12
 """Fraction of the fastest given motion below which a rate is that of rest."""
 
 
-def sense(touch: Touch, declared: Declared, reported: Reported) -> Scalar:
+def sense(touch: Touch, declared: Description, reported: Reported) -> Scalar:
     """The sign with which the first turns on the carrier; where it turns back, that of the instants
     right after.
     """

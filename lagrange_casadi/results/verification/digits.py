@@ -9,7 +9,6 @@ import numpy as np
 from ...base.compensated import DTYPES, ROUNDING
 from ...base.quantities import Output
 from ...base.vocabulary import Precision
-from ...model.description import coordinates_of
 from ..histories import Histories
 
 ROUNDINGS = 4.0
@@ -26,10 +25,10 @@ def blur(histories: Histories) -> float:
     """Uncertainty of a phase by the reported angles: one rounding of the largest of them [rad]."""
     angles = [
         Output("motion", name)
-        for name, kind in coordinates_of(histories.description).items()
+        for name, kind in histories.description.coordinates.items()
         if kind == "angle"
     ]
-    angles += [Output("pose", name, "angle") for name in histories.description["bodies"]]
+    angles += [Output("pose", name, "angle") for name in histories.description.bodies]
     reported = (histories.outputs[angle] for angle in angles if angle in histories.outputs)
     return Digits.of(histories).rounding * max(
         (float(np.max(np.abs(values))) for values in reported), default=0.0

@@ -15,7 +15,6 @@ from ...base.arrays import Array
 from ...base.quantities import Output
 from ...engine.instants.backends import Evaluated
 from ...engine.program import Program
-from ...model.declared import Declared
 from ..histories import Histories
 from .accuracy import estimate, explained
 from .certificate import certify
@@ -50,8 +49,8 @@ def residuals_of(
     ``within`` are the angles of ``out`` without their turns (:func:`.phases`), as they were before
     the histories were made of it.
     """
-    declared = Declared.of(histories.description, program.data.stated.at(p))
-    return certify(histories, declared, _hidden(program, out, histories.indeterminate), within)
+    stated = program.data.stated.at(p)
+    return certify(histories, stated, _hidden(program, out, histories.indeterminate), within)
 
 
 def _hidden(program: Program, out: Array, indeterminate: Sequence[Output]) -> dict[Output, Array]:

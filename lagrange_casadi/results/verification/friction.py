@@ -10,7 +10,7 @@ import numpy as np
 
 from ...base.arrays import Array
 from ...base.quantities import Output
-from ...model.declared import JointNumbers
+from ...model.description import JointNumbers
 from .digits import Digits
 from .placing import Placed
 from .reported import Reported
@@ -65,7 +65,11 @@ def _sliding(placed: Placed) -> Iterator[tuple[str, Array, bool]]:
             near, far = placed.ends(holder)
             yield name, np.broadcast_to((far.rate - near.rate).size, reported.t.shape), True
         elif Output("motion", load.coordinate, "rate") in reported.outputs:
-            yield name, reported.rate(load.coordinate), declared.kinds[load.coordinate] == "angle"
+            yield (
+                name,
+                reported.rate(load.coordinate),
+                declared.coordinates[load.coordinate] == "angle",
+            )
 
 
 def _largest(values: Array) -> float:
@@ -91,7 +95,7 @@ def _of_laws(placed: Placed) -> Array | None:
         if rate is None:
             continue
         worst = np.zeros_like(value) if worst is None else worst
-        rotates = declared.kinds[load.coordinate] == "angle"
+        rotates = declared.coordinates[load.coordinate] == "angle"
         lever = numbers.get("radius", 1.0) if rotates else 1.0
         speed, share = np.abs(rate) * lever, None
         if (other := _beside(load.coordinate)) is not None:

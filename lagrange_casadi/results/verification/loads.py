@@ -14,7 +14,7 @@ import numpy as np
 
 from ...base.arrays import Array
 from ...base.quantities import Output
-from ...model.declared import LoadNumbers
+from ...model.description import LoadNumbers
 from ...model.stated import LoadLaw
 from .digits import NEARBY, Digits
 from .placing import Placed
@@ -33,7 +33,7 @@ def off_laws(placed: Placed, digits: Digits, largest: float) -> Array:
     largest force of the cycle.
     """
     worst = np.zeros_like(placed.reported.t)
-    for law in placed.declared.stated.laws:
+    for law in placed.stated.laws:
         load = placed.declared.loads[law.name]
         given, (places, rates, _) = _given(placed, law.name), stacked(placed, law)
         acts = _acting(placed, law, load, law.at(places, rates, placed.reported.t))

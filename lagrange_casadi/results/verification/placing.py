@@ -15,8 +15,8 @@ import numpy as np
 
 from ...base.arrays import Array
 from ...base.quantities import Output
-from ...model.declared import AxisNumbers, Declared, JointNumbers, LoadNumbers
-from ...model.stated import Entry, Triple
+from ...model.description import AxisNumbers, Description, JointNumbers, LoadNumbers, Triple
+from ...model.stated import Entry, Stated
 from .reported import Reported
 from .vectors import GROUND, NIL, Axes, Scalar, Vector, most
 
@@ -106,11 +106,12 @@ class Relative:
 
 @dataclass(frozen=True, eq=False)
 class Placed:
-    """A mechanism as it was declared, its results, how each of its joints moves, and the bodies
-    that are placed.
+    """A mechanism as it was declared in numbers, and what was ``stated`` of it as expressions, its
+    results, how each of its joints moves, and the bodies that are placed.
     """
 
-    declared: Declared
+    declared: Description
+    stated: Stated
     reported: Reported
     relatives: Mapping[str, Relative]
     bodies: Mapping[str, Moving]
@@ -140,7 +141,7 @@ class Placed:
         reported, declared = self.reported, self.declared
         angles = [
             name
-            for name, kind in declared.kinds.items()
+            for name, kind in declared.coordinates.items()
             if kind == "angle" and name not in reported.unmeasured
         ]
         speeds, changes, turning, gains = zip(
@@ -176,7 +177,7 @@ class Placed:
     def is_angle(self, entry: Entry) -> bool:
         """Return whether an entry of an equation is an angle."""
         return entry.kind == "direction" or (
-            entry.kind == "coordinate" and self.declared.kinds[entry.part] == "angle"
+            entry.kind == "coordinate" and self.declared.coordinates[entry.part] == "angle"
         )
 
     def measured(self, entry: Entry) -> tuple[Scalar, Scalar, Scalar]:
@@ -199,7 +200,7 @@ class Placed:
         return getattr(place, entry.kind), getattr(speed, entry.kind), getattr(change, entry.kind)
 
 
-def place(declared: Declared, reported: Reported) -> Placed:
+def place(declared: Description, stated: Stated, reported: Reported) -> Placed:
     """The motion of every body that the reported motions of joints place, the ground's included."""
     relatives = {
         name: _relative(declared, reported, joint) for name, joint in declared.joints.items()
@@ -220,10 +221,10 @@ def place(declared: Declared, reported: Reported) -> Placed:
                 bodies[child if outward else parent] = found
                 del waiting[name]
                 moved = True
-    return Placed(declared, reported, relatives, bodies)
+    return Placed(declared, stated, reported, relatives, bodies)
 
 
-def _relative(declared: Declared, reported: Reported, joint: JointNumbers) -> Relative:
+def _relative(declared: Description, reported: Reported, joint: JointNumbers) -> Relative:
     """Motion of a joint by its reported motions; motions that are not reported are zero.
 
     A screw slides by its turns too.
@@ -272,7 +273,7 @@ def _reciprocal(axes: Sequence[Vector], number: int) -> Vector:
 
 
 def _outward(
-    declared: Declared, joint: JointNumbers, motion: Relative, base: Moving
+    declared: Description, joint: JointNumbers, motion: Relative, base: Moving
 ) -> Moving | None:
     """The motion of a joint's child, or None where the joint does not give it."""
     if not motion.whole and declared.oriented(joint.child.body):
@@ -290,7 +291,7 @@ def _outward(
 
 
 def _inward(
-    declared: Declared, joint: JointNumbers, motion: Relative, far: Moving
+    declared: Description, joint: JointNumbers, motion: Relative, far: Moving
 ) -> Moving | None:
     """The motion of a joint's parent, or None where the joint does not give it."""
     place, moves, changes = far.point(_vector(joint.child.at))

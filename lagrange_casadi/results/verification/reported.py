@@ -9,7 +9,7 @@ import numpy as np
 
 from ...base.arrays import Array, during
 from ...base.quantities import Output
-from ...model.declared import Declared, JointNumbers
+from ...model.description import Description, JointNumbers
 from ..laws import SectionLaw
 from .vectors import GROUND, Axes, Scalar, Vector
 
@@ -42,7 +42,7 @@ class Reported:
         moving = {name: getattr(self, name) for name in ("t", "outputs", "phases", "laws")}
         return replace(self, **during(moving, instants))
 
-    def without_locked(self, declared: Declared) -> Reported:
+    def without_locked(self, declared: Description) -> Reported:
         """The results without turns near gimbal lock among what is used: those bodies are taken
         where they are reported.
 
@@ -54,7 +54,7 @@ class Reported:
         }
         return replace(self, unmeasured=self.unmeasured | locked) if locked else self
 
-    def _locked(self, declared: Declared, joint: JointNumbers) -> list[str]:
+    def _locked(self, declared: Description, joint: JointNumbers) -> list[str]:
         rotations = [axis.coordinate for axis in joint.axes if axis.kind == "angle"]
         if len(rotations) < 3 or {*rotations} & {*declared.driven, *self.unmeasured}:
             return []

@@ -74,7 +74,7 @@ def _together(placed: Placed) -> list[list[str]]:
     declared = placed.declared
     groups = [[name] for name in declared.bodies if name not in placed.bodies]
     joined = [{joint.parent.body, joint.child.body} for joint in declared.joints.values()]
-    joined += [_parts(equation) for equation in declared.stated.equations]
+    joined += [_parts(equation) for equation in placed.stated.equations]
     for ends in joined:
         groups_here = [group for group in groups if ends & {*group}]
         if len(groups_here) > 1:
@@ -173,7 +173,7 @@ class _Unplaced:
                         two_force_link.rate if order == 1 else two_force_link.acceleration
                     )
                 )
-        for equation in placed.declared.stated.equations:
+        for equation in placed.stated.equations:
             parts = _parts(equation)
             if not equation.row and parts & {*trial} and parts <= {*placed.bodies}:
                 found.append(equation.at(*stacked(placed, equation), self.reported.t)[order])

@@ -61,7 +61,7 @@ def inertia_at(
     if joint not in reflected.drives:
         raise UnknownNameError("drive", joint, reflected.drives)
     several = len(reflected.motions) > 1
-    rows = reflected.program.data.template.content["rows"]
+    rows = reflected.program.data.content.rows
     if rows or (several and len(reflected.drives) != len(reflected.motions)):
         why = (
             "non-holonomic constraints"

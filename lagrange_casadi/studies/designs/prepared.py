@@ -23,7 +23,6 @@ from ...base.vocabulary import Compiled, PeakSearch, Precision
 from ...engine.instants.evaluation_method import EvaluationMethod
 from ...engine.model_data import template
 from ...errors import AssemblyError, DeclarationError, UnknownNameError, shown
-from ...model.description import fitted_of
 from ...model.scene import Scene
 from ...model.times import Over, Times
 from ...model.wanted_names import without_fitted, without_life
@@ -518,7 +517,7 @@ def prepare(
     """
     named = () if wanted is None else wanted
     without_life(named, "prepared scenes")
-    without_fitted(fitted_of(template(scene).content), named, "prepared scenes")
+    without_fitted(template(scene).content.fitted, named, "prepared scenes")
     method = EvaluationMethod(backend, precision, newton, None, flags)
     request = Request(t=t, over=over, wanted=wanted, method=method)
 

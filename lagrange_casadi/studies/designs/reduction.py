@@ -79,9 +79,7 @@ class KeptOutputs:
                 if parts[:1] == [output] and len(parts) > 1:
                     chosen[size] = tuple(at[other] for other in parts)
             chosen[output] = (k,)
-        links = [
-            link for link in data.template.content["bodies"] if Output("law", link, "n0") in at
-        ]
+        links = [link for link in data.content.bodies if Output("law", link, "n0") in at]
         names = [
             *chosen,
             *(Output("section", link, force) for link in links for force in table.forces),
@@ -130,8 +128,8 @@ class KeptOutputs:
 
 
 def _along(data: ModelData, link: str, at: dict[Output, int], table: Table) -> Along:
-    density = data.template.content["bodies"][link]["density"]
-    sliced = "slices" in density
+    body = data.content.bodies[link]
+    (_, density), sliced = body.length_and_density, bool(body.slices)
     load_points, distributed_loads = load_points_of(at, link), list[tuple[int, ...]]()
     marks: list[tuple[int, ...] | float] = []
     for name, powers in distributed_loads_of(at, link).items():
@@ -153,8 +151,8 @@ def _along(data: ModelData, link: str, at: dict[Output, int], table: Table) -> A
             tuple(at[Output("station", link, member, load_point)] for member in table.place_first)
             for load_point in load_points
         ),
-        tuple(density["breaks"]),
-        max(len(cell) for cell in density["cells"]),
+        density.breaks,
+        max(map(len, density.cells)),
         tuple(distributed_loads),
         tuple(marks),
         sliced,

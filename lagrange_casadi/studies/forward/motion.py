@@ -15,7 +15,6 @@ from ...base.quantities import Output
 from ...base.symbolic import symbolic
 from ...engine.derive import compile_scene
 from ...errors import CertificateWarning, DeclarationError, LagrangeCasadiError, warn
-from ...model.description import coordinates_of
 from ...model.even_points import EvenPoints, points
 from ...model.motion import Motion
 from ...model.scene import Scene
@@ -235,7 +234,7 @@ def _posture(scene: Scene, machine: Machine, t: float, start: Start) -> dict[str
     )
     out = program.instant(t, start.angle, 0.0, 0.0, machine.z, p).full().ravel()
     found = {}
-    for name, kind in coordinates_of(program.data.at(p)).items():
+    for name, kind in program.data.at(p).coordinates.items():
         row = program.outputs.get(Output("motion", name))
         if row is not None and name != machine.equation.joint:
             value = float(out[row])

@@ -9,17 +9,17 @@ constraints are quadratic, and every start is inside.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import casadi as ca
 import numpy as np
 
 from ...base.arrays import Array, Expression
 from ...base.ipopt import ipopt
+from ...base.scalars import column
 from ...base.symbolic import Graphs, symbolic, symbolic_property
 from ...errors import AccuracyError, DeclarationError
+from ...model.description import BodyNumbers
 from .base import triangle
 from .regressor import Regressor
 
@@ -58,10 +58,10 @@ class Consistency(Graphs):
         theta, p = ca.SX.sym("theta", len(numbers)), ca.SX(ca.DM(defaults))
         p[numbers] = theta
         first, found = defaults[numbers], {}
-        template = program.data.template
-        for name, body in template.placed(template.content["bodies"], p).items():
-            mass, centre = ca.SX(body["mass"]), body.get("centre")
-            matrix = mass if centre is None else _pseudo_inertia(mass, centre, theta, first)
+        template, space = program.data.template, program.data.space
+        for name, body in template.placed(template.content.bodies, p).items():
+            mass = ca.SX(body.mass)
+            matrix = mass if body.centre is None else _pseudo_inertia(body, space, theta, first)
             if _depends(matrix, theta):
                 found[name] = ca.densify(matrix)
         parameters = [list(program.data.parameters.values())[k] for k in numbers]
@@ -153,22 +153,20 @@ def _depends(expression: Expression, theta: ca.SX) -> bool:
     return any(ca.which_depends(ca.SX(expression), theta, 1))
 
 
-def _pseudo_inertia(
-    mass: Expression, centre: Mapping[str, Any], theta: ca.SX, first: Array
-) -> Expression:
+def _pseudo_inertia(body: BodyNumbers, space: bool, theta: ca.SX, first: Array) -> Expression:
     """Return the matrix of a body's second moments, first moments and mass, about its base; in the
     plane with the polar moment, and of the mass alone if no moment depends on the parameters.
 
     Directions in which the body has no extent are left out.
     """
-    inertia, places = centre["inertia"], [ca.SX(centre[x]) for x in "xyz" if x in centre]
-    place = ca.vertcat(*places)
-    if not isinstance(inertia, list | tuple):
-        about = ca.SX(inertia) + mass * ca.dot(place, place)
+    mass, place = ca.SX(body.mass), column(body.centre or ())
+    matrix = ca.vertcat(*(column(row).T for row in body.inertia or ()))
+    if not space:
+        inertia, place = matrix[2, 2], place[:2]
         moments = mass * place
+        about = inertia + mass * ca.dot(place, place)
         found = ca.blockcat([[about, moments.T], [moments, mass * ca.SX.eye(2)]])
         return found if _depends(inertia, theta) else mass
-    matrix = ca.vertcat(*(ca.horzcat(*map(ca.SX, row)) for row in inertia))
     second = ca.trace(matrix) / 2 * ca.SX.eye(3) - matrix
     if not _depends(second, theta):
         return mass

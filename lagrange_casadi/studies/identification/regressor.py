@@ -288,8 +288,8 @@ def _quantity(
     if place.kind == "section":
         output = Output("section", place.link, place.member)
         return section[place.member], output.unit(data.kinds)
-    if place.link not in data.materials:
-        raise UnknownNameError("link with a beam", place.link, data.materials, place=name)
+    if place.link not in data.content.materials:
+        raise UnknownNameError("link with a beam", place.link, data.content.materials, place=name)
     link = data.link(place.link, p)
     assert link.beam is not None
     sections = CrossSections(link.beam, data.space)

@@ -47,7 +47,7 @@ class Tired:
     @property
     def material(self) -> Material:
         """Material of the link."""
-        return self.program.data.materials[self.link]
+        return self.program.data.content.materials[self.link]
 
     @property
     def stress(self) -> LinkStress:

@@ -16,7 +16,7 @@ from ...base.numerals import real
 from ...base.vocabulary import Compiled
 from ...engine.identity import sources
 from ...engine.instants.evaluation_method import EvaluationMethod
-from ...engine.model_data import materials_of, template
+from ...engine.model_data import template
 from ...errors import DeclarationError, UnknownNameError, check_kind
 from ...model.scene import Scene
 from ...model.times import Times, Timing
@@ -238,7 +238,7 @@ class Question:
             "sources": sources(),
             "compiler": f"{made.backend} {made.compiler} {made.flags} {made.method}",
             "scene": program.identity or "cannot be identified",
-            "mechanism": program.data.at(program.data.defaults),
+            "mechanism": program.data.at(program.data.defaults).plain(),
             "t": self.timing.words(program.data.symbols),
             "minimise": list(map(str, self.objectives)),
             "subject_to": [c.words for c in self.constraints],
@@ -282,7 +282,7 @@ def constraints_of(text: str, scene: Scene) -> list[Constraint]:
         raise DeclarationError(
             f"'{text}': expected a least factor of safety, as least:safety:{link} >= 2"
         )
-    material = materials_of(template(scene).content)[link]
+    material = template(scene).content.materials[link]
     if mode == "fatigue":
         strengths(material, "goodman")
     modes = (

@@ -11,7 +11,6 @@ import numpy as np
 
 from ...base.status import Status
 from ...errors import one_line
-from ...model.description import values_of
 from ...model.even_points import points
 from ...results.store.untrusted import check_chunks, parsed, reported_as
 from ...results.store.words import unlike, unlike_conventions
@@ -95,10 +94,10 @@ def _check_asked(file: h5py.File, sweep: Sweep) -> Iterator[str]:
     """
     identity: Mapping[str, Any] = sweep.identity
     description = sweep.description
-    parameter_values = values_of(description)
+    parameter_values = description.values
     if (
         parsed(file.attrs["parameters"], {str: float}, "parameters") != parameter_values
-        or sweep.case != description["name"]
+        or sweep.case != description.name
     ):
         yield "case or parameters: differ from those of the mechanism"
     values = {name: file["grid"][name][()] for name in sweep.parameters}

@@ -21,7 +21,7 @@ from ...results.store.untrusted import (
 from .axes import DESIGN
 from .file import WORDS
 from .meanings import KINDS, STATUS
-from .plan import IDENTITY, Identity
+from .plan import IDENTITY, Identity, described_in
 
 _NAMED = (
     "backend",
@@ -70,6 +70,7 @@ def contents(file: h5py.File) -> Contents:
         key: _plain(attributes[key]) for key in _NAMED
     }
     check_shape(identity, IDENTITY, "attributes")
+    described_in(identity)
     columns: dict[str, KeptColumn] = {}
     status = file[STATUS]
     names = [dim[0].name.rpartition("/")[2] for dim in status.dims]

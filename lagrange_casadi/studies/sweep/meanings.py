@@ -15,7 +15,7 @@ from ...base.quantities import Kinds, Output, quotient
 from ...base.status import Status
 from ...base.tables import ANGLE, LENGTH, Table, table_of
 from ...engine.model_data import ModelData
-from ...model.description import Description, in_space, kinds_of_described, motions_of
+from ...model.description import Description
 from ...model.even_points import points
 from ...model.mass_properties import ALL
 from ...model.times import Timing, instants_of
@@ -155,15 +155,11 @@ class Meanings:
     @classmethod
     def of(cls, description: Description, axis: str, joint: str) -> Meanings:
         """Make them for a described mechanism."""
-        units = {
-            name: str(parameter["unit"]) for name, parameter in description["parameters"].items()
-        }
-        drive_unit = (
-            "" if not joint else LENGTH if motions_of(description)[joint] == "slide" else ANGLE
-        )
+        units = {name: parameter.unit for name, parameter in description.parameters.items()}
+        drive_unit = "" if not joint else LENGTH if description.driven[joint] == "slide" else ANGLE
         return cls(
-            table_of(in_space(description)),
-            kinds_of_described(description),
+            table_of(description.space),
+            description.kinds,
             units,
             axis,
             joint,

@@ -13,8 +13,6 @@ from ...base.arrays import spread
 from ...base.status import Status
 from ...engine.model_data import template
 from ...errors import LagrangeCasadiError
-from ...model.beams.beam import beam_of
-from ...model.description import kinds_of_described
 from ...model.notes import rest_note
 from ...model.revolutions import note
 from ...model.scene import Scene
@@ -34,14 +32,15 @@ _TURNS_OF = 1024
 
 def fatigue_notes(found: Sweep) -> Iterator[str]:
     """Say of each link with a factor of safety why none against fatigue is kept."""
-    for name, body in found.description["bodies"].items():
+    materials = found.description.materials
+    for name in found.description.bodies:
         if (
             f"{LEAST}:safety:{name}" in found.columns
             and f"{LEAST}:fatigue:{name}" not in found.columns
         ):
             yield (
                 f"no factor against fatigue of '{name}' is kept:"
-                f" {lacking(beam_of(body['beam']).material).partition(': ')[2]}"
+                f" {lacking(materials[name]).partition(': ')[2]}"
             )
 
 
@@ -57,10 +56,7 @@ def resting_note(
     """A line where a joint that rubs rests in some design that is looked at, of all those with a
     result; empty where none does.
     """
-    description = found.description
-    if "losses" not in description and not any(
-        "friction" in load for load in description["loads"].values()
-    ):
+    if not found.description.has_friction:
         return ""
     right = np.concatenate(
         [numbers[values["status"] == Status.OK] for numbers, values in found.blocks(["status"])]
@@ -105,4 +101,4 @@ def turning_note(
     columns = [list(values).index(name) for name in designs.names]
     for row, number in zip(p, numbers.tolist(), strict=True):
         row[columns] = designs.block(number, number + 1)[0]
-    return note(scene.prescribed, kinds_of_described(template(scene).content), timing, p)
+    return note(scene.prescribed, template(scene).content.kinds, timing, p)

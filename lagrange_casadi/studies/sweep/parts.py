@@ -24,7 +24,7 @@ from ...base.publish import flush, put, reporting, settled
 from ...errors import BusyError, PathError, StoreError, one_line
 from ...results.store.untrusted import parsed
 from .columns import Column
-from .plan import IDENTITY, Identity
+from .plan import IDENTITY, Identity, described_in
 
 
 class _Head(TypedDict):
@@ -177,6 +177,7 @@ class Folder:
         """Identity of the parts. Raises :class:`StoreError` if it cannot be read."""
         try:
             found: Identity = parsed((self.path / _PLAN).read_text(), IDENTITY, "plan")
+            described_in(found)
         except (OSError, ValueError, RecursionError) as error:
             raise StoreError(
                 f"{self.path / _PLAN}: damaged: {one_line(error)}; start anew with force=True"

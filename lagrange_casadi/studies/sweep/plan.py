@@ -18,10 +18,11 @@ from ...base.space import in_words, require
 from ...base.vocabulary import Keep, PeakSearch, Precision
 from ...engine.derive import compile_scene
 from ...errors import AssemblyError, DeclarationError, MobilityError, ParameterError, SizeError
-from ...model.description import Description, beams_of, fitted_of, shape_of
+from ...model.description import Description
 from ...model.even_points import checked_ratios
 from ...model.scene import STRENGTH, Scene
 from ...model.wanted_names import SENSITIVITY, among, by_parameters, without_fitted
+from ...results.store.untrusted import structured
 from ..designs.spot_check import wanted_whole
 from ..request import Request
 from .axes import Designs, check_designs, counted
@@ -44,7 +45,7 @@ IDENTITY = {
     "wanted": {},
     "t": ([float, float, int], [_BOUND, _BOUND, int], [_BOUND, _BOUND, int, str, _BOUND]),
     "xi": (None, [float, float, int]),
-    "mechanism": shape_of,
+    "mechanism": {},
     "grid": {str: str},
 }
 """The shape of :attr:`Plan.identity`, in the words of :mod:`.untrusted`."""
@@ -67,8 +68,17 @@ class Identity(TypedDict):
     wanted: dict[str, Json]
     t: list[Any]
     xi: list[Any] | None
-    mechanism: Description
+    mechanism: dict[str, Json]
     grid: dict[str, str]
+
+
+def described_in(identity: Identity) -> Description:
+    """The mechanism of a sweep, swept parameters at their defaults.
+
+    Raises ``ValueError`` for another form, as of a forged file.
+    """
+    found: Description = structured(Description, identity["mechanism"], "mechanism")
+    return found
 
 
 MANY, MOST = 10**9, 10**12
@@ -136,9 +146,9 @@ class Plan:
         ratios = None if request.xi is None else checked_ratios(request.xi)
         assembly = _assembly(scene, designs, values, names)
         program = compile_scene(scene, names, parameters=assembly)
-        content, named = program.data.template.content, [name for name in names if name != "all"]
-        without_fitted(fitted_of(content), names, "sweeps")
-        safety, life = (tuple(among(kind, beams_of(content), named)) for kind in ("safety", "life"))
+        content, named = program.data.content, [name for name in names if name != "all"]
+        without_fitted(content.fitted, names, "sweeps")
+        safety, life = (tuple(among(kind, content.beams, named)) for kind in ("safety", "life"))
         task = Task(
             timing,
             ratios,
@@ -235,7 +245,7 @@ class Plan:
             "schema_version": SCHEMA_VERSION,
             "case": self.harvest.data.name,
             **self.harvest.signature,
-            "mechanism": self.description,
+            "mechanism": self.description.plain(),
             "grid": self.designs.describe(),
         }
         content: Identity = json.loads(json.dumps(words))

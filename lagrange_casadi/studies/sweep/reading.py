@@ -38,7 +38,7 @@ from .blocks import chunk_of, slabs
 from .contents import KeptColumn, contents
 from .meanings import CYCLE, OVER, STATUS, Meanings
 from .parts import Folder
-from .plan import SCHEMA, SCHEMA_VERSION, Identity
+from .plan import SCHEMA, SCHEMA_VERSION, Identity, described_in
 from .selection import Selected, matches
 
 if TYPE_CHECKING:
@@ -499,7 +499,7 @@ class Sweep:
     @cached_property
     def description(self) -> Description:
         """The mechanism as a file describes it, swept parameters at their defaults."""
-        return dict(self.identity["mechanism"])
+        return described_in(self.identity)
 
     def check_columns(self, names: Sequence[str], along: Sequence[str] = ()) -> None:
         """Raise for columns that are none or have other axes than these.

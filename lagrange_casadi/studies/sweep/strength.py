@@ -62,9 +62,7 @@ class Kept:
     def links(self) -> tuple[str, ...]:
         """The links of which something is kept, in the order of declaration."""
         return tuple(
-            name
-            for name in self.data.template.content["bodies"]
-            if name in (*self.safety, *self.life)
+            name for name in self.data.content.bodies if name in (*self.safety, *self.life)
         )
 
     @cached_property
@@ -120,7 +118,9 @@ class Kept:
         return [link for link in self.life if self._tires(link)]
 
     def _tires(self, link: str) -> bool:
-        return link in self.data.materials and not lacking(self.data.materials[link])
+        return link in self.data.content.materials and not lacking(
+            self.data.content.materials[link]
+        )
 
     def _tired(
         self, link: str, there: npt.NDArray[np.int64], series: Array | None, p: Array
@@ -130,7 +130,7 @@ class Kept:
         assert series is not None
         if not there.size:
             return share, lives
-        stress, material = self.program.stress[link], self.data.materials[link]
+        stress, material = self.program.stress[link], self.data.content.materials[link]
         chosen = [self.series.index(str(member)) for member in stress.fibres.members]
         members, matter = series[there][:, chosen], stress.numbers(p[there].T).full().T
         counts = np.array([counted(member) for member in members])

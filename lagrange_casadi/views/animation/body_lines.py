@@ -9,17 +9,13 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from ...base.arrays import Array
-from ...model.description import in_space
+from ...model.description import Place, Triple
 from ..shapes.places import placed
 from ..shapes.shapes import (
     JointShape,
-    Place,
     Shape,
-    Spot,
     joint_shapes,
-    load_shapes,
     named_spots,
-    path_spots,
     shapes,
 )
 from ..shapes.solid import COLOURS, PATH
@@ -47,7 +43,7 @@ _COILS = 8
 def mechanism(motion: Motion, stage: Stage, *, names: bool) -> Iterator[Thing]:
     """Everything but forces, what is behind first."""
     description = motion.solution.description
-    for spot in path_spots(description).values():
+    for spot in description.paths.values():
         yield Line(stage.on_sheet(placed(motion.solution, spot))[None], PATH, 1.4)
     colours = {shape.name: COLOURS[k % len(COLOURS)] for k, shape in enumerate(shapes(description))}
     joints = list(joint_shapes(description))
@@ -55,10 +51,9 @@ def mechanism(motion: Motion, stage: Stage, *, names: bool) -> Iterator[Thing]:
         if joint.kind in _SLIDES:
             yield _guide(motion, stage, joint)
         yield from _stand(motion, stage, joint)
-    for load in load_shapes(description):
-        if load.kind == "spring":
-            start, stop = (stage.on_sheet(motion.place(spot)) for spot in load.spots)
-            yield _coil(start, stop, stage.unit)
+    for ends in description.springs.values():
+        start, stop = (stage.on_sheet(motion.place(end)) for end in ends)
+        yield _coil(start, stop, stage.unit)
     for shape in sorted(shapes(description), key=lambda shape: _depth(motion, stage, shape)):
         yield from _body(motion, stage, shape, joints, colours[shape.name])
     masses = {shape.name for shape in shapes(description) if shape.kind == "point"}
@@ -73,7 +68,7 @@ def mechanism(motion: Motion, stage: Stage, *, names: bool) -> Iterator[Thing]:
                 (4.0 if sphere else 4.8) * stage.unit,
                 INK if sphere else "#ffffff",
             )
-    for spot in path_spots(description).values():
+    for spot in description.paths.values():
         yield Dot(stage.on_sheet(motion.place(spot)), 3.6 * stage.unit, PATH)
     if names:
         named = named_spots(motion.solution.description)
@@ -83,7 +78,7 @@ def mechanism(motion: Motion, stage: Stage, *, names: bool) -> Iterator[Thing]:
 def _depth(motion: Motion, stage: Stage, shape: Shape) -> float:
     return stage.depth(
         motion.place(
-            Spot(shape.name, shape.axis[1] if shape.axis else shape.centre or (0.0, 0.0, 0.0))
+            Place(shape.name, shape.axis[1] if shape.axis else shape.centre or (0.0, 0.0, 0.0))
         )
     )
 
@@ -91,9 +86,9 @@ def _depth(motion: Motion, stage: Stage, shape: Shape) -> float:
 def _body(
     motion: Motion, stage: Stage, shape: Shape, joints: list[JointShape], colour: str
 ) -> Iterator[Thing]:
-    def on_sheet(places: Sequence[Place]) -> Array:
+    def on_sheet(places: Sequence[Triple]) -> Array:
         return np.stack(
-            [stage.on_sheet(motion.place(Spot(shape.name, at))) for at in places], axis=1
+            [stage.on_sheet(motion.place(Place(shape.name, at))) for at in places], axis=1
         )
 
     unit = stage.unit
@@ -145,13 +140,13 @@ def rim(motion: Motion, shape: Shape) -> Array | None:
     )
     if not np.isfinite(body_axes).all():
         return None
-    if turning is not None and in_space(motion.solution.description):
+    if turning is not None and motion.solution.description.space:
         axis = body_axes[0] @ motion.direction(turning.parent.body, turning.axes[0])[0]
     least = np.eye(3)[np.argmin(np.abs(axis))]
     first = np.cross(axis, least) / np.linalg.norm(np.cross(axis, least))
     second = np.cross(axis, first) / np.linalg.norm(axis)
     around = shape.disc * (_ROUND.real[:, None] * first + _ROUND.imag[:, None] * second)
-    middle = motion.place(Spot(shape.name, shape.centre or (0.0, 0.0, 0.0)))[:, None]
+    middle = motion.place(Place(shape.name, shape.centre or (0.0, 0.0, 0.0)))[:, None]
     found: Array = middle + np.einsum("nk,fkc->fnc", around, body_axes)
     return found
 
@@ -191,7 +186,7 @@ def _block(
     corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
     offsets = corners[:, :1] * length * direction + corners[:, 1:] * height * across(direction)
     fill = colours[body] if mass or joint.kind != "slot" else "#ffffff"
-    spot = Spot(body, (0.0, 0.0, 0.0)) if mass else joint.child
+    spot = Place(body, (0.0, 0.0, 0.0)) if mass else joint.child
     points = stage.on_sheet(motion.place(spot))[:, None] + offsets
     return Line(points, INK, 1.4 * stage.unit, closed=True, fill=fill)
 

@@ -13,9 +13,9 @@ import numpy as np
 from ...base.arrays import Array
 from ...base.quantities import Output
 from ...errors import DeclarationError, UnknownNameError
-from ...model.description import in_space
+from ...model.description import Place
 from ...results.solution import Solution
-from ..shapes.shapes import Spot, joint_shapes, load_shapes
+from ..shapes.shapes import joint_shapes
 from .drawn import Line, Thing, Words, across, along
 from .motion import Motion
 from .stage import Stage
@@ -127,7 +127,7 @@ def forces_of(motion: Motion, size: float, *, arrows: bool, section: str) -> For
         words += [f"arrows: up to {_said(largest, 'N')}"] if pushes else []
         largest = largest_of(moments)
         for one in moments:
-            if in_space(motion.solution.description):
+            if motion.solution.description.space:
                 found.append(
                     Arrow(
                         one.place,
@@ -255,9 +255,9 @@ def _pushes(motion: Motion) -> Iterator[Action]:
             if kind == "slide" and (effort := _effort(motion, name)) is not None:
                 along_axis = motion.direction(joint.parent.body, axis, joint.parent.at)
                 yield Action("effort", name, motion.place(joint.child), effort * along_axis)
-    for load in load_shapes(solution.description):
-        if (direction := _vector(motion, "load", load.name)) is not None:
-            yield Action("load", load.name, motion.place(load.spots[0]), direction)
+    for name, load in solution.description.loads.items():
+        if (direction := _vector(motion, "load", name)) is not None:
+            yield Action("load", name, motion.place(load.points[0]), direction)
 
 
 def _turns(motion: Motion) -> Iterator[Action]:
@@ -267,7 +267,7 @@ def _turns(motion: Motion) -> Iterator[Action]:
             if kind != "slide" and (effort := _effort(motion, name)) is not None:
                 direction = (
                     np.array([axis])
-                    if not in_space(motion.solution.description)
+                    if not motion.solution.description.space
                     else motion.direction(joint.parent.body, axis)
                 )
                 yield Action(
@@ -317,7 +317,7 @@ def _laws(solution: Solution, force: str) -> list[str]:
 
 def _ribbon(motion: Motion, link: str, force: str, scale: float) -> Ribbon:
     law, xi = motion.solution.section(link).law, np.linspace(0.0, 1.0, _RATIOS)
-    base, tip = (motion.place(Spot(link, (at, 0.0, 0.0)))[:, None] for at in (0.0, law.length))
+    base, tip = (motion.place(Place(link, (at, 0.0, 0.0)))[:, None] for at in (0.0, law.length))
     axis = base + xi[:, None] * (tip - base)
     side = motion.direction(
         link, (0.0, 0.0, 1.0) if force in ("shear_z", "bending_y") else (0.0, 1.0, 0.0)

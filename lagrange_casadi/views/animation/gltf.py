@@ -19,11 +19,11 @@ import numpy.typing as npt
 
 from ...base.arrays import Array, Json
 from ...errors import DeclarationError
-from ...model.description import in_space
+from ...model.description import Place
 from ...results.solution import Solution
 from ...version import __version__
 from ..shapes.places import drawn_spots, placed
-from ..shapes.shapes import JointShape, Shape, Spot, joint_shapes, load_shapes, path_spots, shapes
+from ..shapes.shapes import JointShape, Shape, joint_shapes, shapes
 from ..shapes.solid import COLOURS, PATH
 from ..shapes.views import upright
 from .forces import LONGEST, actions_of, largest_of
@@ -91,8 +91,8 @@ class _Scene:
             *(self._actions() if self.forces else ()),
         ]
         root: dict[str, Any] = {"name": self.solution.case, "children": parts}
-        if in_space(self.solution.description):
-            right, away, up = upright(self.solution.description["gravity"])
+        if self.solution.description.space:
+            right, away, up = upright(self.solution.description.gravity)
             # Up is y there, and what is near z.
             root["rotation"] = _quaternions(np.stack([right, up, -away])[None])[0].tolist()
         top = self._node(root)
@@ -140,7 +140,7 @@ class _Scene:
             self._moves(
                 number,
                 "translation",
-                placed(self.solution, Spot(shape.name, (0.0, 0.0, 0.0)))[self.chosen],
+                placed(self.solution, Place(shape.name, (0.0, 0.0, 0.0)))[self.chosen],
             )
             if shape.kind != "point":
                 self._moves(number, "rotation", _quaternions(self._axes(shape.name)))
@@ -148,10 +148,8 @@ class _Scene:
 
     def _springs(self) -> Iterator[int]:
         """Springs as rods of length 1, which are placed, turned and stretched."""
-        for load in load_shapes(self.solution.description):
-            if load.kind != "spring":
-                continue
-            start, stop = (placed(self.solution, spot)[self.chosen] for spot in load.spots)
+        for name, ends in self.solution.description.springs.items():
+            start, stop = (placed(self.solution, end)[self.chosen] for end in ends)
             lengths = np.linalg.norm(stop - start, axis=1)
             axes = np.stack(
                 [
@@ -160,7 +158,7 @@ class _Scene:
                 ]
             )
             rod = cylinder(np.zeros(3), np.eye(3)[0], 0.4 * self.girth)
-            number = self._node({"name": load.name, "mesh": self._mesh(load.name, rod, _SPRING)})
+            number = self._node({"name": name, "mesh": self._mesh(name, rod, _SPRING)})
             self._moves(number, "translation", start)
             self._moves(number, "rotation", _quaternions(axes.transpose(0, 2, 1)))
             self._moves(
@@ -219,7 +217,7 @@ class _Scene:
         for joint in joint_shapes(self.solution.description):
             if joint.parent.body != "ground" or joint.kind == "free":
                 continue
-            down = -upright([*self.solution.description["gravity"], 0.0][:3])[2]
+            down = -upright([*self.solution.description.gravity, 0.0][:3])[2]
             axes = frame_along(down)
             foot = block(
                 np.array(joint.parent.at) + 2.2 * self.girth * down,
@@ -229,7 +227,7 @@ class _Scene:
             yield self._node(
                 {"name": f"{joint.name}, ground", "mesh": self._mesh(joint.name, foot, _STILL)}
             )
-        for name, spot in path_spots(self.solution.description).items():
+        for name, spot in self.solution.description.paths.items():
             direction = placed(self.solution, spot)[self.chosen]
             line = {
                 "attributes": {"POSITION": self._array(direction, ends=True, target=_POINTS)},

@@ -9,9 +9,9 @@ import numpy.typing as npt
 
 from ...base.arrays import Array
 from ...errors import DeclarationError
+from ...model.description import Place, Triple
 from ...results.solution import Solution
 from ..shapes.places import drawn_spots, placed
-from ..shapes.shapes import Place, Spot
 
 _SAME = 1e-3
 """Over the mechanism's size: a motion whose ends are no farther apart is a cycle, and its last
@@ -39,14 +39,14 @@ class Motion:
         found: Array = values[self.before] * (1.0 - share) + values[self.before + 1] * share
         return found
 
-    def place(self, spot: Spot) -> Array:
+    def place(self, spot: Place) -> Array:
         """Return the coordinates of a place, (frames, 3) in ground axes [m]."""
         return self.at(placed(self.solution, spot))
 
-    def direction(self, body: str, direction: Place, at: Place = (0.0, 0.0, 0.0)) -> Array:
+    def direction(self, body: str, direction: Triple, at: Triple = (0.0, 0.0, 0.0)) -> Array:
         """A direction that a body carries, (frames, 3) in ground axes."""
         x, y, z = np.add(at, direction).tolist()
-        return self.place(Spot(body, (x, y, z))) - self.place(Spot(body, at))
+        return self.place(Place(body, (x, y, z))) - self.place(Place(body, at))
 
 
 def motion_of(solution: Solution, count: int) -> Motion:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...base.arrays import Array
-from ...model.description import Description, in_space
+from ...model.description import Description
 from ..shapes.views import AZIMUTH, ELEVATION, upright, view
 
 _MARGIN, _FOOT = 40.0, 30.0
@@ -63,9 +63,9 @@ class Stage:
 
 def directions(description: Description) -> tuple[Array, Array]:
     """Directions to the right and up on the sheet: x and y, or those of a slanted view in space."""
-    if not in_space(description):
+    if not description.space:
         return np.eye(3)[0], np.eye(3)[1]
-    one = view(upright(description["gravity"]), AZIMUTH, ELEVATION)
+    one = view(upright(description.gravity), AZIMUTH, ELEVATION)
     return one.right, one.up
 
 

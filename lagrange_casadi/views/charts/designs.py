@@ -15,7 +15,6 @@ import numpy.typing as npt
 from ...base.arrays import Array
 from ...base.tables import table_of
 from ...errors import NoDesignError
-from ...model.description import in_space
 from ...studies.sweep.best import best, chosen, size
 from ...studies.sweep.cut import DOTS, LINES, Cut, stays
 from ...studies.sweep.meanings import STATUS
@@ -176,7 +175,7 @@ class Along:
         mapped = there.size > LINES
         flips: dict[str, Any] = {}
         gaps = MissingDesigns.of(sweep, np.repeat(cut[STATUS][:, None], xi.size, axis=1))
-        forces = table_of(in_space(sweep.description)).forces
+        forces = table_of(sweep.description.space).forces
         sheet = Sheet.of(len(forces), share=("all", mapped))
         for axes, force in zip(sheet.plots, forces, strict=True):
             column = f"peak_at:section:{self.link}:{force}"

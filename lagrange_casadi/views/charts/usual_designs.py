@@ -11,7 +11,6 @@ import numpy as np
 
 from ...base.quantities import Output
 from ...errors import DeclarationError, NoDesignError, UnknownNameError
-from ...model.description import in_space
 from ...studies.sweep.axes import DESIGN
 from ...studies.sweep.reading import Sweep
 from .designs import Along, Front, Peaks, Scatter, Spec
@@ -137,7 +136,7 @@ def _over(sweep: Sweep, over: tuple[str, ...], at: Mapping[str, float]) -> tuple
 def _groups(sweep: Sweep) -> dict[str, list[str]]:
     """The columns that are drawn together, by what the file's name says."""
     groups: dict[str, list[str]] = {}
-    space = in_space(sweep.description)
+    space = sweep.description.space
     for name, output in _of_kind(sweep, "peak").items():
         if group := _group(output, space):
             groups.setdefault(group, []).append(name)
@@ -172,7 +171,7 @@ def usual_pair(sweep: Sweep, at: Mapping[str, float]) -> list[tuple[str, str]]:
         ),
         "",
     )
-    bending = [Output("section", body, "bending") for body in sweep.description["bodies"]]
+    bending = [Output("section", body, "bending") for body in sweep.description.bodies]
     second = next((peaks[output] for output in reversed(bending) if output in peaks), "")
     return [(first, second)] if first and second and sweep.select(**at).size > 1 else []
 

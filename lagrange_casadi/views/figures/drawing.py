@@ -9,17 +9,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base.arrays import Array
+from ...model.description import Place
 from ...results.solution import Solution
 from ..shapes.places import drawn_spots, placed
 from ..shapes.readable import scale_for
 from ..shapes.shapes import (
     JointShape,
     Shape,
-    Spot,
     joint_shapes,
-    load_shapes,
     named_spots,
-    path_spots,
     shapes,
 )
 from ..shapes.solid import COLOURS, PATH
@@ -118,7 +116,7 @@ def draw_mechanism(
     return figure
 
 
-def draw_into(axes: Axes, solution: Solution, named: Mapping[str, Spot]) -> None:
+def draw_into(axes: Axes, solution: Solution, named: Mapping[str, Place]) -> None:
     """The mechanism at its first instant, into axes of a figure, with the names of some places."""
     box, size = _extent(solution)
     _draw_instant(axes, solution, 0, size)
@@ -152,7 +150,7 @@ def _extent(solution: Solution) -> tuple[Box, float]:
     places = [placed(solution, spot) for spot in drawn_spots(description)]
     for shape in shapes(description):
         if shape.disc and shape.centre:
-            middle = placed(solution, Spot(shape.name, shape.centre))
+            middle = placed(solution, Place(shape.name, shape.centre))
             places += [middle - shape.disc, middle + shape.disc]
     x, y, _ = np.concatenate(places).T
     size = max(float(np.ptp(x)), float(np.ptp(y))) or 1.0
@@ -183,7 +181,7 @@ def _draw_instant(
     description = solution.description
     style: dict[str, Any] = {"alpha": 1.0 if strong else _FAINT, "zorder": 3 if strong else 2}
 
-    def at(spot: Spot) -> Array:
+    def at(spot: Place) -> Array:
         place: Array = placed(now, spot)[0, :2]
         return place
 
@@ -196,12 +194,11 @@ def _draw_instant(
             style,
             label=shape.name if strong else "_",
         )
-    for load in load_shapes(description):
-        if load.kind == "spring":
-            x, y = np.transpose([at(spot) for spot in load.spots])
-            axes.plot(
-                x, y, **style | {"color": "0.4", "linewidth": 1.4, "linestyle": ":", "label": "_"}
-            )
+    for ends in description.springs.values():
+        x, y = np.transpose([at(end) for end in ends])
+        axes.plot(
+            x, y, **style | {"color": "0.4", "linewidth": 1.4, "linestyle": ":", "label": "_"}
+        )
     for joint in joint_shapes(description):
         x, y = at(joint.child)
         slides = joint.kind in ("prismatic", "slot")
@@ -218,7 +215,7 @@ def _draw_instant(
             axes.plot(x, y, mark, **style | box)
         if strong and not slides and "ground" in (joint.parent.body, joint.child.body):
             axes.plot(x, y - 0.035 * size, "^", markersize=12, color="0.55", zorder=2)
-    for spot in path_spots(description).values():
+    for spot in description.paths.values():
         if strong:
             axes.plot(*placed(solution, spot)[:, :2].T, color=PATH, linewidth=1.4, zorder=2)
         axes.plot(
@@ -229,7 +226,7 @@ def _draw_instant(
 def _draw_body(
     axes: Axes,
     shape: Shape,
-    at: Callable[[Spot], Array],
+    at: Callable[[Place], Array],
     colour: str,
     style: dict[str, Any],
     label: str,
@@ -239,12 +236,12 @@ def _draw_body(
     """
 
     def line(ends: Sequence[tuple[float, float, float]], width: float, label: str) -> None:
-        x, y = np.transpose([at(Spot(shape.name, end)) for end in ends])
+        x, y = np.transpose([at(Place(shape.name, end)) for end in ends])
         axes.plot(x, y, color=colour, linewidth=width, solid_capstyle="round", label=label, **style)
 
     if shape.kind == "point":
         axes.plot(
-            *at(Spot(shape.name, (0.0, 0.0, 0.0))),
+            *at(Place(shape.name, (0.0, 0.0, 0.0))),
             "s",
             color=colour,
             markersize=11,
@@ -260,7 +257,7 @@ def _draw_body(
             line(ends[0], ends[1] if not shape.plates else 3.2, label)
             label = "_"
     for points in (*shape.plates, *([tuple(_circle(shape))] if shape.disc else ())):
-        corners = np.array([at(Spot(shape.name, point)) for point in points])
+        corners = np.array([at(Place(shape.name, point)) for point in points])
         face: dict[str, Any] = {
             "facecolor": colour,
             "linewidth": 0.0,
@@ -294,7 +291,7 @@ def _draw_axis(
     """The line on which something slides, as far as it ever does."""
     parent = placed(now, joint.parent)[0, :2]
     (x, y, z), (dx, dy, _) = joint.parent.at, joint.axes[0]
-    ahead = Spot(joint.parent.body, (x + dx, y + dy, z))
+    ahead = Place(joint.parent.body, (x + dx, y + dy, z))
     direction = placed(now, ahead)[0, :2] - parent
     along = placed(solution, joint.child) - placed(solution, joint.parent)
     directions = placed(solution, ahead) - placed(solution, joint.parent)
@@ -308,7 +305,7 @@ def _draw_axis(
     axes.plot(*ends.T, color="0.55", linewidth=1.0, linestyle=(0, (6, 4)), zorder=1, label="_")
 
 
-def _name(axes: Axes, now: Solution, spots: Mapping[str, Spot], size: float) -> None:
+def _name(axes: Axes, now: Solution, spots: Mapping[str, Place], size: float) -> None:
     """Write the names beside their points, where they hide neither each other nor more of the
     bodies than they must.
     """
@@ -325,7 +322,7 @@ def _name(axes: Axes, now: Solution, spots: Mapping[str, Spot], size: float) -> 
         axes.transData.transform(np.concatenate([*_lines(now), np.array(list(named))])) * points
     )
     blocks = [
-        placed(now, Spot(shape.name, (0.0, 0.0, 0.0)))[:, :2]
+        placed(now, Place(shape.name, (0.0, 0.0, 0.0)))[:, :2]
         for shape in shapes(now.description)
         if shape.kind == "point"
     ]
@@ -374,12 +371,12 @@ def _lines(now: Solution) -> Iterator[Array]:
             *edges,
             *pairwise(rim),
         ):
-            a, b = (placed(now, Spot(shape.name, end))[0, :2] for end in (start, stop))
+            a, b = (placed(now, Place(shape.name, end))[0, :2] for end in (start, stop))
             yield a + share * (b - a)
 
 
 def _labels(
-    now: Solution, spots: Mapping[str, Spot], size: float
+    now: Solution, spots: Mapping[str, Place], size: float
 ) -> dict[tuple[float, float], list[str]]:
     """The names by place, those at one place together."""
     found: dict[tuple[float, float], list[str]] = {}

@@ -19,7 +19,6 @@ from ...base.arrays import Array
 from ...base.quantities import Output
 from ...base.tables import PLANE, SPACE
 from ...errors import DeclarationError, PathError, UnknownNameError, shown
-from ...model.description import bends_of, parts_of, shaft_bearings_of
 from ...results.histories import Peak
 from ...results.ordering import vanishes
 from ...results.solution import Solution
@@ -69,7 +68,7 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
         Specifications for all that the solution has, without the welds inside bent bars.
     """
     specs: list[Spec] = []
-    internal = bends_of(solution.description)
+    internal = solution.description.bends
     groups: dict[tuple[str, str], list[str]] = {}
     for output, values in solution.outputs.items():
         drawn = output.group in (
@@ -91,7 +90,7 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
             point = output.part.rpartition("_")[0]
             part = (
                 point
-                if output.group == "output" and point in solution.description.get("paths", {})
+                if output.group == "output" and point in solution.description.paths
                 else output.part
             )
             groups.setdefault((f"{output.group}{suffix}", part), []).append(str(output))
@@ -105,11 +104,11 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
             specs.append(SectionMaps(f"section_{link}", link))
     if diagrams := tuple(spec.link for spec in specs if isinstance(spec, SectionMaps)):
         specs.append(SectionDiagrams("diagrams", diagrams))
-    shafts = shaft_bearings_of(solution.description)
+    shafts = solution.description.shaft_bearings
     bearings = tuple(
         name
-        for name, joint in solution.description["joints"].items()
-        if (joint["kind"] in ("revolute", "cylindrical") or name in shafts)
+        for name, joint in solution.description.joints.items()
+        if (joint.kind in ("revolute", "cylindrical") or name in shafts)
         and polar_members(solution, name)
     )
     if bearings:
@@ -189,7 +188,7 @@ def draw(
 
 def _check_parts(solution: Solution, spec: Spec) -> None:
     """Raise :class:`UnknownNameError` for a quantity of a part that the mechanism does not have."""
-    parts = parts_of(solution.description)
+    parts = solution.description.parts
     for name in spec.needs():
         part = Output.of(name).part
         if part.partition(":")[0] not in parts:
@@ -199,7 +198,7 @@ def _check_parts(solution: Solution, spec: Spec) -> None:
 def _has(solution: Solution, spec: Spec) -> bool:
     if isinstance(spec, MechanismDrawing):
         return all(
-            Output("pose", body, "x") in solution.outputs for body in solution.description["bodies"]
+            Output("pose", body, "x") in solution.outputs for body in solution.description.bodies
         )
     names = set(solution.names())
     return all(

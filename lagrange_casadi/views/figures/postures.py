@@ -15,7 +15,6 @@ from typing import Any, BinaryIO
 import numpy as np
 
 from ...errors import AssemblyError, PostureError
-from ...model.description import coordinates_of
 from ...model.scene import Scene
 from ...model.scene_arguments import posture_entry
 from ...results.solution import Solution
@@ -93,7 +92,7 @@ def draw_postures(scene: Scene, file: BinaryIO) -> tuple[list[str], bool]:
     side = 4.2 if columns <= 2 else 3.0
     level = 0.8 * side
     table = _LINE * (sum(map(len, rows)) + len(note) + 2) + _ROW * len(rows)
-    legend = 0.24 * -(-len(found[0][1].description["bodies"]) // NAMES_IN_ROW)
+    legend = 0.24 * -(-len(found[0][1].description.bodies) // NAMES_IN_ROW)
     high = max(level * -(-len(pictures) // columns), table) + 2.5 * _MARGIN + legend
     left = columns * side + _MARGIN
     wide = left + max(len(line) for row in (*rows, note) for line in row) * _LETTER + 0.9
@@ -141,7 +140,7 @@ def assemblies(scene: Scene) -> tuple[list[tuple[str, Solution]], int]:
             levels = sum(math.prod(counts[: k + 1]) <= _SOME for k in range(len(counts)))
     modes = _ways(scene, scene.posture, first, levels)
     found = list(itertools.islice(modes, 1))
-    if found and len(found[0][1].description["bodies"]) > _LARGE:
+    if found and len(found[0][1].description.bodies) > _LARGE:
         return [], 0
     # What a builder can build comes first.
     return sorted([*found, *modes], key=lambda one: _negative(one[1])), possible
@@ -149,7 +148,7 @@ def assemblies(scene: Scene) -> tuple[list[tuple[str, Solution]], int]:
 
 def _negative(solution: Solution) -> int:
     """Count the slides at negative coordinates: no cylinder has a negative length."""
-    kinds = coordinates_of(solution.description)
+    kinds = solution.description.coordinates
     slides = (name for name, kind in kinds.items() if kind == "slide")
     return sum(float(solution.array(f"motion:{name}")[0]) < -_ROUNDING for name in slides)
 
@@ -205,7 +204,7 @@ def _ways(
     and one of the others with each.
     """
     if isinstance(closed, Solution):
-        kinds = coordinates_of(closed.description)
+        kinds = closed.description.coordinates
         entries = (
             posture_entry(name, kinds.get(name) == "slide", value)
             for name, value in posture.items()

@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base.arrays import Array
+from ...model.description import Place
 from ...results.solution import Solution
 from ..shapes.places import placed as spot_at
 from ..shapes.readable import Scale, scale_for
-from ..shapes.shapes import Spot, named_spots
+from ..shapes.shapes import named_spots
 from ..shapes.solid import (
     BLOCK,
     MARKS,
@@ -78,7 +79,7 @@ def draw_in_space(
 
     chosen = stills(solution, count)
     thin = solution.during(slice(None, None, 1 + solution.t.size // _THINNED))
-    four = views(solution.description["gravity"], azimuth, elevation)
+    four = views(solution.description.gravity, azimuth, elevation)
     cloud = cloud_of(thin)
     size = _size(cloud)
     entries = _entries(solution)
@@ -104,7 +105,7 @@ def draw_in_space(
             _draw_instant(
                 axes, one, solution.during(slice(k, k + 1)), thin, size, strong=k == chosen[0]
             )
-        for point in thin.description.get("paths", {}).values():
+        for point in thin.description.paths.values():
             x, y = one.on_page(place_of(thin, point)).T
             axes.plot(x, y, color=PATH, linewidth=1.4, zorder=2, label="_")
         if one is four[1]:
@@ -124,11 +125,11 @@ def draw_in_space(
     return figure
 
 
-def draw_into(axes: Axes, solution: Solution, named: Mapping[str, Spot]) -> None:
+def draw_into(axes: Axes, solution: Solution, named: Mapping[str, Place]) -> None:
     """The mechanism at its first instant, into axes of a figure, from one side, with the names of
     some places.
     """
-    one = view(upright(solution.description["gravity"]), AZIMUTH, ELEVATION)
+    one = view(upright(solution.description.gravity), AZIMUTH, ELEVATION)
     now, cloud = solution.during(slice(0, 1)), cloud_of(solution)
     size, flat = _size(cloud), one.on_page(cloud)
     low, high = flat.min(axis=0) - 0.14 * size, flat.max(axis=0) + 0.14 * size
@@ -146,9 +147,7 @@ def draw_into(axes: Axes, solution: Solution, named: Mapping[str, Spot]) -> None
     scale = 72.0 * min(wide / (box[1] - box[0]), high / (box[3] - box[2]))
     _label(axes, one, (solution, solution), named, size, box, scale)
     bodies = [
-        (name, handle)
-        for name, handle in _entries(solution)
-        if name in solution.description["bodies"]
+        (name, handle) for name, handle in _entries(solution) if name in solution.description.bodies
     ]
     label_bodies(axes.figure, [handle for _, handle in bodies], [name for name, _ in bodies])
 
@@ -253,7 +252,7 @@ def _label(
     axes: Axes,
     one: View,
     solutions: tuple[Solution, Solution],
-    named: Mapping[str, Spot],
+    named: Mapping[str, Place],
     size: float,
     box: Box,
     scale: float,
@@ -396,7 +395,7 @@ def _entries(solution: Solution) -> list[tuple[str, Line2D]]:
     description = solution.description
     blocks = {mark.body for mark in marks_of(solution) if mark.size == BLOCK}
     found: list[tuple[str, Any]] = []
-    for name in description["bodies"]:
+    for name in description.bodies:
         block = name in blocks
         found.append(
             (
@@ -410,7 +409,7 @@ def _entries(solution: Solution) -> list[tuple[str, Line2D]]:
                 ),
             )
         )
-    for kind in dict.fromkeys(joint["kind"] for joint in description["joints"].values()):
+    for kind in dict.fromkeys(joint.kind for joint in description.joints.values()):
         shape, fill, size = MARKS[kind]
         mark = Line2D(
             [],
@@ -422,9 +421,9 @@ def _entries(solution: Solution) -> list[tuple[str, Line2D]]:
             markersize=size,
         )
         found.append((f"{kind} joint", mark))
-    if any(load["kind"] == "spring" for load in description["loads"].values()):
+    if description.springs:
         found.append(("spring", Line2D([], [], color=SPRING, linewidth=1.3, linestyle=":")))
-    if description.get("paths"):
+    if description.paths:
         found.append(
             (
                 "declared point",

@@ -7,10 +7,10 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from ...base.arrays import Array
-from ...model.description import Description
+from ...model.description import Description, Place
 from ...results.solution import Solution
 from ..shapes.places import drawn_spots, placed, spokes
-from ..shapes.shapes import Spot, joint_shapes
+from ..shapes.shapes import joint_shapes
 
 _SAME = 0.02
 """Over the mechanism's size: postures all of whose points are no farther apart look the same."""
@@ -48,12 +48,12 @@ def stills(solution: Solution, count: int) -> list[int]:
     return [step * k for k in found]
 
 
-def _cloud(solution: Solution, spots: Iterable[Spot]) -> Array:
+def _cloud(solution: Solution, spots: Iterable[Place]) -> Array:
     """Places over the instants, (t, n, 3) [m]."""
     return np.stack([placed(solution, spot) for spot in spots], axis=1)
 
 
-def _ends_of_axes(description: Description, reach: float) -> Iterator[Spot]:
+def _ends_of_axes(description: Description, reach: float) -> Iterator[Place]:
     """Ends of joints' axes on the bodies that carry them: they show a shaft turn, whose points do
     not move.
     """
@@ -63,7 +63,7 @@ def _ends_of_axes(description: Description, reach: float) -> Iterator[Spot]:
         )
         for spot, axis in carried:
             x, y, z = (at + reach * along for at, along in zip(spot.at, axis, strict=True))
-            yield Spot(spot.body, (x, y, z))
+            yield Place(spot.body, (x, y, z))
 
 
 def _period(cloud: Array, size: float) -> int:

@@ -71,8 +71,8 @@ def _page(solutions: tuple[Solution, Solution], names: Sequence[str]) -> str:
                 "over": drive_entry(solution, chosen, arrays),
                 "series": [asdict(one) for one in series_of(solution, chosen, arrays)],
                 "parameters": {
-                    parameter: [entry["value"], entry["unit"]]
-                    for parameter, entry in solution.description["parameters"].items()
+                    parameter: [entry.value, entry.unit]
+                    for parameter, entry in solution.description.parameters.items()
                 },
                 "frame": page(solution, clock=clock),
             }
@@ -140,10 +140,7 @@ def _names(first: Solution, second: Solution) -> tuple[str, str]:
     """
     if first.case != second.case:
         return first.case, second.case
-    values = [
-        {name: entry["value"] for name, entry in one.description["parameters"].items()}
-        for one in (first, second)
-    ]
+    values = [one.description.values for one in (first, second)]
     differ = [name for name, value in values[0].items() if value != values[1].get(name)]
     if not differ:
         return "first run", "second run"

@@ -21,7 +21,7 @@ from ...results.statistics import Extreme
 from ...results.strength.parts import looked
 from ...results.verification.certificate import failure, summary
 from ..shapes.places import require_poses
-from ..shapes.shapes import joint_shapes, load_shapes, named_spots, path_spots, shapes
+from ..shapes.shapes import joint_shapes, named_spots, shapes
 from ..shapes.solid import COLOURS
 from ..shapes.views import upright
 from .arrays import Arrays, finite
@@ -89,15 +89,18 @@ def contents(solution: Solution, live: Live | None = None) -> dict[str, Json]:
         "version": VERSION,
         "case": solution.case,
         "conventions": solution.table.conventions,
-        "space": len(description["gravity"]) > 2,
-        "upright": upright([*description["gravity"], 0.0][:3]).tolist(),
-        "gravity": [float(g) for g in description["gravity"]],
+        "space": description.space,
+        "upright": upright(description.gravity).tolist(),
+        "gravity": list(description.components(description.gravity)),
         "instants": _instants(solution, chosen, arrays),
         "bodies": list(_bodies(solution, chosen, arrays)),
         "joints": [asdict(joint) for joint in joint_shapes(description)],
         "named": list(named_spots(description)),
-        "loads": [asdict(load) for load in load_shapes(description)],
-        "paths": [{"name": name} | asdict(spot) for name, spot in path_spots(description).items()],
+        "loads": [
+            {"name": name, "kind": load.kind, "spots": [*map(asdict, load.points)]}
+            for name, load in description.loads.items()
+        ],
+        "paths": [{"name": name} | asdict(spot) for name, spot in description.paths.items()],
         "series": [asdict(one) for one in series_of(solution, chosen, arrays)],
         "sections": list(section_entries(solution, chosen, arrays)),
         "maps": list(map_entries(solution, arrays)),
@@ -265,14 +268,13 @@ def _strength(solution: Solution) -> Iterator[dict[str, Json]]:
 
 
 def _parameters(description: Description) -> Iterator[dict[str, Json]]:
-    for name, parameter in description["parameters"].items():
-        low, high = (finite(parameter[end]) for end in ("low", "high"))
+    for name, parameter in description.parameters.items():
         yield {
             "name": name,
-            "value": float(parameter["value"]),
-            "unit": parameter["unit"],
-            "low": low,
-            "high": high,
+            "value": parameter.value,
+            "unit": parameter.unit,
+            "low": finite(parameter.low),
+            "high": finite(parameter.high),
         }
 
 

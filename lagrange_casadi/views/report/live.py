@@ -29,7 +29,7 @@ from ...interop.portable.data import LARGEST
 from ...interop.portable.source import Source
 from ...interop.portable.sourced import sourced
 from ...interop.portable.wasm import check_zig, layout, page_build, places
-from ...model.description import Description
+from ...model.description import Description, JointNumbers
 from ...model.scene import Scene
 from ...model.times import Timing
 from ...results.solution import Solution
@@ -151,7 +151,7 @@ def _entry(
             for number, names in enumerate(arrays.of)
             if names and known.keys() >= set(names)
         ],
-        "poses": {body: _pose(body, solution, known) for body in solution.description["bodies"]},
+        "poses": {body: _pose(body, solution, known) for body in solution.description.bodies},
         "links": {
             link.name: _link(link.name, k, solution, known) for k, link in enumerate(contract.links)
         },
@@ -163,7 +163,7 @@ def _entry(
         },
         "shown": None if chosen.size == timing.count else chosen.tolist(),
         "numbers": live.numbers,
-        "picture": _picture(data.template.content, 2),
+        "picture": _picture(data.content, 2),
         "command": live.command,
     }
 
@@ -173,7 +173,7 @@ def _pose(body: str, solution: Solution, known: Mapping[str, int]) -> list[int]:
     space twelve.
     """
     members = ["x", "y", "angle"]
-    if len(solution.description["gravity"]) > 2:
+    if solution.description.space:
         members = ["x", "y", "z", *(axis + component for axis in "xyz" for component in "xyz")]
     return [known.get(str(Output("pose", body, member)), -1) for member in members]
 
@@ -203,45 +203,41 @@ def _picture(described: Description, first: int) -> dict[str, Json]:
     def at(number: float | None) -> int:
         return -1 if number is None else first + int(number)
 
-    def place(point: Description) -> list[int]:
-        return [at(point["x"]), at(point["y"]), at(point.get("z"))]
-
     def vector(components: Sequence[float]) -> list[int]:
         return [*map(at, components), *[-1] * (3 - len(components))]
 
-    def joint(entry: Description) -> dict[str, Json]:
-        ends = {"parent": place(entry["parent"]), "child": place(entry["child"])}
-        if "turned" in entry:
-            second = entry["kind"] == "universal" and len(entry["axes"]) > 1
-            return ends | {
-                "axes": [*map(vector, entry["axes"])],
-                "turned": [*map(vector, entry["turned"])] if second else None,
-            }
-        return ends | {
-            "axes": [vector(entry["axis"])] if entry["kind"] in ("prismatic", "slot") else None,
-            "turned": None,
+    def joint(one: JointNumbers) -> dict[str, Json]:
+        axes = [vector(axis.direction) for axis in one.axes]
+        second = one.kind == "universal" and len(axes) > 1
+        return {
+            "parent": vector(one.parent.at),
+            "child": vector(one.child.at),
+            "axes": axes if described.space else [vector(one.triad[0])],
+            "turned": [*map(vector, one.turned)] if second else None,
         }
 
     return {
         "bodies": {
             name: {
-                "length": at(body["length"]),
-                "mass": at(body["mass"]),
-                "centre": place(body["centre"]) if "centre" in body else None,
+                "length": at(body.length),
+                "mass": at(body.mass),
+                "centre": None if body.centre is None else vector(body.centre),
                 "outlines": [
                     [vector(corner) for corner in outline]
-                    for outline in described.get("outlines", {}).get(name, ())
+                    for outline in described.outlines.get(name, ())
                 ],
             }
-            for name, body in described["bodies"].items()
+            for name, body in described.bodies.items()
         },
-        "joints": [joint(entry) for entry in described["joints"].values()],
-        "loads": [
-            [place(point) for point in load["points"]] for load in described["loads"].values()
-        ],
-        "paths": [place(point) for point in described.get("paths", {}).values()],
+        "joints": [*map(joint, described.joints.values())],
+        "loads": [[vector(point.at) for point in load.points] for load in described.loads.values()],
+        "paths": [vector(point.at) for point in described.paths.values()],
         "rollers": [
-            {"body": roller["body"], "at": place(roller), "radius": at(roller["radius"])}
-            for roller in described.get("rollers", {}).values()
+            {
+                "body": roller.centre.body,
+                "at": vector(roller.centre.at),
+                "radius": at(roller.radius),
+            }
+            for roller in described.rollers.values()
         ],
     }

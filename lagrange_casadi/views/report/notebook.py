@@ -74,15 +74,14 @@ def scene_summary(scene: Scene) -> str:
         drawing = still(first)
     asked, content = scene.timing(), template(scene).at([*scene.values().values()])
     over = f"over {escape(asked.joint)}" if asked.joint else "over time"
-    lines = [f"<b>{escape(content['name'])}</b>: {asked.count} instants {over}"]
+    lines = [f"<b>{escape(content.name)}</b>: {asked.count} instants {over}"]
     parts = {
-        "bodies": list(content["bodies"]),
-        "joints": [f"{name} ({joint['kind']})" for name, joint in content["joints"].items()],
-        "loads": list(content["loads"]),
+        "bodies": list(content.bodies),
+        "joints": [f"{name} ({joint.kind})" for name, joint in content.joints.items()],
+        "loads": list(content.loads),
         "motion of": list(scene.motion),
         "parameters": [
-            f"{name} = {one['value']:g} {one['unit']}"
-            for name, one in content["parameters"].items()
+            f"{name} = {one.value:g} {one.unit}" for name, one in content.parameters.items()
         ],
         "wanted": list(scene.wanted),
     }

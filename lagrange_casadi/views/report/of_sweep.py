@@ -22,7 +22,6 @@ from ...engine.derive import compile_scene
 from ...engine.identity import identity_of, sources
 from ...engine.model_data import template
 from ...errors import DeclarationError, shown
-from ...model.description import values_of
 from ...model.scene import Scene, Wanted
 from ...model.wanted_names import SENSITIVITY
 from ...results.store.untrusted import check_shape, reported_as
@@ -74,12 +73,9 @@ def is_of(sweep: Sweep, scene: Scene) -> bool:
     """Return whether a sweep is of a scene: its parts are those that were swept, and, if the same
     code wrote them, its expressions too.
     """
-    swept = sweep.identity["mechanism"]
-    values = values_of(swept)
-    if (
-        values.keys() != scene.parameters.keys()
-        or json.loads(json.dumps(template(scene).at([*values.values()]))) != swept
-    ):
+    swept = sweep.description
+    values = swept.values
+    if values.keys() != scene.parameters.keys() or template(scene).at([*values.values()]) != swept:
         return False
     known = identity_of(scene, _wanted(sweep))
     return (

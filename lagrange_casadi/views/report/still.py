@@ -8,10 +8,10 @@ from html import escape
 import numpy as np
 
 from ...base.arrays import Array
-from ...model.description import in_space
+from ...model.description import Place
 from ...results.solution import Solution
 from ..shapes.places import drawn_spots, placed
-from ..shapes.shapes import Spot, joint_shapes, load_shapes, named_spots, path_spots, shapes
+from ..shapes.shapes import joint_shapes, named_spots, shapes
 from ..shapes.solid import COLOURS, PATH
 from ..shapes.views import AZIMUTH, ELEVATION, upright, view
 
@@ -25,20 +25,20 @@ _STAND = "M0 0L8 12H-8ZM-12 12H12" + "".join(f"M{x} 12l-4 5" for x in (-6, -1, 4
 _NEAR = 6.0
 """Joints that are no farther apart on the sheet have their names together."""
 
-Places = Callable[[Spot], Array]
+Places = Callable[[Place], Array]
 
 
 def still(solution: Solution) -> str:
     """The mechanism at the first instant; from a slanted direction where it is in space."""
     description = solution.description
-    if in_space(description):
-        one = view(upright(description["gravity"]), AZIMUTH, ELEVATION)
+    if description.space:
+        one = view(upright(description.gravity), AZIMUTH, ELEVATION)
         right, up = one.right, one.up
     else:
         right, up = np.eye(3)[0], np.eye(3)[1]
     thin = solution.during(slice(None, None, 1 + solution.t.size // _TRACED))
 
-    def flat(spot: Spot) -> Array:
+    def flat(spot: Place) -> Array:
         """A place over the instants (t, 2), to the right and up [m]."""
         found: Array = placed(thin, spot) @ np.column_stack([right, up])
         return found
@@ -49,7 +49,7 @@ def still(solution: Solution) -> str:
     scale = float(min((np.array([_WIDE, _HIGH]) - 2 * _MARGIN) / span))
     middle = (low + high) / 2
 
-    def on_sheet(spot: Spot) -> Array:
+    def on_sheet(spot: Place) -> Array:
         found: Array = np.array([_WIDE / 2, _HIGH / 2]) + scale * (flat(spot) - middle) * [
             1.0,
             -1.0,
@@ -66,31 +66,30 @@ def still(solution: Solution) -> str:
 
 
 def _drawn(solution: Solution, on_sheet: Places) -> Iterator[str]:
-    def first(spots: Sequence[Spot]) -> Array:
+    def first(spots: Sequence[Place]) -> Array:
         return np.array([on_sheet(spot)[0] for spot in spots])
 
     description = solution.description
-    for spot in path_spots(description).values():
+    for spot in description.paths.values():
         yield _line(on_sheet(spot), PATH, 1.4)
     for k, shape in enumerate(shapes(description)):
         colour, name = COLOURS[k % len(COLOURS)], shape.name
         for plate in shape.plates:
-            yield _line(first([Spot(name, at) for at in plate]), colour, 1.6, closed=True)
+            yield _line(first([Place(name, at) for at in plate]), colour, 1.6, closed=True)
         for ends in ([shape.axis] if shape.axis else []) + list(shape.arms):
             yield _line(
-                first([Spot(name, at) for at in ends]),
+                first([Place(name, at) for at in ends]),
                 colour,
                 6.0 if shape.axis and ends is shape.axis else 4.0,
             )
         if shape.kind == "point":
-            x, y = first([Spot(name, (0.0, 0.0, 0.0))])[0]
+            x, y = first([Place(name, (0.0, 0.0, 0.0))])[0]
             yield (
                 f'<rect x="{x - 8:.1f}" y="{y - 8:.1f}" width="16" height="16" rx="2"'
                 f' fill="{colour}"/>'
             )
-    for load in load_shapes(description):
-        if load.kind == "spring":
-            yield _line(first(load.spots), "currentColor", 1.4, dashed=True)
+    for spring in description.springs.values():
+        yield _line(first(spring), "currentColor", 1.4, dashed=True)
     names: dict[tuple[float, float], str] = {}
     named = named_spots(description)
     for joint in joint_shapes(description):

@@ -9,12 +9,12 @@ import numpy as np
 from ...base.arrays import Array
 from ...base.quantities import Output
 from ...errors import DeclarationError
-from ...model.description import Description
+from ...model.description import Description, Place
 from ...results.solution import Solution
-from .shapes import Spot, joint_shapes, load_shapes, path_spots, shapes
+from .shapes import joint_shapes, shapes
 
 
-def drawn_spots(description: Description) -> Iterator[Spot]:
+def drawn_spots(description: Description) -> Iterator[Place]:
     """All between which something is drawn."""
     for shape in shapes(description):
         places_here = [
@@ -22,21 +22,22 @@ def drawn_spots(description: Description) -> Iterator[Spot]:
             *(at for arm in shape.arms for at in arm),
             *(at for plate in shape.plates for at in plate),
         ]
-        yield from (Spot(shape.name, at) for at in places_here or [shape.centre or (0.0, 0.0, 0.0)])
+        yield from (
+            Place(shape.name, at) for at in places_here or [shape.centre or (0.0, 0.0, 0.0)]
+        )
     for joint in joint_shapes(description):
         yield from (joint.parent, joint.child)
-    for load in load_shapes(description):
-        if load.kind == "spring":
-            yield from load.spots
-    yield from path_spots(description).values()
+    for ends in description.springs.values():
+        yield from ends
+    yield from description.paths.values()
 
 
-def spokes(description: Description) -> Iterator[Spot]:
+def spokes(description: Description) -> Iterator[Place]:
     """The ends of the spokes of discs, by which one sees them turn."""
-    yield from (Spot(shape.name, shape.spoke) for shape in shapes(description) if shape.spoke)
+    yield from (Place(shape.name, shape.spoke) for shape in shapes(description) if shape.spoke)
 
 
-def placed(solution: Solution, spot: Spot) -> Array:
+def placed(solution: Solution, spot: Place) -> Array:
     """A place over the instants (t, 3) in ground axes [m]."""
     local = np.array(spot.at)
     if spot.body == "ground":
@@ -59,7 +60,7 @@ def require_poses(solution: Solution, what: str = "a report") -> None:
     """
     lacking = [
         body
-        for body in solution.description["bodies"]
+        for body in solution.description.bodies
         if Output("pose", body, "x") not in solution.outputs
     ]
     if lacking:

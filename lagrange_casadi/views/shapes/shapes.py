@@ -13,22 +13,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...base.arrays import Array
-from ...model.description import Description, bends_of, drives_of, in_space
-
-Place = tuple[float, float, float]
+from ...model.description import Description, Place, Triple
 
 _ROUND = np.exp(2j * np.pi * np.arange(48) / 48)
 
 _FLAT = 1e-6
 """Over a body's size: points that are no farther from a plane, or from a line, lie in it."""
-
-
-@dataclass(frozen=True)
-class Spot:
-    """A place on a body, or on the ground."""
-
-    body: str
-    at: Place
 
 
 @dataclass(frozen=True)
@@ -44,14 +34,14 @@ class Shape:
     kind: str
     length: float | None
     mass: float
-    axis: tuple[Place, ...]
-    arms: tuple[tuple[Place, Place], ...]
-    plates: tuple[tuple[Place, ...], ...]
-    centre: Place | None
+    axis: tuple[Triple, ...]
+    arms: tuple[tuple[Triple, Triple], ...]
+    plates: tuple[tuple[Triple, ...], ...]
+    centre: Triple | None
     disc: float
 
     @property
-    def spoke(self) -> Place | None:
+    def spoke(self) -> Triple | None:
         """The end of the spoke of a disc; nothing where there is none."""
         if not self.disc or self.centre is None:
             return None
@@ -70,33 +60,24 @@ class JointShape:
 
     name: str
     kind: str
-    parent: Spot
-    child: Spot
-    axes: tuple[Place, ...]
-    second: Place | None
+    parent: Place
+    child: Place
+    axes: tuple[Triple, ...]
+    second: Triple | None
     coordinates: tuple[tuple[str, str], ...]
     driven: tuple[str, ...]
 
 
-@dataclass(frozen=True)
-class LoadShape:
-    """Places of a load: first the place that it is for, then those from which it acts."""
-
-    name: str
-    kind: str
-    spots: tuple[Spot, ...]
-
-
 def shapes(description: Description) -> Iterator[Shape]:
     """The bodies, in the order in which they are declared."""
-    for name, body in description["bodies"].items():
+    for name, body in description.bodies.items():
         outlines, rollers = _outlines(description, name), _rollers(description, name)
         spots = list(dict.fromkeys(spot.at for spot in _spots(description) if spot.body == name))
-        length, mass = body["length"], body["mass"]
+        length, mass = body.length, body.mass
         if length is None:
             yield Shape(name, "point", None, mass, (), (), (), (0.0, 0.0, 0.0), 0.0)
-        elif "centre" in body:
-            centre = _place(body["centre"])
+        elif body.centre is not None:
+            centre = body.centre
             plates = outlines or _plates(spots)
             # Two joints hold a bar between them; arms from the centre hold any others that lie in
             # no plane.
@@ -137,94 +118,75 @@ def shapes(description: Description) -> Iterator[Shape]:
 
 def joint_shapes(description: Description) -> Iterator[JointShape]:
     """The joints."""
-    drives = set(drives_of(description))
-    for name, joint in description["joints"].items():
-        parent, child = (_spot(joint[end]) for end in ("parent", "child"))
-        if in_space(description):
-            axes = tuple(_vector(axis) for axis in joint["axes"])
-            # The child carries the second axis of a universal joint.
-            second = (
-                _vector(np.array(joint["turned"]) @ joint["axes"][1])
-                if joint["kind"] == "universal" and len(axes) > 1
-                else None
-            )
-            coordinates = tuple(joint["coordinates"].items())
-        else:
-            slides = joint["kind"] in ("prismatic", "slot")
-            axes, second = (_vector([*joint["axis"], 0.0]) if slides else (0.0, 0.0, 1.0),), None
-            coordinates = ((name, joint["coordinate"]),) if joint["coordinate"] else ()
-        driven = tuple(coordinate for coordinate, _ in coordinates if coordinate in drives)
-        yield JointShape(name, joint["kind"], parent, child, axes, second, coordinates, driven)
+    for name, joint in description.joints.items():
+        directions = [axis.direction for axis in joint.axes]
+        # The child carries the second axis of a universal joint.
+        second = (
+            _vector(np.array(joint.turned) @ directions[1])
+            if joint.kind == "universal" and len(directions) > 1
+            else None
+        )
+        coordinates = tuple((axis.coordinate, axis.kind) for axis in joint.axes)
+        yield JointShape(
+            name,
+            joint.kind,
+            joint.parent,
+            joint.child,
+            tuple(map(_vector, directions if description.space else joint.triad[:1])),
+            second,
+            coordinates,
+            tuple(coordinate for coordinate, _ in coordinates if coordinate in description.drives),
+        )
 
 
-def load_shapes(description: Description) -> Iterator[LoadShape]:
-    """The loads."""
-    for name, load in description["loads"].items():
-        yield LoadShape(name, load["kind"], tuple(_spot(point) for point in load["points"]))
-
-
-def path_spots(description: Description) -> dict[str, Spot]:
-    """The declared points by name."""
-    return {name: _spot(point) for name, point in description.get("paths", {}).items()}
-
-
-def named_spots(description: Description) -> dict[str, Spot]:
+def named_spots(description: Description) -> dict[str, Place]:
     """The places beside which pictures write names: of joints, except the welds inside bent bars,
     and of declared points.
     """
-    inner = bends_of(description)
-    joints = {name: _spot(joint["child"]) for name, joint in description["joints"].items()}
+    inner = description.bends
+    joints = {name: joint.child for name, joint in description.joints.items()}
     named = {name: spot for name, spot in joints.items() if name not in inner}
-    return named | path_spots(description)
+    return {**named, **description.paths}
 
 
-def _spots(description: Description) -> Iterator[Spot]:
+def _spots(description: Description) -> Iterator[Place]:
     """Every place of a body at which something holds or pulls it, or that is declared."""
-    for joint in description["joints"].values():
-        yield from (_spot(joint[end]) for end in ("parent", "child"))
-    for load in description["loads"].values():
-        if load["kind"] == "spring":
-            yield from map(_spot, load["points"])
-    yield from path_spots(description).values()
-    yield from map(_spot, description.get("rollers", {}).values())
+    for joint in description.joints.values():
+        yield from joint.ends
+    for ends in description.springs.values():
+        yield from ends
+    yield from description.paths.values()
+    yield from (roller.centre for roller in description.rollers.values())
 
 
-def _outlines(description: Description, body: str) -> tuple[tuple[Place, ...], ...]:
+def _outlines(description: Description, body: str) -> tuple[tuple[Triple, ...], ...]:
     """Outlines that are declared for a body, without corners of a cam that its follower cannot
     touch.
     """
     return tuple(
-        tuple((float(x), float(y), 0.0) for x, y in outline if np.isfinite(x + y))
-        for outline in description.get("outlines", {}).get(body, ())
+        tuple((x, y, 0.0) for x, y in outline if np.isfinite(x + y))
+        for outline in description.outlines.get(body, ())
     )
 
 
-def _rollers(description: Description, body: str) -> tuple[tuple[Place, ...], ...]:
+def _rollers(description: Description, body: str) -> tuple[tuple[Triple, ...], ...]:
     """The rollers on a body, each as a polygon."""
     return tuple(
         tuple(
-            (roller["x"] + roller["radius"] * x, roller["y"] + roller["radius"] * y, 0.0)
+            (roller.centre.at[0] + roller.radius * x, roller.centre.at[1] + roller.radius * y, 0.0)
             for x, y in zip(_ROUND.real.tolist(), _ROUND.imag.tolist(), strict=True)
         )
-        for roller in description.get("rollers", {}).values()
-        if roller["body"] == body
+        for roller in description.rollers.values()
+        if roller.centre.body == body
     )
 
 
-def _spot(point: Description) -> Spot:
-    return Spot(point["body"], _place(point))
-
-
-def _place(point: Description) -> Place:
-    return float(point["x"]), float(point["y"]), float(point.get("z", 0.0))
-
-
-def _vector(components: Iterable[float]) -> Place:
+def _vector(components: Iterable[float]) -> Triple:
     x, y, z = (float(component) + 0.0 for component in components)
     return x, y, z
 
 
-def _plates(places: Sequence[Place]) -> tuple[tuple[Place, ...], ...]:
+def _plates(places: Sequence[Triple]) -> tuple[tuple[Triple, ...], ...]:
     """The convex polygon of three places or more that lie in one plane and not in a line; else
     nothing.
     """

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from ...base.arrays import Array
-from ...model.description import Description
+from ...model.description import Place
 from ...results.solution import Solution
-from .shapes import Place, shapes
+from .shapes import shapes
 
 COLOURS = (
     *("#1f4e79", "#b3541e", "#2e7d4f", "#7a3b8f", "#8a6d1a", "#3c6e71", "#9c2f4a", "#555555"),
@@ -71,15 +71,23 @@ class Mark:
     order: int = 5
 
 
-def place_of(solution: Solution, point: Description) -> Array:
-    """Place of a described point of a body, (t, 3) in ground axes [m]."""
-    local = [point["x"], point["y"], point["z"]]
-    if point["body"] == "ground":
-        return np.tile(np.array(local, float), (solution.t.size, 1))
-    pose = solution.pose(point["body"])
+@dataclass(frozen=True)
+class _Segment:
+    """A line between two places, of a body or of a spring, whose ``body`` is empty."""
+
+    body: str
+    ends: tuple[Place, Place]
+    axis: bool = False
+
+
+def place_of(solution: Solution, point: Place) -> Array:
+    """Place of a point of a body, (t, 3) in ground axes [m]."""
+    if point.body == "ground":
+        return np.tile(np.array(point.at, float), (solution.t.size, 1))
+    pose = solution.pose(point.body)
     assert pose.z is not None
     place = np.column_stack([pose.x, pose.y, pose.z])
-    return place + _on_ground_axes(pose.axes, local) if any(local) else place
+    return place + _on_ground_axes(pose.axes, point.at) if any(point.at) else place
 
 
 def direction_of(solution: Solution, body: str, local: Sequence[float]) -> Array:
@@ -101,57 +109,52 @@ def _on_ground_axes(axes: Array | None, local: Sequence[float]) -> Array:
 def paths_of(solution: Solution) -> dict[str, Array]:
     """The ways of the joints' points, and of declared points, over all instants: (t, 3) by name."""
     description = solution.description
-    found = {
-        name: place_of(solution, joint["child"]) for name, joint in description["joints"].items()
-    }
-    return found | {
-        name: place_of(solution, point) for name, point in description.get("paths", {}).items()
-    }
+    points = {name: joint.child for name, joint in description.joints.items()}
+    return {name: place_of(solution, at) for name, at in {**points, **description.paths}.items()}
 
 
 def cloud_of(solution: Solution) -> Array:
     """All points between which lines are drawn, over all instants: (n, 3)."""
     found = [*paths_of(solution).values()]
-    for ends in _segments(solution):
-        found += [place_of(solution, end) for end in ends[1:]]
-    for joint in solution.description["joints"].values():
-        found.append(place_of(solution, joint["parent"]))
+    for segment in _segments(solution):
+        found += [place_of(solution, end) for end in segment.ends]
+    for joint in solution.description.joints.values():
+        found.append(place_of(solution, joint.parent))
     return np.concatenate(found)
 
 
 def lines_of(solution: Solution) -> Iterator[Line]:
     """The bodies and springs at a solution's first instant."""
-    for name, start, stop in _segments(solution):
-        body = solution.description["bodies"].get(name)
-        ends = np.array([place_of(solution, start)[0], place_of(solution, stop)[0]])
-        if body is None:
+    for segment in _segments(solution):
+        ends = np.array([place_of(solution, end)[0] for end in segment.ends])
+        if not segment.body:
             yield Line(ends, SPRING, 1.3, ":", order=2)
         else:
-            along = "centre" not in body and not start["arm"]
-            yield Line(ends, colour_of(solution, name), 3.2 if along else 1.6, body=name)
+            colour = colour_of(solution, segment.body)
+            yield Line(ends, colour, 3.2 if segment.axis else 1.6, body=segment.body)
 
 
 def axes_of(solution: Solution, all_instants: Solution, size: float) -> Iterator[Line]:
     """Short lines along the axes about which joints turn, and the lines on which they slide as far
     as they ever do.
     """
-    for joint in solution.description["joints"].values():
-        kinds, directions = list(joint["coordinates"].values()), joint["axes"]
-        if joint["kind"] in ("spherical", "free", "planar"):
+    for joint in solution.description.joints.values():
+        directions = [axis.direction for axis in joint.axes]
+        if joint.kind in ("spherical", "free", "planar"):
             continue
-        parent, child = joint["parent"], joint["child"]
-        if kinds and kinds[0] == "slide":
+        parent, child = joint.parent, joint.child
+        if joint.axes and joint.axes[0].kind == "slide":
             strokes = (
                 np.einsum(
                     "tk,tk->t",
                     place_of(s, child) - place_of(s, parent),
-                    direction_of(s, parent["body"], directions[0]),
+                    direction_of(s, parent.body, directions[0]),
                 )
                 for s in (all_instants, solution)
             )
             reach = np.concatenate([*strokes, [0.0]])
             ends = np.array([reach.min() - _AXIS * size, reach.max() + _AXIS * size])
-            along = direction_of(solution, parent["body"], directions[0])[0]
+            along = direction_of(solution, parent.body, directions[0])[0]
             yield Line(
                 place_of(solution, parent)[0] + ends[:, None] * along,
                 "0.5",
@@ -163,9 +166,11 @@ def axes_of(solution: Solution, all_instants: Solution, size: float) -> Iterator
         for number, direction in enumerate(directions):
             # The second axis of a universal joint is carried by the child.
             carrier, local = (
-                (child, np.array(joint["turned"]) @ direction) if number else (parent, direction)
+                (child, (np.array(joint.turned) @ direction).tolist())
+                if number
+                else (parent, direction)
             )
-            along = _AXIS * size * direction_of(solution, carrier["body"], local)[0]
+            along = _AXIS * size * direction_of(solution, carrier.body, local)[0]
             yield Line(
                 place_of(solution, child)[0] + np.outer([-1.0, 1.0], along), "black", 1.2, order=4
             )
@@ -176,13 +181,12 @@ def marks_of(solution: Solution) -> Iterator[Mark]:
     instant.
     """
     description = solution.description
-    for name, body in description["bodies"].items():
-        at = {"body": name} | (body.get("centre") or {"x": 0.0, "y": 0.0, "z": 0.0})
+    for name, body in description.bodies.items():
         colour = colour_of(solution, name)
-        if body["length"] is None or "centre" in body:
-            armed = any(segment[0] == name for segment in _segments(solution))
+        if body.length is None or body.centre is not None:
+            armed = any(segment.body == name for segment in _segments(solution))
             yield Mark(
-                place_of(solution, at)[0],
+                place_of(solution, Place(name, body.centre or (0.0, 0.0, 0.0)))[0],
                 "s",
                 colour,
                 4.0 if armed else BLOCK,
@@ -190,24 +194,24 @@ def marks_of(solution: Solution) -> Iterator[Mark]:
                 name,
                 order=4,
             )
-    for joint in description["joints"].values():
-        shape, fill, width = MARKS[joint["kind"]]
-        yield Mark(place_of(solution, joint["child"])[0], shape, fill, width)
-    for point in description.get("paths", {}).values():
+    for joint in description.joints.values():
+        shape, fill, width = MARKS[joint.kind]
+        yield Mark(place_of(solution, joint.child)[0], shape, fill, width)
+    for point in description.paths.values():
         yield Mark(place_of(solution, point)[0], "D", PATH, 4.5, PATH)
 
 
 def grounds_of(solution: Solution) -> Iterator[Array]:
     """The points of the ground to which joints hold something, each (3,)."""
-    for joint in solution.description["joints"].values():
-        ends = [joint[end] for end in ("parent", "child") if joint[end]["body"] == "ground"]
-        if ends and joint["kind"] != "free":
+    for joint in solution.description.joints.values():
+        ends = [end for end in joint.ends if end.body == "ground"]
+        if ends and joint.kind != "free":
             yield place_of(solution, ends[0])[0]
 
 
 def colour_of(solution: Solution, body: str) -> str:
     """The colour of a body, by its number."""
-    return COLOURS[list(solution.description["bodies"]).index(body) % len(COLOURS)]
+    return COLOURS[list(solution.description.bodies).index(body) % len(COLOURS)]
 
 
 def plates_of(solution: Solution) -> Iterator[tuple[str, Array]]:
@@ -218,26 +222,17 @@ def plates_of(solution: Solution) -> Iterator[tuple[str, Array]]:
         for plate in shape.plates:
             yield (
                 shape.name,
-                np.array([place_of(solution, _point(shape.name, corner))[0] for corner in plate]),
+                np.array([place_of(solution, Place(shape.name, corner))[0] for corner in plate]),
             )
 
 
-def _segments(solution: Solution) -> Iterator[tuple[str, Description, Description]]:
-    """The lines of all bodies as the described points that they join, and of springs: axes, arms,
-    and edges of plates.
-    """
+def _segments(solution: Solution) -> Iterator[_Segment]:
+    """The lines of all bodies, axes, arms, and edges of plates, and of springs."""
     for shape in shapes(solution.description):
-        if shape.axis:
-            start, stop = (_point(shape.name, place) for place in shape.axis)
-            yield shape.name, start | {"arm": False}, stop
+        axis = [shape.axis] if shape.axis else []
         edges = [(plate[k - 1], plate[k]) for plate in shape.plates for k in range(len(plate))]
-        for first, last in (*shape.arms, *edges):
-            yield shape.name, _point(shape.name, first) | {"arm": True}, _point(shape.name, last)
-    for load in solution.description["loads"].values():
-        if load["kind"] == "spring":
-            first, second = load["points"]
-            yield "", first, second
-
-
-def _point(body: str, place: Place) -> Description:
-    return {"body": body, **dict(zip("xyz", place, strict=True))}
+        for ends in (*axis, *shape.arms, *edges):
+            first, last = (Place(shape.name, end) for end in ends)
+            yield _Segment(shape.name, (first, last), bool(axis) and ends is axis[0])
+    for first, last in solution.description.springs.values():
+        yield _Segment("", (first, last))
