@@ -149,6 +149,7 @@ class JointNumbers(Brief):
     pin and bearings; ``turning`` is the coordinate by which a shaft turns in a bearing.
     """
 
+    name: str
     kind: str
     parent: Place
     child: Place
@@ -164,6 +165,14 @@ class JointNumbers(Brief):
     def ends(self) -> tuple[Place, Place]:
         """The places on the parent and on the child."""
         return self.parent, self.child
+
+    @property
+    def carried(self) -> Triple | None:
+        """The second axis of a universal joint in the axes of the child, which carries it."""
+        if self.kind != "universal" or len(self.axes) < 2:
+            return None
+        x, y, z = (np.array(self.turned) @ self.axes[1].direction).tolist()
+        return x, y, z
 
 
 @dataclass(frozen=True)
@@ -469,6 +478,7 @@ def _joint(mechanism: Mechanism, joint: Joint) -> JointNumbers:
         triad = joint.triad if joint.kind in ("prismatic", "slot") else (_Z, _X, _Y)
         turned = ((c, s, 0.0), (-s, c, 0.0), _Z)
     return JointNumbers(
+        joint.name,
         joint.kind,
         _place(joint.parent),
         _place(joint.child),

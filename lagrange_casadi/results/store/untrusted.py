@@ -14,7 +14,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import MISSING, fields, is_dataclass
-from types import FunctionType, NoneType, UnionType
+from types import NoneType, UnionType
 from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 
 import h5py
@@ -25,8 +25,7 @@ from ...errors import DeclarationError, LagrangeCasadiError, StoreError, one_lin
 Shape = Any
 """``str``, ``int``, ``float`` or ``bool``, or None for null; a tuple of shapes, any of which will
 do; ``[shape]`` for a list, and ``[shape, shape, ...]`` for one of so many; ``{str: shape}`` for a
-mapping of any names, ``{"name": shape, ...}`` for one that has these, at least; or a function that
-shows the shape by the value."""
+mapping of any names, ``{"name": shape, ...}`` for one that has these, at least."""
 
 
 @contextmanager
@@ -175,8 +174,6 @@ def check_chunks(dataset: h5py.Dataset) -> None:
 
 def _mismatch(value: object, shape: Shape, place: str) -> str:
     """The first place where a value has another shape; nothing where none has."""
-    if isinstance(shape, FunctionType):
-        return _mismatch(value, shape(value), place)
     if isinstance(shape, tuple):
         return "" if any(not _mismatch(value, one, place) for one in shape) else place
     if isinstance(shape, list):

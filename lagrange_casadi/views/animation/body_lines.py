@@ -9,12 +9,10 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from ...base.arrays import Array
-from ...model.description import Place, Triple
+from ...model.description import JointNumbers, Place, Triple
 from ..shapes.places import placed
 from ..shapes.shapes import (
-    JointShape,
     Shape,
-    joint_shapes,
     named_spots,
     shapes,
 )
@@ -46,7 +44,7 @@ def mechanism(motion: Motion, stage: Stage, *, names: bool) -> Iterator[Thing]:
     for spot in description.paths.values():
         yield Line(stage.on_sheet(placed(motion.solution, spot))[None], PATH, 1.4)
     colours = {shape.name: COLOURS[k % len(COLOURS)] for k, shape in enumerate(shapes(description))}
-    joints = list(joint_shapes(description))
+    joints = list(description.joints.values())
     for joint in joints:
         if joint.kind in _SLIDES:
             yield _guide(motion, stage, joint)
@@ -84,7 +82,7 @@ def _depth(motion: Motion, stage: Stage, shape: Shape) -> float:
 
 
 def _body(
-    motion: Motion, stage: Stage, shape: Shape, joints: list[JointShape], colour: str
+    motion: Motion, stage: Stage, shape: Shape, joints: list[JointNumbers], colour: str
 ) -> Iterator[Thing]:
     def on_sheet(places: Sequence[Triple]) -> Array:
         return np.stack(
@@ -124,7 +122,7 @@ def rim(motion: Motion, shape: Shape) -> Array | None:
     """
     joints = [
         one
-        for one in joint_shapes(motion.solution.description)
+        for one in motion.solution.description.joints.values()
         if shape.name in (one.parent.body, one.child.body)
     ]
     turning = next((one for one in joints if one.kind in _TURNS), None)
@@ -141,7 +139,7 @@ def rim(motion: Motion, shape: Shape) -> Array | None:
     if not np.isfinite(body_axes).all():
         return None
     if turning is not None and motion.solution.description.space:
-        axis = body_axes[0] @ motion.direction(turning.parent.body, turning.axes[0])[0]
+        axis = body_axes[0] @ motion.direction(turning.parent.body, turning.axes[0].direction)[0]
     least = np.eye(3)[np.argmin(np.abs(axis))]
     first = np.cross(axis, least) / np.linalg.norm(np.cross(axis, least))
     second = np.cross(axis, first) / np.linalg.norm(axis)
@@ -151,18 +149,20 @@ def rim(motion: Motion, shape: Shape) -> Array | None:
     return found
 
 
-def _slide(motion: Motion, stage: Stage, joint: JointShape) -> Array:
+def _slide(motion: Motion, stage: Stage, joint: JointNumbers) -> Array:
     """The directions along which a joint slides, on the sheet (frames, 2) and of length 1."""
     return along(
-        stage.projected(motion.direction(joint.parent.body, joint.axes[0], joint.parent.at))
+        stage.projected(
+            motion.direction(joint.parent.body, joint.axes[0].direction, joint.parent.at)
+        )
     )
 
 
-def _guide(motion: Motion, stage: Stage, joint: JointShape) -> Line:
+def _guide(motion: Motion, stage: Stage, joint: JointNumbers) -> Line:
     """A line along which a joint slides, as far as it ever does."""
     start, direction = (
         motion.place(joint.parent),
-        motion.direction(joint.parent.body, joint.axes[0], joint.parent.at),
+        motion.direction(joint.parent.body, joint.axes[0].direction, joint.parent.at),
     )
     reach = np.einsum("fc,fc->f", motion.place(joint.child) - start, direction)
     pad = 26.0 * stage.unit / stage.scale
@@ -176,7 +176,7 @@ def _guide(motion: Motion, stage: Stage, joint: JointShape) -> Line:
 
 
 def _block(
-    motion: Motion, stage: Stage, joint: JointShape, masses: set[str], colours: dict[str, str]
+    motion: Motion, stage: Stage, joint: JointNumbers, masses: set[str], colours: dict[str, str]
 ) -> Line:
     """Draw a sliding part: in the colour of its body, larger if it is the point mass itself."""
     body = joint.parent.body if joint.child.body == "ground" else joint.child.body
@@ -191,7 +191,7 @@ def _block(
     return Line(points, INK, 1.4 * stage.unit, closed=True, fill=fill)
 
 
-def _stand(motion: Motion, stage: Stage, joint: JointShape) -> Iterator[Line]:
+def _stand(motion: Motion, stage: Stage, joint: JointNumbers) -> Iterator[Line]:
     """The mark of what stands still, under a joint that turns."""
     held = [spot for spot in (joint.parent, joint.child) if spot.body == "ground"]
     if not held or joint.kind not in _PINS or joint.kind == "slot":
@@ -222,7 +222,7 @@ def _coil(start: Array, stop: Array, unit: float) -> Line:
     return Line(points, "#666666", 1.5 * unit)
 
 
-def _names(motion: Motion, stage: Stage, joints: list[JointShape]) -> Iterator[Words]:
+def _names(motion: Motion, stage: Stage, joints: list[JointNumbers]) -> Iterator[Words]:
     """The joints' names beside them; those of joints at one place together."""
     raised = {joint.name for joint in joints if joint.kind in _SLIDES}
     found: list[tuple[Array, list[str]]] = []

@@ -15,7 +15,6 @@ from ...base.quantities import Output
 from ...errors import DeclarationError, UnknownNameError
 from ...model.description import Place
 from ...results.solution import Solution
-from ..shapes.shapes import joint_shapes
 from .drawn import Line, Thing, Words, across, along
 from .motion import Motion
 from .stage import Stage
@@ -248,12 +247,13 @@ def _headed(points: Array, length: Array, ahead: Array, colour: str, unit: float
 def _pushes(motion: Motion) -> Iterator[Action]:
     """Forces: reactions, efforts along axes, and loads."""
     solution = motion.solution
-    for joint in joint_shapes(solution.description):
+    for joint in solution.description.joints.values():
         if (direction := _vector(motion, "reaction", joint.name)) is not None:
             yield Action("reaction", joint.name, motion.place(joint.child), direction)
-        for (name, kind), axis in zip(joint.coordinates, joint.axes, strict=False):
-            if kind == "slide" and (effort := _effort(motion, name)) is not None:
-                along_axis = motion.direction(joint.parent.body, axis, joint.parent.at)
+        for axis in joint.axes:
+            name = axis.coordinate
+            if axis.kind == "slide" and (effort := _effort(motion, name)) is not None:
+                along_axis = motion.direction(joint.parent.body, axis.direction, joint.parent.at)
                 yield Action("effort", name, motion.place(joint.child), effort * along_axis)
     for name, load in solution.description.loads.items():
         if (direction := _vector(motion, "load", name)) is not None:
@@ -262,13 +262,14 @@ def _pushes(motion: Motion) -> Iterator[Action]:
 
 def _turns(motion: Motion) -> Iterator[Action]:
     """Efforts about axes."""
-    for joint in joint_shapes(motion.solution.description):
-        for (name, kind), axis in zip(joint.coordinates, joint.axes, strict=False):
-            if kind != "slide" and (effort := _effort(motion, name)) is not None:
+    for joint in motion.solution.description.joints.values():
+        for axis in joint.axes:
+            name = axis.coordinate
+            if axis.kind != "slide" and (effort := _effort(motion, name)) is not None:
                 direction = (
-                    np.array([axis])
+                    np.array([axis.direction])
                     if not motion.solution.description.space
-                    else motion.direction(joint.parent.body, axis)
+                    else motion.direction(joint.parent.body, axis.direction)
                 )
                 yield Action(
                     "effort", name, motion.place(joint.child), effort * direction, moment=True

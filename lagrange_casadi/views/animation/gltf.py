@@ -19,11 +19,11 @@ import numpy.typing as npt
 
 from ...base.arrays import Array, Json
 from ...errors import DeclarationError
-from ...model.description import Place
+from ...model.description import JointNumbers, Place
 from ...results.solution import Solution
 from ...version import __version__
 from ..shapes.places import drawn_spots, placed
-from ..shapes.shapes import JointShape, Shape, joint_shapes, shapes
+from ..shapes.shapes import Shape, shapes
 from ..shapes.solid import COLOURS, PATH
 from ..shapes.views import upright
 from .forces import LONGEST, actions_of, largest_of
@@ -120,7 +120,7 @@ class _Scene:
     def _bodies(self) -> Iterator[int]:
         """The bodies, each with its joints' pins."""
         description = self.solution.description
-        joints = list(joint_shapes(description))
+        joints = list(description.joints.values())
         for k, shape in enumerate(shapes(description)):
             child_joints = [joint for joint in joints if joint.child.body == shape.name]
             solids = list(_solids(shape, self.girth))
@@ -214,7 +214,7 @@ class _Scene:
 
     def _still(self) -> Iterator[int]:
         """Draw fixed parts: blocks under joints on the ground, and the paths of declared points."""
-        for joint in joint_shapes(self.solution.description):
+        for joint in self.solution.description.joints.values():
             if joint.parent.body != "ground" or joint.kind == "free":
                 continue
             down = -upright([*self.solution.description.gravity, 0.0][:3])[2]
@@ -237,9 +237,9 @@ class _Scene:
             self.content["meshes"].append({"name": name, "primitives": [line]})
             yield self._node({"name": f"way of {name}", "mesh": len(self.content["meshes"]) - 1})
 
-    def _axis(self, joint: JointShape) -> Array:
+    def _axis(self, joint: JointNumbers) -> Array:
         """The first axis of a joint, on its child's axes, at the first instant."""
-        direction = np.array(joint.axes[0] if joint.axes else (0.0, 0.0, 1.0))
+        direction = np.array(joint.axes[0].direction if joint.axes else (0.0, 0.0, 1.0))
         ground = (
             direction
             if joint.parent.body == "ground"
@@ -345,7 +345,7 @@ def _solids(shape: Shape, girth: float) -> Iterator[Mesh]:
         yield cylinder(centre - half, centre + half, shape.disc)
 
 
-def _pin(joint: JointShape, axis: Array, girth: float) -> Mesh:
+def _pin(joint: JointNumbers, axis: Array, girth: float) -> Mesh:
     """A joint on its child: a ball, a block that slides along an axis, or a pin along it."""
     at = np.array(joint.child.at)
     if joint.kind in ("spherical", "free"):

@@ -9,14 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base.arrays import Array
-from ...model.description import Place
+from ...model.description import JointNumbers, Place
 from ...results.solution import Solution
 from ..shapes.places import drawn_spots, placed
 from ..shapes.readable import scale_for
 from ..shapes.shapes import (
-    JointShape,
     Shape,
-    joint_shapes,
     named_spots,
     shapes,
 )
@@ -199,7 +197,7 @@ def _draw_instant(
         axes.plot(
             x, y, **style | {"color": "0.4", "linewidth": 1.4, "linestyle": ":", "label": "_"}
         )
-    for joint in joint_shapes(description):
+    for joint in description.joints.values():
         x, y = at(joint.child)
         slides = joint.kind in ("prismatic", "slot")
         if strong and slides:
@@ -286,11 +284,11 @@ def _circle(shape: Shape) -> Iterator[tuple[float, float, float]]:
 
 
 def _draw_axis(
-    axes: Axes, solution: Solution, now: Solution, joint: JointShape, size: float
+    axes: Axes, solution: Solution, now: Solution, joint: JointNumbers, size: float
 ) -> None:
     """The line on which something slides, as far as it ever does."""
     parent = placed(now, joint.parent)[0, :2]
-    (x, y, z), (dx, dy, _) = joint.parent.at, joint.axes[0]
+    (x, y, z), (dx, dy, _) = joint.parent.at, joint.triad[0]
     ahead = Place(joint.parent.body, (x + dx, y + dy, z))
     direction = placed(now, ahead)[0, :2] - parent
     along = placed(solution, joint.child) - placed(solution, joint.parent)

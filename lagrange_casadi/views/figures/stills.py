@@ -10,7 +10,6 @@ from ...base.arrays import Array
 from ...model.description import Description, Place
 from ...results.solution import Solution
 from ..shapes.places import drawn_spots, placed, spokes
-from ..shapes.shapes import joint_shapes
 
 _SAME = 0.02
 """Over the mechanism's size: postures all of whose points are no farther apart look the same."""
@@ -57,9 +56,9 @@ def _ends_of_axes(description: Description, reach: float) -> Iterator[Place]:
     """Ends of joints' axes on the bodies that carry them: they show a shaft turn, whose points do
     not move.
     """
-    for joint in joint_shapes(description):
-        carried = [(joint.parent, axis) for axis in joint.axes[:1]] + (
-            [(joint.child, joint.second)] if joint.second else []
+    for joint in description.joints.values():
+        carried = [(joint.parent, axis.direction) for axis in joint.axes[:1]] + (
+            [(joint.child, joint.carried)] if joint.carried else []
         )
         for spot, axis in carried:
             x, y, z = (at + reach * along for at, along in zip(spot.at, axis, strict=True))

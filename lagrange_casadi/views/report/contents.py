@@ -13,7 +13,7 @@ import numpy.typing as npt
 from ...base.arrays import Array, Json
 from ...base.quantities import Output
 from ...engine.instants.beyond_equilibrium import held_outputs
-from ...model.description import Description
+from ...model.description import Description, JointNumbers
 from ...results.derivatives import derivatives
 from ...results.ordering import error_of, ordered
 from ...results.solution import Solution
@@ -21,7 +21,7 @@ from ...results.statistics import Extreme
 from ...results.strength.parts import looked
 from ...results.verification.certificate import failure, summary
 from ..shapes.places import require_poses
-from ..shapes.shapes import joint_shapes, named_spots, shapes
+from ..shapes.shapes import named_spots, shapes
 from ..shapes.solid import COLOURS
 from ..shapes.views import upright
 from .arrays import Arrays, finite
@@ -94,7 +94,7 @@ def contents(solution: Solution, live: Live | None = None) -> dict[str, Json]:
         "gravity": list(description.components(description.gravity)),
         "instants": _instants(solution, chosen, arrays),
         "bodies": list(_bodies(solution, chosen, arrays)),
-        "joints": [asdict(joint) for joint in joint_shapes(description)],
+        "joints": [_joint(joint, description) for joint in description.joints.values()],
         "named": list(named_spots(description)),
         "loads": [
             {"name": name, "kind": load.kind, "spots": [*map(asdict, load.points)]}
@@ -265,6 +265,20 @@ def _strength(solution: Solution) -> Iterator[dict[str, Json]]:
         for why in found.not_evaluated:
             values = {"part": found.link, "against": "", "where": why, "open": True}
             yield values | {"factor": None, "used": None, "governs": False}
+
+
+def _joint(joint: JointNumbers, description: Description) -> dict[str, Json]:
+    axes = [axis.direction for axis in joint.axes] if description.space else joint.triad[:1]
+    return {
+        "name": joint.name,
+        "kind": joint.kind,
+        "parent": asdict(joint.parent),
+        "child": asdict(joint.child),
+        "axes": axes,
+        "second": joint.carried,
+        "coordinates": [(axis.coordinate, axis.kind) for axis in joint.axes],
+        "driven": [a.coordinate for a in joint.axes if a.coordinate in description.drives],
+    }
 
 
 def _parameters(description: Description) -> Iterator[dict[str, Json]]:

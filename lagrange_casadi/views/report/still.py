@@ -11,7 +11,7 @@ from ...base.arrays import Array
 from ...model.description import Place
 from ...results.solution import Solution
 from ..shapes.places import drawn_spots, placed
-from ..shapes.shapes import joint_shapes, named_spots, shapes
+from ..shapes.shapes import named_spots, shapes
 from ..shapes.solid import COLOURS, PATH
 from ..shapes.views import AZIMUTH, ELEVATION, upright, view
 
@@ -92,7 +92,7 @@ def _drawn(solution: Solution, on_sheet: Places) -> Iterator[str]:
         yield _line(first(spring), "currentColor", 1.4, dashed=True)
     names: dict[tuple[float, float], str] = {}
     named = named_spots(description)
-    for joint in joint_shapes(description):
+    for joint in description.joints.values():
         x, y = (float(value) for value in first([joint.child])[0])
         if "ground" in (joint.parent.body, joint.child.body) and joint.kind not in (
             "free",

@@ -11,7 +11,7 @@ from ...base.quantities import Output
 from ...errors import DeclarationError
 from ...model.description import Description, Place
 from ...results.solution import Solution
-from .shapes import joint_shapes, shapes
+from .shapes import shapes
 
 
 def drawn_spots(description: Description) -> Iterator[Place]:
@@ -25,8 +25,8 @@ def drawn_spots(description: Description) -> Iterator[Place]:
         yield from (
             Place(shape.name, at) for at in places_here or [shape.centre or (0.0, 0.0, 0.0)]
         )
-    for joint in joint_shapes(description):
-        yield from (joint.parent, joint.child)
+    for joint in description.joints.values():
+        yield from joint.ends
     for ends in description.springs.values():
         yield from ends
     yield from description.paths.values()

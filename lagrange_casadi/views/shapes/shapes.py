@@ -7,7 +7,7 @@ is not said here.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -46,26 +46,6 @@ class Shape:
         if not self.disc or self.centre is None:
             return None
         return self.centre[0] + self.disc, *self.centre[1:]
-
-
-@dataclass(frozen=True)
-class JointShape:
-    """Shape of a joint: its kind, the places that it joins, and its axes as directions that its
-    parent carries.
-
-    ``second`` is the second axis of a universal joint, which its child carries. ``coordinates`` are
-    the full names of its coordinates, with their kinds, one for each axis; of a planar slot, of
-    which the turn is no coordinate, there is one.
-    """
-
-    name: str
-    kind: str
-    parent: Place
-    child: Place
-    axes: tuple[Triple, ...]
-    second: Triple | None
-    coordinates: tuple[tuple[str, str], ...]
-    driven: tuple[str, ...]
 
 
 def shapes(description: Description) -> Iterator[Shape]:
@@ -116,29 +96,6 @@ def shapes(description: Description) -> Iterator[Shape]:
             yield Shape(name, "link", length, mass, axis, arms, drawn, None, 0.0)
 
 
-def joint_shapes(description: Description) -> Iterator[JointShape]:
-    """The joints."""
-    for name, joint in description.joints.items():
-        directions = [axis.direction for axis in joint.axes]
-        # The child carries the second axis of a universal joint.
-        second = (
-            _vector(np.array(joint.turned) @ directions[1])
-            if joint.kind == "universal" and len(directions) > 1
-            else None
-        )
-        coordinates = tuple((axis.coordinate, axis.kind) for axis in joint.axes)
-        yield JointShape(
-            name,
-            joint.kind,
-            joint.parent,
-            joint.child,
-            tuple(map(_vector, directions if description.space else joint.triad[:1])),
-            second,
-            coordinates,
-            tuple(coordinate for coordinate, _ in coordinates if coordinate in description.drives),
-        )
-
-
 def named_spots(description: Description) -> dict[str, Place]:
     """The places beside which pictures write names: of joints, except the welds inside bent bars,
     and of declared points.
@@ -179,11 +136,6 @@ def _rollers(description: Description, body: str) -> tuple[tuple[Triple, ...], .
         for roller in description.rollers.values()
         if roller.centre.body == body
     )
-
-
-def _vector(components: Iterable[float]) -> Triple:
-    x, y, z = (float(component) + 0.0 for component in components)
-    return x, y, z
 
 
 def _plates(places: Sequence[Triple]) -> tuple[tuple[Triple, ...], ...]:

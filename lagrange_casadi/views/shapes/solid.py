@@ -139,7 +139,6 @@ def axes_of(solution: Solution, all_instants: Solution, size: float) -> Iterator
     as they ever do.
     """
     for joint in solution.description.joints.values():
-        directions = [axis.direction for axis in joint.axes]
         if joint.kind in ("spherical", "free", "planar"):
             continue
         parent, child = joint.parent, joint.child
@@ -148,13 +147,13 @@ def axes_of(solution: Solution, all_instants: Solution, size: float) -> Iterator
                 np.einsum(
                     "tk,tk->t",
                     place_of(s, child) - place_of(s, parent),
-                    direction_of(s, parent.body, directions[0]),
+                    direction_of(s, parent.body, joint.triad[0]),
                 )
                 for s in (all_instants, solution)
             )
             reach = np.concatenate([*strokes, [0.0]])
             ends = np.array([reach.min() - _AXIS * size, reach.max() + _AXIS * size])
-            along = direction_of(solution, parent.body, directions[0])[0]
+            along = direction_of(solution, parent.body, joint.triad[0])[0]
             yield Line(
                 place_of(solution, parent)[0] + ends[:, None] * along,
                 "0.5",
@@ -163,13 +162,9 @@ def axes_of(solution: Solution, all_instants: Solution, size: float) -> Iterator
                 order=1,
             )
             continue
-        for number, direction in enumerate(directions):
-            # The second axis of a universal joint is carried by the child.
-            carrier, local = (
-                (child, (np.array(joint.turned) @ direction).tolist())
-                if number
-                else (parent, direction)
-            )
+        for axis in joint.axes:
+            second = joint.carried if axis is not joint.axes[0] else None
+            carrier, local = (child, second) if second else (parent, axis.direction)
             along = _AXIS * size * direction_of(solution, carrier.body, local)[0]
             yield Line(
                 place_of(solution, child)[0] + np.outer([-1.0, 1.0], along), "black", 1.2, order=4
