@@ -145,8 +145,8 @@ class JointNumbers(Brief):
 
     ``axes`` are in sequence. The first direction of the ``triad`` is that of the joint's axis.
     ``turned`` are the child's axes in the parent's where all coordinates are zero, a row each.
-    ``free`` says whether it turns about an axis that no coordinate describes. ``fitted`` are its
-    pin and bearings; ``turning`` is the coordinate by which a shaft turns in a bearing.
+    A slot in a plane turns too, about an axis that no coordinate describes. ``fitted`` are its pin
+    and bearings; ``turning`` is the coordinate by which a shaft turns in a bearing.
     """
 
     name: str
@@ -157,7 +157,6 @@ class JointNumbers(Brief):
     turned: Rows
     axes: tuple[AxisNumbers, ...] = ()
     pitch: float = 0.0
-    free: bool = False
     fitted: Fittings | None = None
     turning: str | None = None
 
@@ -486,7 +485,6 @@ def _joint(mechanism: Mechanism, joint: Joint) -> JointNumbers:
         _rows(map(_vector, turned)),
         tuple(AxisNumbers(a.coordinate, a.kind, _vector(a.direction)) for a in joint.axes),
         _number(joint.pitch),
-        joint.turned is None and joint.kind == "slot",
         mechanism.fitted.get(joint.name),
         mechanism.turning.get(joint.name) or None,
     )

@@ -7,6 +7,7 @@ line that names the file.
 
 from __future__ import annotations
 
+import functools
 import json
 import math
 import os
@@ -26,6 +27,8 @@ Shape = Any
 """``str``, ``int``, ``float`` or ``bool``, or None for null; a tuple of shapes, any of which will
 do; ``[shape]`` for a list, and ``[shape, shape, ...]`` for one of so many; ``{str: shape}`` for a
 mapping of any names, ``{"name": shape, ...}`` for one that has these, at least."""
+
+_hints = functools.cache(get_type_hints)
 
 
 @contextmanager
@@ -81,7 +84,7 @@ def structured(kind: Any, value: Any, place: str) -> Any:
         return None if value is None else structured(last, value, place)
     if isinstance(kind, type) and is_dataclass(kind):
         check_shape(value, {}, place)
-        hints = get_type_hints(kind)
+        hints = _hints(kind)
         given = {
             one.name: structured(hints[one.name], value.get(one.name), f"{place}.{one.name}")
             for one in fields(kind)

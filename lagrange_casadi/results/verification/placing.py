@@ -248,8 +248,12 @@ def _relative(declared: Description, reported: Reported, joint: JointNumbers) ->
         acceleration = acceleration + gains * about[name] + rate.cross(moves * about[name])
         rate = rate + moves * about[name]
         turned = turned.carry(Axes.about(direction, reported.phase(Output("motion", name))))
-    known = not joint.free and not {axis.coordinate for axis in joint.axes} & reported.unmeasured
-    whole = known and declared.oriented(joint.parent.body) and declared.oriented(joint.child.body)
+    # In a plane a slot turns about an axis that no coordinate describes.
+    whole = (
+        (declared.space or joint.kind != "slot")
+        and reported.unmeasured.isdisjoint(axis.coordinate for axis in joint.axes)
+        and all(declared.oriented(end.body) for end in joint.ends)
+    )
     return Relative(
         (slide, speed, change),
         turned.carry(Axes.of(joint.turned)),
