@@ -10,7 +10,7 @@ CSparse.
 from __future__ import annotations
 
 import heapq
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -23,9 +23,9 @@ from ..errors import MobilityError
 from .legs import solve_leg
 from .loops import ClosedForm, solve_loop, solves
 from .multibody import Coordinate, LoopEquations, Multibody
-from .released_loops import ReleasedLoops, rank_of
+from .released_loops import ReleasedLoops
 from .residuals import extent, units
-from .sampling import drawn
+from .sampling import Sampling, drawn
 from .two_force_links import idle_spins
 
 _ABSENT = 1e-13
@@ -130,11 +130,10 @@ def solving_order(multibody: Multibody, start: Mapping[str, Expression]) -> tupl
     parts = _decomposed(equations, unknown)
     if any(len(rows) != len(columns) for rows, columns in parts):
         # Drives are free to give way in it, for there may be too many.
-        released = ReleasedLoops.of(
-            multibody, start["posture"], start["inputs"], start["values"], ()
-        )
+        released = ReleasedLoops.of(multibody, start["posture"], start["inputs"], start["values"])
+        slopes = released.slopes()
         slopes = _require_freedom(
-            multibody, len(equations), parts, released.slopes(start["values"]), start["posture"]
+            multibody, len(equations), parts, slopes, released.rank, start["posture"]
         )
         parts = [piece for part in parts for piece in _pieces(part)]
         if multibody.mechanism.space:
@@ -142,7 +141,7 @@ def solving_order(multibody: Multibody, start: Mapping[str, Expression]) -> tupl
                 {equation: k for k, equation in enumerate(equations)},
                 {c: k for k, c in enumerate(multibody.coordinates)},
             )
-            parts = [piece for part in parts for piece in _peeled(part, slopes, *at)]
+            parts = [piece for part in parts for piece in _peeled(part, slopes, released.rank, *at)]
     counted = column(loop.residual for loop in multibody.loop_equations if loop.declared)
     ordered = _in_order(parts, multibody.loop_equations)
     return tuple(
@@ -166,6 +165,7 @@ def _equations(multibody: Multibody, unknown: Sequence[Coordinate]) -> list[Equa
         sizes[row][unknown[k]] = largest * unknown[k].size
     found, mechanism = [], multibody.mechanism
     whole = mechanism.ownership.at_defaults(extent(mechanism))
+    nothing = max(_ABSENT, multibody.slack)
     for k, (loop, row) in enumerate(
         (group, row) for group in loops for row in range(group.residual.numel())
     ):
@@ -173,7 +173,7 @@ def _equations(multibody: Multibody, unknown: Sequence[Coordinate]) -> list[Equa
         unit = max((size for size in sizes[k].values() if np.isfinite(size)), default=0.0)
         if loop.joint is not None:
             unit = max(unit, units(loop, whole)[row])
-        there = {c for c, size in sizes[k].items() if size > _ABSENT * unit}
+        there = {c for c, size in sizes[k].items() if size > nothing * unit}
         # The three of a ball share their variables.
         sphericals = {c.spherical for c in there if c.spherical is not None}
         present = frozenset(c for c in unknown if c in there or c.spherical in sphericals)
@@ -233,7 +233,11 @@ def _pieces(part: Part) -> list[Part]:
 
 
 def _peeled(
-    part: Part, slopes: Array, row: Mapping[Equation, int], of: Mapping[Coordinate, int]
+    part: Part,
+    slopes: Array,
+    rank_of: Callable[[Array], int],
+    row: Mapping[Equation, int],
+    of: Mapping[Coordinate, int],
 ) -> list[Part]:
     """A part that has too many equations, loop by loop: in space a planar loop has, but says all of
     what it leaves no other.
@@ -303,13 +307,13 @@ def _forms(
     if any(c.spherical is not None for c in unknown):
         return ()
     two_force_link = all(equation.loop.two_force_link is not None for equation in rows)
-    phi = column(equation.residual for equation in rows)
+    phi, sampling = column(equation.residual for equation in rows), Sampling.of(multibody)
     beside_units = column(equation.residual / equation.unit for equation in rows)
 
     def verified(forms: Sequence[ClosedForm]) -> bool:
-        return solves(forms, beside_units, multibody.coordinates)
+        return solves(forms, beside_units, sampling)
 
-    form = solve_loop(phi, unknown, multibody.coordinates, verified, two_force_link=two_force_link)
+    form = solve_loop(phi, unknown, sampling, verified, two_force_link=two_force_link)
     forms: tuple[ClosedForm, ...] = (form,) if form is not None else ()
     if (
         not forms
@@ -336,6 +340,7 @@ def _require_freedom(
     equations: int,
     parts: Sequence[Part],
     slopes: Array | None,
+    rank_of: Callable[[Array], int],
     given: Collection[Coordinate],
 ) -> Array:
     """The slopes; raise :class:`MobilityError` unless the drives are as many as the freedoms, and

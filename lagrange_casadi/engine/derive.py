@@ -4,6 +4,7 @@ nothing that is not wanted.
 
 from __future__ import annotations
 
+import copy
 import functools
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -22,7 +23,7 @@ from ..base.tables import Table, table_of
 from ..errors import AssemblyError, DeclarationError, MobilityError, PostureError
 from ..model.density import Density
 from ..model.end_conditions import effective_lengths, ends_of
-from ..model.limits import END
+from ..model.limits import END, FITS, MISSES
 from ..model.parts import Link
 from ..model.results import Asked
 from ..model.scene import STRENGTH, Scene, Wanted
@@ -40,22 +41,22 @@ from .moving import Moving
 from .multibody import Multibody
 from .program import Program
 from .reciprocals import share_reciprocals
-from .rounding import nearest
+from .sampling import Sampling
 from .section_function import Place, Section
 from .strength import stresses, utilisation
 from .two_force_links import find_two_force_links, unaimed
-
-_FITS = 2e-14
-"""Largest residual of redundant equations that count as consistent, relative to the links'
-length.
-"""
 
 _SERVES = 1e-10
 """Largest residual of redundant equations at the start for other parameters, for which the graphs
 are still valid: a tenth of the certificates' tolerance.
 """
 
-_STEPS = 50
+_ALONG = 0.0, 1 / 64, 1 / 16, 1 / 4, 1 / 2, 1.0
+"""Parts of the motion at which loops are looked at: as it begins, parts that were given by their
+places fit, however their axes are rounded.
+"""
+
+_STEPS, _CLOSED = 50, 1e-9
 
 
 @public
@@ -105,10 +106,10 @@ def derived(
     scene: Scene, wanted: Outputs | None, values: Mapping[str, float] | None
 ) -> tuple[Program, Scene]:
     """Derive a scene, assembled with its own parameters, else with ``values`` of all, checked; and
-    the scene as it was assembled, its rounded axes corrected.
+    the scene as it was assembled, with the rounding of its axes.
 
-    Where redundant equations hold with the scene's own parameters but not with the values, axes in
-    space are corrected for the values.
+    Where redundant equations hold with the scene's own parameters but not with the values, it is
+    assembled with the values.
 
     Raises :class:`.AssemblyError` and :class:`.MobilityError` if it can be assembled with neither,
     and :class:`.PostureError` for a posture that leaves branches open.
@@ -165,28 +166,35 @@ def _check_aimed(scene: Scene, names: Sequence[str]) -> None:
 
 @functools.lru_cache(maxsize=32)
 def _assembled(scene: Scene, want: Wanted) -> tuple[Program, Scene]:
-    """Derive a scene as it is declared; if its loops do not close, with the nearest axes with which
-    they do.
+    """Derive a scene as it is declared; in space, if its loops do not close, with the rounding of
+    its axes and places.
     """
     try:
         program = _program(scene, want)
     except (AssemblyError, MobilityError):
-        if (near := _corrected(scene, want)) is None:
+        if (near := _rounded(scene, want)) is None:
             raise
         return near
     except PostureError as error:
         error.scene = scene
         raise
     own = scene.mechanism.values(scene.assembly)
-    near = _corrected(scene, want) if _misses(program, own, iterated=True) > _FITS else None
-    return near or (program, scene)
+    misses = _misses(program, own, _ALONG, iterated=True) > FITS
+    return (_rounded(scene, want) if misses else None) or (program, scene)
 
 
-def _corrected(scene: Scene, want: Wanted) -> tuple[Program, Scene] | None:
-    """Derive a scene with corrected axes; None if no correction within its rounding is enough."""
-    if (near := nearest(scene)) is not None:
-        with suppress(AssemblyError, MobilityError):
-            program = _program(near, want)
+def _rounded(scene: Scene, want: Wanted) -> tuple[Program, Scene] | None:
+    """Derive a scene whose axes and places may be off; None where its loops do not close within
+    their rounding.
+    """
+    if not (scene.mechanism.space and scene.rounding):
+        return None
+    mechanism = copy.copy(scene.mechanism)
+    mechanism.rounding = scene.rounding
+    near = replace(scene, mechanism=mechanism)
+    with suppress(AssemblyError, MobilityError):
+        program, own = _program(near, want), mechanism.values(scene.assembly)
+        if _misses(program, own, iterated=False) <= MISSES * scene.rounding:
             return replace(program, identity=identity_of(scene, want)), near
     return None
 
@@ -205,9 +213,15 @@ def _program(scene: Scene, want: Wanted) -> Program:
     return program
 
 
-def _misses(program: Program, values: Mapping[str, float], *, iterated: bool) -> float:
-    """Residual of loops with redundant equations at the start, relative to the links' length: of
-    all of them, or those ``iterated``.
+def _misses(
+    program: Program,
+    values: Mapping[str, float],
+    parts: Sequence[float] = (0.0,),
+    *,
+    iterated: bool,
+) -> float:
+    """Residual of loops with redundant equations, relative to the links' length, at the start or at
+    several ``parts`` of the motion, as far as loops close: of all of them, or those ``iterated``.
     """
     rows = [
         row
@@ -216,15 +230,20 @@ def _misses(program: Program, values: Mapping[str, float], *, iterated: bool) ->
     ]
     if not rows:
         return 0.0
-    t, p, newton = program.data.span[0], list(values.values()), program.newton
-    motion, z = program.motion(t, p), ca.DM(newton.guess if newton else [])
-    for _ in range(_STEPS):
-        correction, size = newton.step(z, t, motion[0], p) if newton else (0.0, 0.0)
-        z += correction
-        if float(size) < _FITS:
+    (start, stop), p, newton = program.data.span, list(values.values()), program.newton
+    z, missed = ca.DM(newton.guess if newton else []), 0.0
+    for t in (start + part * (stop - start) for part in parts):
+        motion, size = program.motion(t, p), 0.0
+        for _ in range(_STEPS):
+            correction, size = newton.step(z, t, motion[0], p) if newton else (0.0, 0.0)
+            z += correction
+            if float(size) < FITS:
+                break
+        if float(size) >= _CLOSED:
             break
-    out = program.instant(t, *motion, z, p)
-    return max(float(out[row]) for row in rows)
+        out = program.instant(t, *motion, z, p)
+        missed = max(missed, *(float(out[row]) for row in rows))
+    return missed
 
 
 @dataclass(frozen=True, eq=False)
@@ -242,7 +261,6 @@ class _JointForces:
         """The forces that are wanted, and those of ``columns`` that friction goes into."""
         want = moving.want
         links = moving.scene.mechanism.links.values()
-        coordinates = moving.body.coordinates
         forces = internal_forces(moving.body, moving.solved, want, moving.scene)
         friction = forces.friction
         dependent = {
@@ -252,7 +270,7 @@ class _JointForces:
         }
         placed = ca.substitute(column(dependent.values()), friction.symbols, friction.values)
         pressed = dict(zip(dependent, ca.vertsplit(placed) if dependent else (), strict=True))
-        acting = gathered(forces.columns, forces.free, links, coordinates) | pressed
+        acting = gathered(forces.columns, forces.free, links, Sampling.of(moving.body)) | pressed
         # Beside the start of the motion, for a drive through a gear moves little of what it drives,
         # and holds it all the same.
         for check in [

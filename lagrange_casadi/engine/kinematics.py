@@ -29,6 +29,7 @@ from .loops import ClosedForm
 from .multibody import Coordinate, Multibody
 from .postures import Undecided, directions, is_angle, measured
 from .residuals import lengths, loop_residual, reach, redundancy_residual
+from .screws import signed_volume
 from .spherical import SphericalCoordinates
 from .substitution import Expressions, Numbers
 from .winding import wound_angles
@@ -440,11 +441,17 @@ class _Solver:
                 found.note(symbols, system.solve(-remaining))
             systems.append(system)
             if block in self.residuals:
-                side = math.copysign(1.0, self.numbers.of(system.volume)[0])
-                volume = ca.fabs(system.volume) if system.free else side * system.volume
-                self._note_closure(block, volume)
-            if system.free:
-                redundancy_residuals[block.name] = found.put_into(redundancy_residual(body, block))
+                volume = system.volume
+                if system.free:
+                    volume, signed = ca.fabs(volume), signed_volume(body, block, self.numbers)
+                    if signed is not None:
+                        volume = ca.copysign(volume, found.put_into(signed))
+                self._note_closure(block, math.copysign(1.0, self.numbers.of(volume)[0]) * volume)
+            if system.free or body.mechanism.rounding:
+                missed = found.put_into(redundancy_residual(body, block))
+                if block.name in redundancy_residuals:
+                    missed = ca.fmax(missed, redundancy_residuals[block.name])
+                redundancy_residuals[block.name] = missed
             else:
                 residuals[block.name] = residuals.get(block.name, 0) + found.put_into(
                     loop_residual(body, block, self.length)

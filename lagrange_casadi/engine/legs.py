@@ -25,7 +25,7 @@ from ..base.vectors import Vector, cross, dot, minus, times
 from ..model.joints import Joint
 from .loops import ClosedForm, Verified, at_rest, held, solve_in_turn
 from .multibody import Coordinate, Multibody
-from .sampling import vanish
+from .sampling import Sampling
 
 
 def solve_leg(
@@ -60,7 +60,8 @@ def _leg(
         return ()
     if len(later) == 1:
         head, target = cross(axis, head), cross(axis, target)
-    squares = _in_fewest(dot(head, head), later, multibody.coordinates), dot(target, target)
+    sampling = Sampling.of(multibody)
+    squares = _in_fewest(dot(head, head), later, sampling), dot(target, target)
     # One of the two is a length that nothing changes: beside it the gap is one in metres.
     fixed = next(
         (square for square in squares if square is not None and not held((square,), later)), None
@@ -71,24 +72,24 @@ def _leg(
     near, far = (length if square is fixed else square / length for square in squares)
     equations = [(near - far) / 2]
     if len(later) == 2:
-        height = _in_fewest(dot(axis, head), later, multibody.coordinates)
+        height = _in_fewest(dot(axis, head), later, sampling)
         if height is None:
             return ()
         equations.append(height - dot(axis, target))
-    forms = solve_in_turn(equations, later, multibody.coordinates)
+    forms = solve_in_turn(equations, later, sampling)
     return (*forms, _turned(first, axis, head, target, across=len(later) == 1)) if forms else ()
 
 
 def _in_fewest(
-    expression: Expression, later: Sequence[Coordinate], coordinates: Sequence[Coordinate]
+    expression: Expression, later: Sequence[Coordinate], sampling: Sampling
 ) -> Expression | None:
     """An expression with all coordinates at rest but as few of the ``later`` ones as change it;
     None where others change it too.
     """
     for count in range(len(later) + 1):
         for kept in combinations(later, count):
-            plain = at_rest(expression, [c for c in coordinates if c not in kept])
-            if vanish(expression - plain, coordinates, expression):
+            plain = at_rest(expression, [c for c in sampling.coordinates if c not in kept])
+            if sampling.vanish(expression - plain, expression):
                 return plain
     return None
 

@@ -24,7 +24,7 @@ from ..model.limits import END
 from ..model.parts import Link
 from .mobility import load_points_of
 from .multibody import Coordinate
-from .sampling import drawn, vanish
+from .sampling import Sampling, drawn
 
 _IN_PLANE = ((("n0",), ("n",), 1), (("f0", "m0"), ("f", "m"), 1))
 _IN_SPACE = (
@@ -49,7 +49,7 @@ def gathered(
     columns: Mapping[Column, ca.SX],
     free: ca.SX,
     links: Iterable[Link],
-    coordinates: Sequence[Coordinate],
+    sampling: Sampling,
 ) -> dict[Column, ca.SX]:
     """The columns of forces, those stations of ``links`` put together that are at one place and
     have shares that may be open.
@@ -60,7 +60,7 @@ def gathered(
     found = dict(columns)
 
     def is_open(units: Expression, load: Expression) -> bool:
-        return not vanish(ca.jacobian(load / units, free), coordinates)
+        return not sampling.vanish(ca.jacobian(load / units, free))
 
     for link in links if free.numel() else ():
         load_points = load_points_of((key for key in columns if isinstance(key, Output)), link.name)
@@ -82,7 +82,9 @@ def gathered(
             shares = [(outputs, load, place) for outputs, load, place in shares if opens(load)]
             gathered_loads = [load for _, load, _ in shares]
             places = [place for *_, place in shares]
-            loads = _together(gathered_loads, places, sign * link.length, coordinates, opens)
+            loads = _together(
+                gathered_loads, places, sign * link.length, sampling.coordinates, opens
+            )
             for (outputs, _, _), load in zip(shares, loads, strict=True):
                 found |= zip(outputs, ca.vertsplit(load), strict=True)
     return found

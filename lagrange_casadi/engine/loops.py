@@ -31,7 +31,7 @@ from ..base.arrays import Expression
 from ..base.scalars import column
 from .linear import LinearSystem
 from .multibody import Coordinate
-from .sampling import vanish
+from .sampling import Sampling
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +68,7 @@ Verified: TypeAlias = Callable[[Sequence[ClosedForm]], bool]
 def solve_loop(
     phi: ca.SX,
     unknown: Sequence[Coordinate],
-    coordinates: Sequence[Coordinate],
+    sampling: Sampling,
     verified: Verified,
     *,
     two_force_link: bool = False,
@@ -78,8 +78,8 @@ def solve_loop(
 
     Phi of a ``bar`` is half of a square, and may be one of the unknown.
     """
-    form = _spanned(phi, unknown, coordinates) if two_force_link and len(unknown) == 1 else None
-    form = form or _matching(phi, unknown, coordinates)
+    form = _spanned(phi, unknown, sampling) if two_force_link and len(unknown) == 1 else None
+    form = form or _matching(phi, unknown, sampling)
     if form is None:
         return None
     form = replace(form, unknown=tuple(unknown))
@@ -87,7 +87,7 @@ def solve_loop(
 
 
 def solve_in_turn(
-    equations: Sequence[ca.SX], unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate]
+    equations: Sequence[ca.SX], unknown: Sequence[Coordinate], sampling: Sampling
 ) -> tuple[ClosedForm, ...]:
     """The closed forms of equations, one after another, each of which holds one unknown more; none
     where they do not.
@@ -99,8 +99,7 @@ def solve_in_turn(
     for equation in sorted(equations, key=lambda equation: len(held((equation,), unknown))):
         held_alone = held((equation,), rest)
         form = (
-            _matching(equation, held_alone, coordinates)
-            or _spanned(equation, held_alone, coordinates)
+            _matching(equation, held_alone, sampling) or _spanned(equation, held_alone, sampling)
             if len(held_alone) == 1
             else None
         )
@@ -123,9 +122,7 @@ def at_rest(expression: Expression, coordinates: Sequence[Coordinate]) -> Expres
     return ca.substitute(expression, symbols, column(ca.DM(c.resting) for c in coordinates))
 
 
-def _spanned(
-    phi: ca.SX, unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate]
-) -> ClosedForm | None:
+def _spanned(phi: ca.SX, unknown: Sequence[Coordinate], sampling: Sampling) -> ClosedForm | None:
     """A bar's end that turns about one axis, or slides along one: two points of a circle or a line
     are so far from another one.
 
@@ -143,10 +140,10 @@ def _spanned(
         return None
     branch = ca.SX.sym("branch")
     if coordinate.kind == "angle":
-        if not vanish(curvature[0, 1], coordinates, curvature):
+        if not sampling.vanish(curvature[0, 1], curvature):
             return None
-        if not vanish(curvature[0, 0] - curvature[1, 1], coordinates, curvature):
-            return _askew(phi, coordinate, curvature, coordinates)
+        if not sampling.vanish(curvature[0, 0] - curvature[1, 1], curvature):
+            return _askew(phi, coordinate, curvature, sampling)
         # Where the squares of cosine and sine have one factor, they are one number.
         square = curvature[0, 0]
         straight = phi - square * (ca.sumsqr(symbols) - 1) / 2
@@ -166,23 +163,23 @@ def _spanned(
 
 
 def _askew(
-    phi: ca.SX, angle: Coordinate, curvature: ca.SX, coordinates: Sequence[Coordinate]
+    phi: ca.SX, angle: Coordinate, curvature: ca.SX, sampling: Sampling
 ) -> ClosedForm | None:
     """A square of a sine, or of a cosine, and that sine are known to be of one sum: of two signs,
     each with two ways round.
     """
     pair = _pair(angle)
     slope, rest = (ca.substitute(e, pair, ca.SX.zeros(2)) for e in (ca.jacobian(phi, pair), phi))
-    number = 0 if curvature[1, 1].is_zero() or not vanish(slope[0], coordinates, curvature) else 1
+    number = 0 if curvature[1, 1].is_zero() or not sampling.vanish(slope[0], curvature) else 1
     other = 1 - number
-    if not vanish(slope[other], coordinates, curvature):
+    if not sampling.vanish(slope[other], curvature):
         return None
     # With the square of the other one, which is one less this one's: bend x x + 2 slope x + rest =
     # 0.
     bend = curvature[number, number] - curvature[other, other]
     rest = rest + rest + curvature[other, other]
     signs = ca.SX.sym("branch"), ca.SX.sym("other_branch")
-    if vanish(slope, coordinates, curvature):
+    if sampling.vanish(slope, curvature):
         squared = -rest / bend
         found = signs[0] * ca.sqrt(squared)
     else:
@@ -197,9 +194,7 @@ def _askew(
     )
 
 
-def _matching(
-    phi: ca.SX, unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate]
-) -> ClosedForm | None:
+def _matching(phi: ca.SX, unknown: Sequence[Coordinate], sampling: Sampling) -> ClosedForm | None:
     """The closed form of the pattern that the equations have; None where they have none."""
     kinds = "".join(sorted(c.kind[0] for c in unknown))
     if phi.numel() != len(unknown):
@@ -209,17 +204,17 @@ def _matching(
     if kinds == "a":
         return _one_direction(phi, unknown[0])
     if kinds == "aa":
-        return _two_circles(phi, unknown, coordinates)
+        return _two_circles(phi, unknown, sampling)
     if kinds == "as":
         angle, slide = sorted(unknown, key=lambda c: c.kind)
-        form = _direction_and_slide(phi, angle, slide, coordinates)
+        form = _direction_and_slide(phi, angle, slide, sampling)
         return (
             replace(form, variables=form.variables[::-1]) if form and unknown[0] is slide else form
         )
     return _slides(phi, unknown) if set(kinds) == {"s"} else None
 
 
-def solves(forms: Sequence[ClosedForm], phi: ca.SX, coordinates: Sequence[Coordinate]) -> bool:
+def solves(forms: Sequence[ClosedForm], phi: ca.SX, sampling: Sampling) -> bool:
     """Return whether solutions, each of which may depend on those before, are ones of Phi = 0 on
     all branches.
 
@@ -248,8 +243,8 @@ def solves(forms: Sequence[ClosedForm], phi: ca.SX, coordinates: Sequence[Coordi
         ca.substitute(residual, branches, ca.SX(ca.DM(signs)))
         for signs in product((1, -1), repeat=branches.numel())
     ]
-    return vanish(
-        column(branch[:-1] for branch in ways), coordinates, column(branch[-1] for branch in ways)
+    return sampling.vanish(
+        column(branch[:-1] for branch in ways), column(branch[-1] for branch in ways)
     )
 
 
@@ -302,12 +297,12 @@ def _direction_on_line(
 
 
 def _two_circles(
-    phi: ca.SX, unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate]
+    phi: ca.SX, unknown: Sequence[Coordinate], sampling: Sampling
 ) -> ClosedForm | None:
     symbols = ca.vertcat(*(_pair(c) for c in unknown))
     affine = _affine(phi, symbols, symbols)
     if affine is None or not all(
-        _turns(affine[0][:, 2 * i : 2 * i + 2], coordinates) for i in range(2)
+        _turns(affine[0][:, 2 * i : 2 * i + 2], sampling) for i in range(2)
     ):
         return None
     slope, rest = affine
@@ -333,15 +328,15 @@ def _two_circles(
     return ClosedForm(directions, root / _square(2 * (l1 * l2)), (branch,))
 
 
-def _turns(columns: ca.SX, coordinates: Sequence[Coordinate]) -> bool:
+def _turns(columns: ca.SX, sampling: Sampling) -> bool:
     """Return whether two columns, slopes by a cosine and a sine, are those of a rotating arm: (u,
     v) and (-v, u).
     """
-    return vanish(columns[:, 1] - ca.vertcat(-columns[1, 0], columns[0, 0]), coordinates, columns)
+    return sampling.vanish(columns[:, 1] - ca.vertcat(-columns[1, 0], columns[0, 0]), columns)
 
 
 def _direction_and_slide(
-    phi: ca.SX, angle: Coordinate, slide: Coordinate, coordinates: Sequence[Coordinate]
+    phi: ca.SX, angle: Coordinate, slide: Coordinate, sampling: Sampling
 ) -> ClosedForm | None:
     """Eliminate the slide; what is left is a direction on a line."""
     pair, branch = _pair(angle), ca.SX.sym("branch")
@@ -350,7 +345,7 @@ def _direction_and_slide(
     largest = None
     if not ca.depends_on(ca.vertcat(axis, ca.vec(turned)), unknown):
         along_axis, equations = axis, (phi[0], phi[1])
-        if not (vanish(ca.sumsqr(axis) - 1, coordinates) and _turns(turned, coordinates)):
+        if not (sampling.vanish(ca.sumsqr(axis) - 1) and _turns(turned, sampling)):
             # Not the x and y of one point that slides along a line: the lines may come to be
             # parallel.
             largest = ca.sumsqr(axis) * ca.sumsqr(turned)
@@ -361,7 +356,7 @@ def _direction_and_slide(
         if (
             ca.depends_on(fixed, slide.variables)
             or ca.depends_on(turned, pair)
-            or not _turns(turned, coordinates)
+            or not _turns(turned, sampling)
         ):
             return None
         along_axis = ca.jacobian(turned[:, 0], slide.variables)
@@ -377,7 +372,7 @@ def _direction_and_slide(
     direction, closure = solved
     along = along_axis[0] * equations[0] + along_axis[1] * equations[1]
     place = -ca.substitute(along, unknown, ca.vertcat(direction, 0))
-    if not vanish(ca.sumsqr(along_axis) - 1, coordinates):
+    if not sampling.vanish(ca.sumsqr(along_axis) - 1):
         place = place / ca.sumsqr(along_axis)
     return ClosedForm((_variables(direction), place), closure, (branch,))
 

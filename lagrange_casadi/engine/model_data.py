@@ -74,8 +74,8 @@ class ModelData(Graphs, Brief):
     """A mechanism and its motion as plain data, beside the functions of a :class:`.Program`.
 
     ``laws`` are the motions of the driven coordinates. ``timing`` is how the scene's own instants
-    are asked for, and ``span`` [s] their first and last. ``rounding`` is how far axes were
-    corrected for loops to close, or zero.
+    are asked for, and ``span`` [s] their first and last. ``rounding`` is how far axes and
+    places may be off where loops do not close as declared, else zero.
 
     ``extent(p)`` is its size [m]. ``margins`` are what a precision demands of the parameters;
     motions and constraints may have kinks at ``corners``. The loads ``partial`` act along a part of
@@ -102,7 +102,7 @@ class ModelData(Graphs, Brief):
         """Return the data of a scene whose motions are ``laws``."""
         mechanism, given = scene.mechanism, {"p": scene.mechanism.symbols}
         return cls(
-            rounding=_rounding(scene),
+            rounding=mechanism.rounding,
             parameters=mechanism.parameters,
             laws=laws,
             timing=scene.timing(),
@@ -128,10 +128,8 @@ class ModelData(Graphs, Brief):
         )
 
     def asked_by(self, scene: Scene) -> ModelData:
-        """The same, with how a scene of the same name asks for instants
-        and lets axes be rounded.
-        """
-        return replace(self, timing=scene.timing(), rounding=_rounding(scene))
+        """The same, with how a scene of the same name asks for instants."""
+        return replace(self, timing=scene.timing())
 
     @property
     def content(self) -> Description:
@@ -212,10 +210,6 @@ class ModelData(Graphs, Brief):
             ("two-force link", content.bodies),
         )
         return f"{next((kind for kind, parts in kinds if part in parts), 'constraint')} '{part}'"
-
-
-def _rounding(scene: Scene) -> float:
-    return scene.rounding if scene.mechanism.rounded else 0.0
 
 
 def _jumps(density: Density) -> tuple[float, ...]:

@@ -22,6 +22,7 @@ from ..base.scalars import column
 from ..base.vectors import AXES, ZERO
 from ..errors import DeclarationError
 from ..model.joints import Axis, Joint
+from ..model.limits import APART
 from ..model.mechanism import Mechanism
 from ..model.parts import Point, Row, Vector
 from .joints import slide, slide_motion, turned, turning
@@ -223,6 +224,11 @@ class Multibody:
     user_outputs: dict[str, Any]
     kinetic: Any
     velocities: Velocities
+
+    @property
+    def slack(self) -> float:
+        """The largest slope or coefficient that may come of the rounding of axes and places."""
+        return APART * self.mechanism.rounding
 
     @property
     def sphericals(self) -> tuple[SphericalCoordinates, ...]:

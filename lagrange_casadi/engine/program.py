@@ -20,10 +20,10 @@ from ..base.templates import Leaf, Template, dumps, loads
 from ..base.vocabulary import Precision
 from ..errors import PickleError
 from ..model.corners import Corners
-from ..model.description import DESCRIBED
+from ..model.description import DESCRIBED, Description
 from ..model.kinks import Smooth
 from ..model.laws import Laws
-from ..model.limits import END
+from ..model.limits import END, FITS
 from ..model.parts import Parameter
 from ..model.scene import Wanted
 from ..model.stated import Entry, Equation, LoadLaw, Stated, Touch
@@ -82,6 +82,18 @@ class Program(Graphs):
     def outputs(self) -> dict[Output, int]:
         """The outputs, and their rows of ``out``."""
         return {column: k for k, column in enumerate(self.columns) if isinstance(column, Output)}
+
+    def described(self, p: Array, out: Array) -> Description:
+        """The mechanism in plain numbers, for parameters ``p``; where axes are rounded, with what
+        loops miss in its columns ``out`` (columns, t), by what closes them.
+        """
+        found = self.data.at(p)
+        if self.data.rounding:
+            rows = self.checks("misfit").items()
+            gaps = {name: float(np.max(out[row])) for name, row in rows}
+            missed = {name: gap for name, gap in gaps.items() if gap > FITS}
+            found = replace(found, missed=missed)
+        return found
 
     def checks(self, kind: str) -> Mapping[str, int]:
         """The parts that have a check of a kind, and its row of ``out``."""

@@ -19,7 +19,7 @@ from .residuals import extent, units
 from .spherical import axes_of, turn
 from .substitution import Numbers
 
-_STEPS = 200
+_STEPS, _LARGEST = 200, 0.5
 _CLOSED = 1e-11
 _SINGULAR = 1e-10
 _DEPENDENT = 1e-9
@@ -29,30 +29,23 @@ is there twice, or a turntable, which turns a loop with the gap that it may have
 """
 
 
-@dataclass(frozen=True)
-class Posture:
-    """Values of coordinates: numbers ``u``, none for spherical joints, whose values are quaternions
-    ``q``.
-    """
-
-    u: Array
-    q: Array
-
-
 @dataclass(frozen=True, eq=False)
 class ReleasedLoops:
     """The loops' equations over coordinates u and quaternions q of balls: slides are beside the
     mechanism's extent, and so are gaps; a constraint is beside its slopes in the rough posture.
 
-    ``gaps(u, q, *inputs)`` gives the equations and their derivatives by u, and then by each of
-    ``by``; ``turned(u, q)`` the quaternions after the small rotations u of balls, which ``resting``
-    marks. ``first`` is the rough posture.
+    ``gaps(u, q, *inputs)`` gives the equations and their derivatives by u; ``turned(u, q)`` the
+    quaternions after the small rotations u of balls, which ``resting`` marks. ``first`` are u and q
+    in the rough posture, ``values`` those of the inputs. What is below ``slack`` may be the
+    rounding of axes and places.
     """
 
-    residuals: Any
+    gaps: Any
     turned: Any
-    first: Posture
+    first: tuple[Array, Array]
+    values: Sequence[Expression]
     resting: Array
+    slack: float
 
     @classmethod
     def of(
@@ -61,7 +54,6 @@ class ReleasedLoops:
         posture: Mapping[Coordinate, float],
         inputs: Sequence[Expression],
         values: Sequence[Expression],
-        by: Sequence[ca.SX],
     ) -> ReleasedLoops:
         """Coordinates near the given ones; ``values`` are the initial numbers of the symbols
         ``inputs``.
@@ -97,13 +89,13 @@ class ReleasedLoops:
             column(c.residual for c in multibody.loop_equations), column(variables), column(placed)
         )
         quaternion = column(turned.values())
-        first = Posture(
+        first = (
             np.array([0.0 if c.spherical else posture.get(c, 0.0) for c in coordinates]) / sizes,
             np.array([*quaternions.values()]).ravel(),
         )
         given = [free, quaternion, *inputs]
         slope = ca.Function("slope", given, [ca.jacobian(residuals, free)])
-        rows = np.linalg.norm(slope(first.u, first.q, *values).full(), axis=1)
+        rows = np.linalg.norm(slope(*first, *values).full(), axis=1)
         start = 0
         for loop in multibody.loop_equations:
             stop = start + loop.residual.numel()
@@ -111,48 +103,37 @@ class ReleasedLoops:
                 rows[start:stop] = units(loop, size)
             start = stop
         residuals /= ca.DM(np.where(rows > 0.0, rows, 1.0))
-        slopes = [ca.jacobian(residuals, symbols) for symbols in (free, *by)]
         return cls(
-            ca.Function("gaps", given, [residuals, *slopes]),
+            ca.Function("gaps", given, [residuals, ca.jacobian(residuals, free)]),
             ca.Function(
                 "turned",
                 [free, quaternion],
                 [column(turn(turned[spherical], local[spherical]) for spherical in turned)],
             ),
             first,
+            values,
             np.array([c.spherical is not None for c in coordinates], bool),
+            multibody.slack,
         )
 
-    def at(self, posture: Posture, values: Sequence[Expression]) -> list[Array]:
-        """The gaps and their derivatives there."""
-        residual, *slopes = (x.full() for x in self.residuals(posture.u, posture.q, *values))
-        return [residual.ravel(), *slopes]
-
-    def moved(self, posture: Posture, step: Array) -> Posture:
-        """Posture after a step; a large step is shortened."""
-        u = posture.u + step * min(1.0, 0.5 / (np.max(np.abs(step), initial=0.0) + 1e-300))
-        return Posture(np.where(self.resting, 0.0, u), self.turned(u, posture.q).full().ravel())
-
-    def slopes(self, values: Sequence[Expression]) -> Array | None:
-        """The derivatives by all coordinates where the loops close near the rough posture; None
-        where they do not.
+    def slopes(self) -> Array | None:
+        """The derivatives by all coordinates where the loops close near the rough posture, or miss
+        by rounding and come no nearer; None where they do not.
         """
-        posture = self.first
+        (u, q), singular = self.first, max(_SINGULAR, self.slack)
         for _ in range(_STEPS):
-            residual, slope, *_ = self.at(posture, values)
-            if np.max(np.abs(residual), initial=0.0) < _CLOSED:
-                return slope
-            posture = self.moved(
-                posture,
-                np.asarray(np.linalg.lstsq(slope, -residual, rcond=_SINGULAR)[0])
-                if posture.u.size
-                else posture.u,
-            )
+            residual, slope = (x.full() for x in self.gaps(u, q, *self.values))
+            step = np.linalg.lstsq(slope, -residual.ravel(), rcond=singular)[0] if u.size else u
+            missed, moves = (np.max(np.abs(x), initial=0.0) for x in (residual, step))
+            if missed < _CLOSED or (missed < self.slack and moves < _CLOSED):
+                return np.asarray(slope)
+            u = u + step * min(1.0, _LARGEST / (moves + 1e-300))
+            q, u = self.turned(u, q).full().ravel(), np.where(self.resting, 0.0, u)
         return None
 
-
-def rank_of(slope: Array) -> int:
-    """Number of independent equations of the loops."""
-    lengths = np.linalg.norm(slope, axis=0)
-    scaled = slope / np.where(lengths > _NO_SLOPE, lengths, 1.0)
-    return int(np.linalg.matrix_rank(scaled, tol=_DEPENDENT)) if scaled.size else 0
+    def rank(self, slope: Array) -> int:
+        """Number of independent equations among the derivatives of some loops."""
+        lengths = np.linalg.norm(slope, axis=0)
+        scaled = slope / np.where(lengths > max(_NO_SLOPE, self.slack), lengths, 1.0)
+        least = max(_DEPENDENT, self.slack)
+        return int(np.linalg.matrix_rank(scaled, tol=least)) if scaled.size else 0

@@ -53,9 +53,13 @@ def lengths(multibody: Multibody, block: Block, length: ca.SX, *, sizes: bool = 
 def redundancy_residual(multibody: Multibody, block: Block) -> Expression:
     """The largest gap of a block, over the length of all links; and a direction is missed by a half
     turn, which has no sine.
+
+    Of rounded axes and places, that of the equations as declared, in all coordinates.
     """
-    length = reach(multibody.mechanism)
-    found = ca.mmax(ca.fabs(lengths(multibody, block, length) * block.residual)) / length
+    length, gaps = reach(multibody.mechanism), block.residual
+    if multibody.mechanism.rounding:
+        gaps = column(equation.loop.residual[equation.row] for equation in block.equations)
+    found = ca.mmax(ca.fabs(lengths(multibody, block, length) * gaps)) / length
     for equation in block.equations:
         if equation.aligns:
             found = ca.fmax(found, _turned(multibody, equation))

@@ -7,7 +7,8 @@ coefficient is distinguished from a coefficient. The points are the same in ever
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
@@ -17,7 +18,7 @@ import numpy.typing as npt
 from ..base.arrays import Expression
 from ..base.interpret import Arithmetic, followable, interpret, numpy_arithmetic
 from ..base.scalars import column
-from .multibody import Coordinate
+from .multibody import Coordinate, Multibody
 from .spherical import SphericalCoordinates, axes_of
 
 COUNT = 64
@@ -82,21 +83,34 @@ def _turned(quaternions: Values) -> Values:
     return np.asarray(ca.Function("axes", [symbols], [axes_of(symbols)])(quaternions).full())
 
 
-def vanish(
-    expressions: Expression, coordinates: Iterable[Coordinate], beside: Expression = 1.0
-) -> bool:
-    """Return whether expressions are zero for all values of their symbols, within rounding relative
-    to the largest of others.
+@dataclass(frozen=True, eq=False)
+class Sampling:
+    """Random values of ``coordinates`` at which expressions are looked at; what is below
+    ``rounding``, relative to others, is zero.
     """
-    expressions = ca.SX(expressions)
-    if expressions.is_zero():
-        return True
-    found = drawn(ca.vertcat(ca.vec(expressions), ca.vec(ca.SX(beside))), coordinates)
-    found = np.abs(found[:, np.isfinite(found).all(axis=0)])
-    residuals, sizes = found[: expressions.numel()], found[expressions.numel() :]
-    return bool(
-        found.shape[1] >= _FEWEST and (residuals.max(axis=0) <= _ZERO * sizes.max(axis=0)).all()
-    )
+
+    coordinates: Sequence[Coordinate]
+    rounding: float
+
+    @classmethod
+    def of(cls, multibody: Multibody) -> Sampling:
+        """The values of a mechanism's coordinates, and the rounding of its axes and places."""
+        return cls(multibody.coordinates, max(_ZERO, multibody.slack))
+
+    def vanish(self, expressions: Expression, beside: Expression = 1.0) -> bool:
+        """Return whether expressions are zero for all values of their symbols, relative to the
+        largest of others.
+        """
+        expressions = ca.SX(expressions)
+        if expressions.is_zero():
+            return True
+        found = drawn(ca.vertcat(ca.vec(expressions), ca.vec(ca.SX(beside))), self.coordinates)
+        found = np.abs(found[:, np.isfinite(found).all(axis=0)])
+        residuals, sizes = found[: expressions.numel()], found[expressions.numel() :]
+        return bool(
+            found.shape[1] >= _FEWEST
+            and (residuals.max(axis=0) <= self.rounding * sizes.max(axis=0)).all()
+        )
 
 
 _KNOWN = numpy_arithmetic()

@@ -105,6 +105,9 @@ def find_two_force_links(mechanism: Mechanism, driven: Collection[str]) -> tuple
     driven_joints = {
         joint.name for name, (joint, _) in mechanism.coordinates.items() if name in driven
     }
+    off = mechanism.rounding and mechanism.rounding * mechanism.ownership.at_defaults(
+        sum(ca.SX(link.length) for link in mechanism.links.values())
+    )
     for link in mechanism.links.values():
         joints = ends.get(link, [])
         if len(joints) != 2 or not isinstance(link.mass, Density) or link.mass.slices is not None:
@@ -117,11 +120,11 @@ def find_two_force_links(mechanism: Mechanism, driven: Collection[str]) -> tuple
         )
         if (
             not sphericals
-            or not all(_on_axis(point) for point in points)
+            or not all(_on_axis(point, off) for point in points)
             or any(body in found for body in others)
         ):
             continue
-        if all(_on_axis(point) for point in _marked(mechanism, link)) and not _twisted(
+        if all(_on_axis(point, off) for point in _marked(mechanism, link)) and not _twisted(
             mechanism, link
         ):
             values = parameter_values(mechanism.parameters, None)
@@ -238,8 +241,12 @@ def _twisted(mechanism: Mechanism, link: Link) -> bool:
     )
 
 
-def _on_axis(point: Point) -> bool:
-    return nil(point.y) and nil(point.z)
+def _on_axis(point: Point, off: float) -> bool:
+    """Return whether a point is on its link's axis, or by no more than ``off`` it [m]."""
+    return all(
+        nil(aside) or (isinstance(aside, float) and abs(aside) <= off)
+        for aside in (point.y, point.z)
+    )
 
 
 def _place(mechanism: Mechanism, joint: Joint, link: Link, values: Mapping[str, float]) -> float:

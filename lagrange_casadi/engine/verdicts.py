@@ -27,6 +27,7 @@ from ..base.status import Status
 from ..base.tables import MOMENT
 from ..base.vocabulary import Precision
 from ..model.ends import BEYOND, share_beyond, words_beyond
+from ..model.limits import APART, MISSES
 from .friction import SLIP
 from .iteration import NEWTON_LOST
 from .revolutions import LEAP, REACH
@@ -74,7 +75,7 @@ class Tolerances:
     @property
     def open(self) -> float:
         """Limit of how far a determined force may change with what equilibrium leaves open."""
-        return max(self.residual(OPEN), self.rounding)
+        return max(self.residual(OPEN), APART * self.rounding)
 
 
 @dataclass(frozen=True)
@@ -258,7 +259,7 @@ VERDICTS: Mapping[str, Verdict] = {
     ),
     # Residual of the equations of over-constrained loops, beside the links' length.
     "misfit": Verdict(
-        lambda at: at.residual(MISFIT),
+        lambda at: max(at.residual(MISFIT), MISSES * at.rounding),
         (
             Rule(
                 Status.MISFIT,

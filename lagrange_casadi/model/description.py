@@ -195,8 +195,9 @@ class Description(Brief):
     given, those of guides too (:mod:`.guiding`), and their kinds; ``drives`` those whose efforts
     make the motion. ``beside`` are the directions in ground axes that were declared for y axes of
     links. ``losses`` are transmissions with friction. ``unturned`` are the joints whose child is a
-    slender link that slides in a direction that was not declared. ``rounded`` and ``snapped`` are
-    the corrections of a rounded drawing [rad and m]. ``bars`` are two-force links in space, whose
+    slender link that slides in a direction that was not declared. ``snapped`` are the corrections
+    of a rounded drawing [rad and m]; its loops may miss within ``rounding``, and ``missed`` says by
+    how much each of them does. ``bars`` are two-force links in space, whose
     spin about their own axis is taken to be none, and ``unmeasured`` coordinates without a value.
     """
 
@@ -218,7 +219,8 @@ class Description(Brief):
     losses: tuple[str, ...] = ()
     beside: Mapping[str, Triple] = field(default_factory=dict)
     unturned: tuple[str, ...] = ()
-    rounded: Mapping[str, Pair] = field(default_factory=dict)
+    rounding: float = 0.0
+    missed: Mapping[str, float] = field(default_factory=dict)
     snapped: Mapping[str, Pair] = field(default_factory=dict)
     bars: tuple[str, ...] = ()
     unmeasured: tuple[str, ...] = ()
@@ -278,7 +280,7 @@ class Description(Brief):
             unturned=tuple(
                 name for name, joint in mechanism.joints.items() if _lies_by_default(joint)
             ),
-            rounded=dict(mechanism.rounded),
+            rounding=mechanism.rounding,
             snapped=dict(mechanism.snapped),
         )
 

@@ -26,6 +26,16 @@ END: dict[Precision, float] = {"double": 1e-12, "single": 1e-6}
 ROUNDED = 1e-6
 """Largest rounding of a drawing, of directions [rad] and places [of a link's length]."""
 
+FITS = 1e-13
+"""Largest residual of redundant equations that count as consistent, relative to the links'
+length.
+"""
+
+MISSES, APART = 10.0, 100.0
+"""By how many times the rounding of its axes and places a loop may miss; and so many times that,
+what does not follow from the rounding is at least: slopes, coefficients and singular values.
+"""
+
 _LISTED = 8
 """Parameters that a message names."""
 

@@ -86,7 +86,7 @@ class Mechanism(Graphs):
     turning: dict[str, str] = field(default_factory=dict, init=False)
     rough: dict[str, float] = field(default_factory=dict, init=False)
     snapped: dict[str, tuple[float, float]] = field(default_factory=dict, init=False)
-    rounded: dict[str, tuple[float, float]] = field(default_factory=dict, init=False)
+    rounding: float = field(default=0.0, init=False)
     outlines: dict[str, list[Outline]] = field(default_factory=dict, init=False)
     rollers: dict[str, Roller] = field(default_factory=dict, init=False)
     gravity: Vector = field(default=(0.0, -9.81, 0.0), init=False)

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from ..base.arrays import Array
 from ..base.quantities import Output
 from .description import Description, JointNumbers
-from .limits import ROUNDED
+from .limits import MISSES, ROUNDED
 
 _EDGE = 1e-9
 """Relative tolerance, of a link's length, for points outside it by rounding."""
@@ -71,8 +71,8 @@ def notes(
 
 
 def drawing_notes(description: Description) -> Iterator[str]:
-    """Corrections of rounded drawings, and their size: at ends of links and right angles, and so
-    that loops close.
+    """Corrections of rounded drawings, and their size: at ends of links and right angles; and by
+    how much loops miss.
     """
     snapped = description.snapped
     for k, what, exact, unit in (
@@ -84,12 +84,15 @@ def drawing_notes(description: Description) -> Iterator[str]:
                 f"{what} of {', '.join(moved)} are taken as {exact}, moved by up to"
                 f" {max(moved.values()):.2g} {unit}"
             )
-    if rounded := description.rounded:
-        angle, distance = (max(by[k] for by in rounded.values()) for k in (0, 1))
+    by = ", ".join(
+        f"that of '{name}' misses by {gap:.2g}" for name, gap in description.missed.items()
+    )
+    if description.rounding and not description.missed:
+        by = f"they may miss by up to {MISSES * description.rounding:.2g}"
+    if by:
         yield (
-            f"loops close only within the rounding of the numbers given, for {', '.join(rounded)}:"
-            " their axes and places are taken as parallel or coincident, moved by up to"
-            f" {angle:.2g} rad and {distance:.2g} m"
+            f"loops close only within the rounding of the numbers given: {by} of the links' length,"
+            " or rad"
         )
 
 

@@ -228,7 +228,7 @@ class Scene(Graphs):
         go through a link without a beam stay indeterminate.
     rounding
         How far axes [rad] and places [of its size] in space may be off where loops do not close as
-        declared, 0 to 1e-3.
+        declared, 0 to 1e-3. A loop may then miss by ten times that.
 
     Raises
     ------

@@ -79,7 +79,7 @@ def solve(
     elasticity, unbalanced = completed(program, evaluated, instants.t, p, indeterminate)
     within = phases(program, out, instants.t, p) if certificate else {}
     unknown = {output: np.full(instants.t.size, np.nan) for output in indeterminate}
-    description = data.at(p)
+    description = program.described(p, out)
     histories = Histories(
         case=data.name,
         t=instants.t,

@@ -333,3 +333,46 @@ def test_structured_text_has_the_same_rule(tmp_path, iterated):
     for angle, valid in ((0.9, 1), (2.0, 1), (2.9, 1), (3.3, 0), (2.95, 1), (3.1415, 1), (3.0, 1)):
         unit(in_O=angle, in_O_rate=1.0, in_O_acceleration=0.0)
         assert unit.valid == bool(valid), angle
+
+
+def spherical_four_bar(margin):
+    """Four axes that meet; its crank comes so near [rad] to a dead centre as it goes round."""
+    m, radius = SpatialMechanism("spherical"), 0.3
+    crank, coupler, rocker = 0.45, 1.0, 1.1
+    ground = crank + rocker - coupler + margin
+    pivot, foot, pin = (
+        radius * np.array([math.sin(a) * math.cos(b), math.sin(a) * math.sin(b), math.cos(a)])
+        for a, b in ((0.0, 0.0), (ground, 0.0), (crank, 2.0))
+    )
+    # The joint between coupler and rocker, by its angles from both.
+    a, b = pin / radius, foot / radius
+    along = np.linalg.solve([[1, a @ b], [a @ b, 1]], np.cos([coupler, rocker]))
+    across = np.cross(a, b)
+    joint = along[0] * a + along[1] * b
+    joint = radius * (joint + across * math.sqrt((1 - joint @ joint) / (across @ across)))
+    places = {"crank": (pivot, pin), "coupler": (pin, joint), "rocker": (foot, joint)}
+    links = [
+        m.link(name, between=tuple(map(tuple, ends)), mass=1.0) for name, ends in places.items()
+    ]
+    axes = {"O": pivot, "A": pin, "C": foot, "B": joint}
+    pairs = zip((m.ground, links[0], m.ground, links[1]), (*links, links[2]), strict=True)
+    for (name, place), pair in zip(axes.items(), pairs, strict=True):
+        m.revolute(name, *pair, at=tuple(place), axis=tuple(place))
+    return Scene(m, {"O": polynomial(0.0, math.tau)}, t=(0, 1, 721), wanted=["effort"])
+
+
+@pytest.mark.parametrize("margin", [0.05, 0.01, 0.002])
+def test_a_loop_of_more_equations_than_unknowns_that_jumps_is_refused(margin):
+    """Its volume has no sign: the screws of its joints have."""
+    scene, jumped = spherical_four_bar(margin), []
+    exact = evaluate(scene, wanted=["motion"], backend="vm").motion("C").value
+    for count in (13, 19, 31, 46, 181):
+        try:
+            found = evaluate(scene, wanted=["motion"], t=(0, 1, count), backend="vm")
+        except AssemblyError as error:
+            jumped.append("jumped to another branch" in str(error))
+        else:
+            expected = exact[:: 720 // (count - 1)]
+            np.testing.assert_allclose(found.motion("C").value, expected, atol=1e-9)
+    assert all(jumped)
+    assert 1 < len(jumped) < 5

@@ -1,6 +1,4 @@
-"""Axes with the rounding of a drawing: an over-constrained loop closes all the same, and says by
-how much its axes were moved.
-"""
+"""Axes with the rounding of a drawing: how far they may be off, and second axes."""
 
 from __future__ import annotations
 

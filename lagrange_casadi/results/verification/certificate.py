@@ -38,7 +38,7 @@ from .unplaced import place_all
 
 NEAR = 1e3
 _BLOCK = 1 << 14
-_TURNED = 100.0
+_TURNED, _MISSED = 100.0, 100.0
 
 _EDGE = 1e-9
 """Distance from a link's base, relative to its length, that counts as at the base."""
@@ -92,11 +92,13 @@ def certify(
 
 
 def tolerance(histories: Histories) -> float:
-    """Limit of residuals."""
+    """Limit of residuals: of loops that miss within the rounding of axes a multiple of how much."""
     exact = histories.provenance.precision == "double" and not any(
         word in histories.provenance.method for word in ("--newton", "--table")
     )
-    return min(COARSE, max(TOLERANCE, _TURNED * blur(histories))) if exact else COARSE
+    missed = max(histories.description.missed.values(), default=0.0)
+    limit = max(TOLERANCE, _TURNED * blur(histories), _MISSED * missed)
+    return min(COARSE, limit) if exact else COARSE
 
 
 def failure(solution: Solution) -> str:

@@ -65,7 +65,7 @@ def failures(
     table, provenance = run(program, followed, p, EvaluationMethod("vm", newton=method.newton))
     rows = table.out[:, some] if program.newton is not None else table.out
     within = phases(program, rows, t[some], p)
-    found_there, description = outputs_of(program, rows), program.data.at(p)
+    found_there, description = outputs_of(program, rows), program.described(p, rows)
     whole = Histories(program.data.name, t[some], np.zeros(0), found_there, description, provenance)
     limit = tolerance(whole) if method.newton is None else COARSE
     found = {
