@@ -87,13 +87,11 @@ class Program(Graphs):
         """The mechanism in plain numbers, for parameters ``p``; where axes are rounded, with what
         loops miss in its columns ``out`` (columns, t), by what closes them.
         """
-        found = self.data.at(p)
-        if self.data.rounding:
-            rows = self.checks("misfit").items()
-            gaps = {name: float(np.max(out[row])) for name, row in rows}
-            missed = {name: gap for name, gap in gaps.items() if gap > FITS}
-            found = replace(found, missed=missed)
-        return found
+        description = self.data.at(p)
+        if not self.data.rounding:
+            return description
+        gaps = {name: float(np.max(out[row])) for name, row in self.checks("misfit").items()}
+        return replace(description, missed={name: gap for name, gap in gaps.items() if gap > FITS})
 
     def checks(self, kind: str) -> Mapping[str, int]:
         """The parts that have a check of a kind, and its row of ``out``."""

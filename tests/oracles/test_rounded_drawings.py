@@ -137,7 +137,7 @@ def hung(noise):
 @pytest.mark.parametrize("noise", [1e-11, 1e-7])
 def test_a_bar_of_hard_points_may_be_loaded(noise):
     found = vm(hung(noise))
-    assert found.description.bars == ["bar"]
+    assert found.description.bars == ("bar",)
     assert_near(found, vm(hung(0.0)), noise)
 
 
