@@ -55,7 +55,7 @@ def product(a: Array, b: Array) -> Array:
     found = np.zeros((n + m + 1, *np.broadcast_shapes(a.shape[1:], b.shape[1:])))
     for i in range(n + 1):
         for j in range(m + 1):
-            found[i + j] += (comb(n, i) * comb(m, j) / comb(n + m, i + j)) * (a[i] * b[j])
+            found[i + j] += (comb(n, i) * comb(m, j) / comb(n + m, i + j) * a[i]) * b[j]
     return found
 
 
@@ -70,6 +70,16 @@ def of_powers(coefficients: Sequence[Operand], line: Array) -> Array:
     for coefficient in reversed(coefficients[:-1]):
         found = product(found, line) + coefficient
     return found
+
+
+def halves(c: Array) -> tuple[Array, Array]:
+    """Ordinates of polynomials on both halves of 0 to 1 (de Casteljau)."""
+    first, last = [c[0]], [c[-1]]
+    while len(c) > 1:
+        c = (c[:-1] + c[1:]) / 2.0
+        first.append(c[0])
+        last.append(c[-1])
+    return np.stack(first), np.stack(last[::-1])
 
 
 def within(c: Array, start: Array, stop: Array) -> Array:

@@ -78,6 +78,10 @@ class Template(Graphs, Generic[Tree]):
         numbers = self.numbers(np.asarray(p, float)).full().ravel().tolist()
         return _filled(self.content, numbers)
 
+    def each(self, content: Part, p: Array) -> Part:
+        """Return a part of the content with numbers (n,) for parameters ``p`` (n, parameters)."""
+        return _filled(content, self.numbers(p.T).full())
+
     def placed(self, content: Part, p: Expression) -> Part:
         """Return a part of the content with expressions of parameters ``p``, and with numbers for
         constant ones.
@@ -86,7 +90,7 @@ class Template(Graphs, Generic[Tree]):
         return _filled(content, numbers)
 
 
-def _filled(tree: Part, numbers: Sequence[Expression]) -> Part:
+def _filled(tree: Part, numbers: Sequence[Expression] | Array) -> Part:
     return cast(Part, mapped(tree, lambda leaf: numbers[leaf] if type(leaf) is Leaf else leaf))
 
 

@@ -30,7 +30,6 @@ from ..model.stated import Entry, Equation, LoadLaw, Stated, Touch
 from ..model.times import Timing
 from ..model.validity import Margins
 from .dead_centres import closing_of
-from .fibre_stresses import LinkStress
 from .iteration import NewtonLoop
 from .least_energy import Completion
 from .model_data import ModelData
@@ -219,16 +218,6 @@ class Program(Graphs):
             given = {"law": law, "acting": acting, "p": p, "xi": xi}
             found[link] = graph("section", given, forces=function(law, acting, numbers, xi))
         return found
-
-    @symbolic_property
-    def stress(self) -> Mapping[str, LinkStress]:
-        """By the name of each of :attr:`links` that has a beam, its stresses."""
-        p = self.data.symbols
-        return {
-            link: LinkStress.of(self.outputs, self.data.link(link, p), p)
-            for link in self.links
-            if link in self.data.content.materials
-        }
 
     @cached_property
     def indeterminate(self) -> dict[Output, int]:

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from typing import Any
@@ -23,7 +23,7 @@ import numpy as np
 from ..base.arrays import Expression, Operand
 from ..base.quantities import Column, Output
 from ..base.tables import table_of
-from ..model.beams.properties import Properties, larger, smaller
+from ..model.beams.properties import Properties
 from ..model.density import Density
 from ..model.limits import END
 from ..model.mechanism import Mechanism
@@ -206,22 +206,15 @@ def _largest(link: Loaded, value: Callable[[Part, Expression], Expression]) -> c
     return most(found)
 
 
-def places_along(degree: int, finer: int = 1) -> list[float]:
-    """Return places from 0 to 1 at which a function of a degree is looked at, both ends among them;
-    so many times ``finer``.
-    """
-    count = finer * (max(_SAMPLES, degree + 4) - 1)
-    return [(1.0 - math.cos(math.pi * k / count)) / 2 for k in range(count + 1)]
-
-
-def sampled(value: Callable[[Operand], Operand], degree: int) -> list[Operand]:
+def sampled(value: Callable[[Expression], Expression], degree: int) -> list[ca.SX]:
     """The values of a function of a degree at both ends of a part, between them, and beside its
     summits.
     """
-    places = places_along(degree)
+    count = max(_SAMPLES, degree + 4) - 1
+    places = [(1.0 - math.cos(math.pi * k / count)) / 2 for k in range(count + 1)]
     found = [ca.SX(value(x)) for x in places]
     best: list[tuple[Any, Any]] = []
-    for k in range(1, len(places) - 1):
+    for k in range(1, count):
         before, here, after = found[k - 1 : k + 2]
         bend = 2.0 * here - before - after
         gain = (after - before) ** 2 / (8.0 * ca.if_else(bend > 0.0, bend, 1.0))
@@ -229,32 +222,26 @@ def sampled(value: Callable[[Operand], Operand], degree: int) -> list[Operand]:
         # Beside what is higher there is more than a summit that is lower than both.
         best = _ranked(best, ca.if_else(maximum, here + gain, ca.fmin(before, after)), places[k])
     for _, place in best:
-        found += followed(lambda x: ca.SX(value(x)), place, 1.0 / (2 * (len(places) - 1)))
+        found += _followed(value, place, 1.0 / (2 * count))
     return found
 
 
-def followed(value: Callable[[Operand], Operand], place: Operand, reach: float) -> list[Operand]:
+def _followed(
+    value: Callable[[Expression], Expression], place: Expression, reach: float
+) -> Iterator[ca.SX]:
     """The values of a function from 0 to 1 ever nearer to its summit, from a place and others at a
-    ``reach`` on, by parabolas: expressions or arrays.
+    ``reach`` on, by parabolas.
     """
-    found = []
     for _ in range(2):
-        place = smaller(larger(place, reach), 1.0 - reach)
-        before, here, after = (value(x) for x in (place - reach, place, place + reach))
-        found.append(here)
+        place = ca.fmin(ca.fmax(place, reach), 1.0 - reach)
+        before, here, after = (ca.SX(value(x)) for x in (place - reach, place, place + reach))
+        yield here
         bend = 2.0 * here - before - after
-        away = (after - before) / (2.0 * _where(bend > 0.0, bend, 1.0))
-        place = place + reach * _where(bend > 0.0, smaller(larger(away, -2.0), 2.0), 0.0)
+        away = (after - before) / (2.0 * ca.if_else(bend > 0.0, bend, 1.0))
+        away = ca.if_else(bend > 0.0, ca.fmin(ca.fmax(away, -2.0), 2.0), 0.0)
+        place = place + reach * away
         reach /= _NEARER
-    found.append(value(smaller(larger(place, 0.0), 1.0)))
-    return found
-
-
-def _where(truth: Operand, one: Operand, other: Operand) -> Operand:
-    """Choose between expressions, or arrays."""
-    if isinstance(truth, ca.SX):
-        return ca.if_else(truth, one, other)
-    return np.where(truth, one, other)
+    yield ca.SX(value(ca.fmin(ca.fmax(place, 0.0), 1.0)))
 
 
 def _ranked(

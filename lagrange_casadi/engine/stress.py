@@ -135,17 +135,16 @@ class CrossSections:
         return normal, along_y, along_z
 
     def factors(self, cell: int, u: Array) -> Array:
-        """Factors of stresses by section forces between two breaks, at ratios ``u``: (3, fibres,
-        forces, u...).
+        """Factors of stresses by section forces between two breaks, at ratios ``u`` of any shape,
+        or (u, 1) of n designs whose dimensions are (n,): (3, fibres, forces, u...).
         """
         known, many = self.fibres(cell), len(self.forces)
-        dimensions = [
-            np.broadcast_to(x, np.shape(u)).ravel() for x in self.shape(cell, u).dimensions.values()
-        ]
-        found = known.factors(np.array(dimensions)).full()
-        found = found.reshape(3, len(known.names), np.size(u), many)
+        _, *dimensions = np.broadcast_arrays(u, *self.shape(cell, u).dimensions.values())
+        shape = dimensions[0].shape
+        found = known.factors(np.array([x.ravel() for x in dimensions])).full()
+        found = found.reshape(3, len(known.names), -1, many)
         found = np.ascontiguousarray(np.moveaxis(found, 2, 3))
-        return found.reshape(3, len(known.names), many, *np.shape(u))
+        return found.reshape(3, len(known.names), many, *shape)
 
     @cached_property
     def thinnest(self) -> Thinnest:

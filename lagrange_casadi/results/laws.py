@@ -54,7 +54,7 @@ class SectionLaw(Brief):
         """Table of the forces, and of the terms of each."""
         return PLANE if PLANE.law[-1] in self.coefficients else SPACE
 
-    @property
+    @cached_property
     def functions(self) -> Basis:
         """The functions along the link of which its forces are combined; loads along the link are
         where they are at the first instant.
@@ -284,21 +284,22 @@ class SectionLaw(Brief):
     def pieces(self, force: str) -> Pieces:
         """A force as polynomials along the link."""
         components = [self._component(part, self, self._steps(part)) for part in self._parts(force)]
-        return Pieces(self.functions.breaks[0], components, self.slack)
+        return Pieces(self.functions.along(self.functions.breaks[None])[0], components, self.slack)
 
     def _component(self, force: str, numbers: SectionLaw, steps: Sequence[grids.Load]) -> Component:
         """A force that is no resultant, by the numbers of a law of this link."""
         first, *others = numbers._terms(force)
-        basis, cells = self.functions, (self.functions.breaks.shape[1] - 1, first.column.size)
+        basis = self.functions
+        cells = basis.breaks.shape[1] - 1, *first.column.shape
         if not others:
             return Component(first.column, np.zeros((1, *cells)), np.zeros((1, *cells)), steps)
         degree = len(basis.moment if first.moment else basis.force) - 1
         ordinates, slope = np.zeros((degree + 1, *cells)), np.zeros((degree, *cells))
         for term in others:
             rows = basis.moment if term.moment else basis.force
-            ordinates += raised(rows[:, term.row, 0], degree)[..., None] * term.column
-            rates = basis.slopes[term.moment][:, term.row - 1, 0]
-            slope += raised(rates, degree - 1)[..., None] * term.column
+            ordinates += raised(basis.along(rows[:, term.row]), degree) * term.column
+            rates = basis.slopes[term.moment][:, term.row - 1]
+            slope += raised(basis.along(rates), degree - 1) * term.column
         return Component(first.column, ordinates, slope, steps)
 
     def _parts(self, force: str) -> tuple[str, ...]:

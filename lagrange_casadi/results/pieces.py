@@ -16,6 +16,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -100,6 +101,13 @@ class Basis:
         bending = l * wide * force
         return cls(breaks, force, _integrals(bending), (rates, bending), np.ndim(length) == 0)
 
+    def along(self, ordinates: Array) -> Array:
+        """Ordinates (degree + 1, n, cells) with cells before designs, and an axis for instants;
+        of one link without designs.
+        """
+        found = np.swapaxes(ordinates, 1, 2)
+        return (found[..., 0] if self.single else found)[..., None]
+
     def at(self, u: Array) -> Rows:
         """The functions at ratios of any shape, or of several designs (k,)."""
         if self.single and u.ndim == 1 and u.size <= _FEW:
@@ -157,9 +165,10 @@ class Component:
 @dataclass(frozen=True, eq=False)
 class Pieces:
     """A section force of a link at t instants, or the size of several: their ``components``, in
-    cells between ``breaks`` (cells + 1,).
+    cells between ``breaks`` (cells + 1, 1).
 
-    ``slack`` is that of :func:`.edge`.
+    Of n designs all arrays have an axis for these before that of the instants. ``slack`` is that of
+    :func:`.edge`.
     """
 
     breaks: Array
@@ -187,44 +196,56 @@ class Pieces:
 
     def _cells(self, ratios: Array, side: Side) -> tuple[npt.NDArray[np.intp], Array, Array]:
         """The cells in which ratios are; their ends towards the tip, and widths."""
-        inner = self.breaks[1:-1]
-        cell = np.searchsorted(inner, ratios, side="right" if side == "tip" else "left")
-        return cell, self.breaks[cell + 1], np.diff(self.breaks)[cell]
+        cell = np.zeros(ratios.shape, np.intp)
+        for place in self.breaks[1:-1]:
+            cell += place <= ratios if side == "tip" else place < ratios
+        breaks = self.breaks.reshape(len(self.breaks), -1)
+        design = np.arange(breaks.shape[1])[:, None]
+        base, tip = breaks[cell, design], breaks[cell + 1, design]
+        return cell, tip, tip - base
 
     def _chosen(self, ordinates: Array, cell: npt.NDArray[np.intp]) -> Array:
         """Ordinates (degree + 1, k, t) in a cell (k, t) at every instant."""
-        if self.breaks.size == 2:
+        if len(self.breaks) == 2:
             return ordinates
-        return ordinates[:, cell, np.arange(cell.shape[1])]
+        rest = np.ogrid[tuple(slice(size) for size in ordinates.shape[2:])]
+        places: tuple[Any, ...] = (slice(None), cell, *rest)
+        return np.asarray(ordinates[places])
 
-    def parts(self) -> tuple[Array, list[Array], list[Array]]:
-        """Ends (parts + 1, t) of the parts between breaks and load points, of each component
-        ordinates (degree + 1, parts, t), and those of its derivative by x.
-
-        Ends are (parts + 1, 1) if there is no load point.
+    @property
+    def ends(self) -> Array:
+        """Ends (parts + 1, t) of the parts between breaks and load points; (parts + 1, 1) if there
+        is no load point.
         """
-        ends, steps = self.breaks[:, None], self.components[0].steps
-        if steps:
-            marks = np.clip([place for place, *_ in steps], 0.0, 1.0)
-            ends = np.sort(np.concatenate([ends + 0.0 * marks[0], marks]), axis=0)
-        low, high = ends[:-1], ends[1:]
-        cell, tip, wide = self._cells((low + high) / 2.0, "tip")
+        steps = self.components[0].steps
+        if not steps:
+            return self.breaks
+        marks = np.clip([place for place, *_ in steps], 0.0, 1.0)
+        return np.sort(np.concatenate([self.breaks + 0.0 * marks[0], marks]), axis=0)
+
+    def parts(
+        self, low: Array, high: Array, side: Side = "tip", *, slope: bool = False
+    ) -> list[Array]:
+        """Ordinates (degree + 1, parts, t) of each component, or of its derivative by x, in parts
+        from ``low`` to ``high`` (parts, t), none of which has a break or a load point inside.
+
+        A part without width is a place, of which a ``side`` is meant.
+        """
+        cell, tip, wide = self._cells((low + high) / 2.0, side)
         start, stop = (np.clip((tip - end) / wide, 0.0, 1.0) for end in (high, low))
-        beyond, found, slopes = edge(low, self.slack), list[Array](), list[Array]()
+        whole, beyond = not start.any() and np.all(stop == 1.0), edge(low, self.slack, side)
+        found = []
         for one in self.components:
-            c, slope = one.ordinates, one.slope
-            if steps:
-                c, slope = (within(self._chosen(x, cell), start, stop) for x in (c, slope))
-                slope *= stop - start
-            c, line = c + one.tip, np.linspace(0.0, 1.0, len(c))[:, None, None]
+            c = self._chosen(one.slope if slope else one.ordinates, cell)
+            c = c if whole else within(c, start, stop)
+            c = c * (stop - start) if slope else c + one.tip
+            line = np.linspace(0.0, 1.0, len(c)).reshape(-1, *(1,) * low.ndim)
             for station, constant, by in one.steps:
-                there = beyond < station
-                rise = np.where(there, by * (high - low), 0.0)
-                c += np.where(there, constant + by * (station - high), 0.0) + line * rise
-                slope += rise
+                rise = by * (high - low)
+                step = rise if slope else constant + by * (station - high) + line * rise
+                c += np.where(beyond < station, step, 0.0)
             found.append(c)
-            slopes.append(slope)
-        return ends, found, slopes
+        return found
 
     def extreme(self) -> tuple[Array, Array]:
         """The ratio at which the force is largest in size, and its value, each (t,)."""
@@ -274,12 +295,13 @@ class Pieces:
         ordinates of the slope, of a resultant of half that of its square; and those of the
         components.
         """
-        ends, parts, slopes = self.parts()
+        low, high = self.ends[:-1], self.ends[1:]
+        parts, slopes = self.parts(low, high), self.parts(low, high, slope=True)
         slope = slopes[0] if len(parts) == 1 else np.asarray(sum(map(product, parts, slopes)))
         found = zeros(slope)
         u = np.empty((2 + len(found.places), *slope.shape[1:]))
-        u[0], u[1] = ends[:-1], ends[1:]
-        u[2:] = u[1] - (u[1] - u[0]) * found.places
+        u[0], u[1] = low, high
+        u[2:] = high - (high - low) * found.places
         values = (np.concatenate([c[-1:], c[:1], value(c, found.places)]) for c in parts)
         return u, size_of(values), found.turns, slope, parts
 

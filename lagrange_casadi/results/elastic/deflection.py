@@ -16,11 +16,10 @@ from functools import cached_property
 from typing import Literal
 
 import numpy as np
-from numpy.polynomial import chebyshev
 
 from ...base.arguments import Numeric, public
 from ...base.arrays import Array
-from ...base.bernstein import interpolation, product, zeros
+from ...base.bernstein import interpolation, product, raised, value, zeros
 from ...errors import DeclarationError, UnknownNameError
 from ...model.end_conditions import ends_of
 from ..sizes import largest
@@ -35,6 +34,13 @@ MOVES = {
     True: ("along", "across_y", "across_z", "twist", "turn_y", "turn_z"),
 }
 """Displacements at a place of a link, in the plane and in space."""
+
+_SLOPES = {
+    "across": ("turn", 1.0, "shear"),
+    "across_y": ("turn_z", 1.0, "shear_y"),
+    "across_z": ("turn_y", -1.0, "shear_z"),
+}
+"""Slopes of transverse deflections: the turn, its sign, and the section force of shear strain."""
 
 
 @dataclass(frozen=True)
@@ -91,19 +97,7 @@ class Deflection:
                 "deflection: expected ratios xi/l from 0 to 1, a row for each of"
                 f" {self.member.t.size} instants"
             )
-        found = self._at(name, u)
-        if self.against == "base" or name in ("along", "twist"):
-            return found
-        length, ends = self.member.law.length, (-1,) + (1,) * (u.ndim - 1)
-        beside = {
-            "turn": ("across", 1.0),
-            "turn_z": ("across_y", 1.0),
-            "turn_y": ("across_z", -1.0),
-        }
-        if name in beside:
-            across, sign = beside[name]
-            return np.asarray(found - sign * (self._tips[across] / length).reshape(ends))
-        return np.asarray(found - u * self._tips[name].reshape(ends))
+        return self._valued(self._curves[name], u)
 
     def grid(self, name: str, xi: Array | None = None) -> Array:
         """Displacement (t, xi) over ratios, by default those of the solution."""
@@ -136,16 +130,15 @@ class Deflection:
         """The deflection across the link that is largest in size at every instant, and its ratio
         xi/l, both (t,).
         """
-        names = ("across_y", "across_z") if self.member.space else ("across",)
-        edges, many = self.member.edges, self.member.strain_degree + 2
+        edges, curves = self.member.edges, self._curves
         low, high = edges[:, :-1], edges[:, 1:]
-        nodes, weights = interpolation(many)
-        u = low[..., None] + (high - low)[..., None] * nodes
-        slopes = [np.tensordot(weights, self._rising(name, u), (1, 2)) for name in names]
+        across = [name for name in self.names if name in _SLOPES]
+        slopes = []
+        for turn, sign, shear in map(_SLOPES.__getitem__, across):
+            slopes.append(sign * curves[turn] + raised(self._strains[shear], len(curves[turn]) - 1))
         slope = slopes[0]
         if self.member.space:
-            across = [np.tensordot(weights, self.at(name, u), (1, 2)) for name in names]
-            slope = np.asarray(sum(map(product, across, slopes)))
+            slope = np.asarray(sum(map(product, map(curves.__getitem__, across), slopes)))
         inner = low + (high - low) * zeros(slope).places
         places = np.concatenate([edges, np.concatenate([*inner], axis=1)], axis=1)
         values = self.size(places)
@@ -162,73 +155,58 @@ class Deflection:
 
     @cached_property
     def _strains(self) -> dict[str, Array]:
-        """Polynomials of strains between two edges, coefficients (t, parts, n) of Chebyshev's: by
-        the names of section forces.
-        """
+        """Ordinates (n + 1, t, parts) of the strains between two edges, by section forces."""
         member = self.member
-        x = chebyshev.chebpts1(member.strain_degree + 1)
-        weights = np.linalg.inv(chebyshev.chebvander(x, member.strain_degree)).T
+        nodes, weights = interpolation(member.strain_degree)
         low, width = member.edges[:, :-1, None], np.diff(member.edges, axis=1)[:, :, None]
-        u = (low + width * (x + 1.0) / 2.0).reshape(member.t.size, -1)
-        strains = self.compliance.strains(member.at(u), member.index_at(u), u).reshape(
-            len(member.forces), *width.shape[:2], -1
-        )
-        return dict(zip(member.forces, strains @ weights, strict=True))
+        u = (low + width * nodes).reshape(member.t.size, -1)
+        strains = self.compliance.strains(member.at(u), member.index_at(u), u)
+        strains = strains.reshape(len(member.forces), *width.shape[:2], -1)
+        ordinates = np.tensordot(weights, strains, (1, 3))
+        return {name: ordinates[:, k] for k, name in enumerate(member.forces)}
 
     @cached_property
     def _curves(self) -> dict[str, Array]:
-        """Polynomials of all components, from the base."""
-        e, turned = self._strains, {}
-        found = {"along": self._sum(e["axial"])}
-        if not self.member.space:
-            found["turn"] = self._sum(e["bending"])
-            return found | {"across": self._sum(_plus(found["turn"], e["shear"]))}
-        turned["turn_y"], turned["turn_z"] = self._sum(e["bending_y"]), self._sum(e["bending_z"])
-        found |= {"twist": self._sum(e["torsion"]), **turned}
-        found["across_y"] = self._sum(_plus(turned["turn_z"], e["shear_y"]))
-        found["across_z"] = self._sum(_plus(-turned["turn_y"], e["shear_z"]))
+        """Ordinates (n + 1, t, parts) of all displacements between two edges."""
+        strains, edges, length = self._strains, self.member.edges, self.member.law.length
+        turns = ("bending_y", "bending_z") if self.member.space else ("bending",)
+        found = {"along": self._sum(strains["axial"])}
+        if self.member.space:
+            found["twist"] = self._sum(strains["torsion"])
+        for bending in turns:
+            found[bending.replace("bending", "turn")] = self._sum(strains[bending])
+        for across, (turn, sign, shear) in _SLOPES.items():
+            if turn in found:
+                slope = sign * found[turn]
+                found[across] = self._sum(slope + raised(strains[shear], len(slope) - 1))
+        if self.against == "base":
+            return found
+        for across, (turn, sign, _) in _SLOPES.items():
+            if across in found:
+                tip = found[across][-1, :, -1:]
+                share = np.linspace(0.0, 1.0, len(found[across]))[:, None, None]
+                found[turn] = found[turn] - sign * tip / length
+                found[across] = found[across] - tip * (
+                    edges[:, :-1] + share * np.diff(edges, axis=1)
+                )
         return found
 
-    def _sum(self, coefficients: Array) -> Array:
-        """The integral from the base of polynomials between two edges."""
-        half = self.member.law.length * np.diff(self.member.edges, axis=1)[:, :, None] / 2.0
-        found: Array = np.asarray(chebyshev.chebint(coefficients, lbnd=-1, axis=-1), float) * half
-        ends = np.cumsum(found.sum(axis=-1), axis=1)
-        found[:, 1:, 0] += ends[:, :-1]
+    def _sum(self, ordinates: Array) -> Array:
+        """Integrate polynomials between two edges from the base."""
+        parts = self.member.law.length * np.diff(self.member.edges, axis=1) / len(ordinates)
+        found = np.zeros((len(ordinates) + 1, *parts.shape))
+        np.cumsum(ordinates * parts, axis=0, out=found[1:])
+        found[:, :, 1:] += np.cumsum(found[-1], axis=1)[:, :-1]
         return found
 
-    def _at(self, name: str, u: Array) -> Array:
-        return self._valued(self._curves[name], u)
-
-    def _rising(self, name: str, u: Array) -> Array:
-        """Slope of a transverse deflection along the link."""
-        turn, sign, shear = {
-            "across": ("turn", 1.0, "shear"),
-            "across_y": ("turn_z", 1.0, "shear_y"),
-            "across_z": ("turn_y", -1.0, "shear_z"),
-        }[name]
-        return np.asarray(sign * self.at(turn, u) + self._valued(self._strains[shear], u))
-
-    def _valued(self, coefficients: Array, u: Array) -> Array:
-        """Polynomials between two edges at ratios (t, ...)."""
+    def _valued(self, ordinates: Array, u: Array) -> Array:
+        """Values of polynomials between two edges at ratios (t, ...)."""
         places, edges = u.reshape(len(u), -1), self.member.edges
         index = np.sum(places[:, :, None] >= edges[:, None, 1:-1], axis=2)
-        low = np.take_along_axis(edges, index, 1)
-        width = np.take_along_axis(edges, index + 1, 1) - low
-        x = (
-            np.divide(2.0 * (places - low), width, out=np.zeros_like(places), where=width > 0.0)
-            - 1.0
-        )
-        chosen = np.take_along_axis(coefficients, index[:, :, None], 1)
-        found: Array = np.asarray(
-            chebyshev.chebval(x, np.moveaxis(chosen, -1, 0), tensor=False), float
-        )
-        return found.reshape(u.shape)
-
-    @cached_property
-    def _tips(self) -> dict[str, Array]:
-        one = np.ones((self.member.t.size, 1))
-        return {name: self._at(name, one)[:, 0] for name in self.names}
+        low, high = (np.take_along_axis(edges, index + k, 1) for k in (0, 1))
+        x = np.divide(places - low, high - low, out=np.zeros_like(places), where=high > low)
+        chosen = np.take_along_axis(ordinates, index[None], 2)
+        return np.asarray(value(chosen, x[None])[0].reshape(u.shape))
 
 
 def deflection(solution: Solution, link: str, against: Against | None = None) -> Deflection:
@@ -265,9 +243,3 @@ def deflection(solution: Solution, link: str, against: Against | None = None) ->
     return Deflection(
         compliance, against or ("base" if "free" in ends_of(solution.description, link) else "ends")
     )
-
-
-def _plus(longer: Array, shorter: Array) -> Array:
-    found: Array = longer.copy()
-    found[..., : shorter.shape[-1]] += shorter
-    return found

@@ -22,7 +22,7 @@ from ...base.arguments import NotNegative, public
 from ...base.arrays import Array
 from ...errors import DeclarationError, shown
 from ...model.beams.material import Material
-from .fatigue import ROUNDED, Histories, Score
+from .fatigue import ROUNDED, Score
 
 FINDLEY = "findley"
 """The criterion's name."""
@@ -142,17 +142,15 @@ def plane_score(share: float = DUCTILE) -> Score:
     No plane is above a bound from the largest shear and principal stresses.
     """
 
-    def bound(histories: Histories) -> Array:
-        normal, shears = histories.normal, histories.shears
-        wide, shear = np.ptp(normal, axis=2) ** 2, np.zeros_like(normal)
-        wide[:, histories.sheared] += 4.0 * np.sum(np.ptp(shears, axis=3) ** 2, axis=1)
-        shear[:, histories.sheared] = np.sum(shears**2, axis=1)
-        principal = normal / 2 + np.sqrt((normal / 2) ** 2 + shear)
-        most = np.sqrt(wide) / 4 + share * np.maximum(principal.max(axis=2), 0.0)
-        return np.asarray(most * ROUNDED)[..., None]
+    def bound(stresses: Array) -> Array:
+        normal, shears = stresses[0], stresses[1:]
+        wide = np.ptp(normal, axis=-1) ** 2 + 4.0 * np.sum(np.ptp(shears, axis=-1) ** 2, axis=0)
+        principal = normal / 2 + np.sqrt((normal / 2) ** 2 + np.sum(shears**2, axis=0))
+        most = np.sqrt(wide) / 4 + share * np.maximum(principal.max(axis=-1), 0.0)
+        return np.asarray(most * ROUNDED)
 
-    def of(values: Array) -> tuple[float]:
-        return (critical_plane(values, share).value(share),)
+    def of(values: Array) -> float:
+        return critical_plane(values, share).value(share)
 
     return Score(of, bound, lambda amplitude, mean: amplitude + share * mean)
 

@@ -17,7 +17,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from ...base.arguments import Numeric, public
 from ...base.arrays import Array, Operand
@@ -28,6 +27,9 @@ from .rainflow import counted
 
 _LEAST = 1e3
 """Cycles from which on S-N lines hold."""
+
+_NOTHING = 1e-300
+"""Amplitude [Pa] in the place of none."""
 
 ROUNDED = 1.0 + 1e-12
 """Factor of rounding by which a value may exceed a bound."""
@@ -250,15 +252,14 @@ _VON_MISES = np.array([[1.0], [math.sqrt(3.0)], [math.sqrt(3.0)]])
 
 
 def cycle_squares(first: Operand, last: Operand) -> tuple[Operand, Operand]:
-    """The squares of amplitude and mean of a swing from some stresses, normal and shear along y and
-    z, to others.
+    """The squares of amplitude and mean of a swing from some stresses, normal and shear, to others.
 
     They are numbers, arrays or expressions.
     """
-    far = [b - a for a, b in zip(first, last, strict=True)]
+    far, *across = (b - a for a, b in zip(first, last, strict=True))
     normal, *shears = ((a + b) / 2 for a, b in zip(first, last, strict=True))
-    amplitude = (far[0] ** 2 + 3.0 * (far[1] ** 2 + far[2] ** 2)) / 4
-    return amplitude, larger(normal, 0.0) ** 2 + 3.0 * (shears[0] ** 2 + shears[1] ** 2)
+    amplitude = (far**2 + 3.0 * sum(shear**2 for shear in across)) / 4
+    return amplitude, larger(normal, 0.0) ** 2 + 3.0 * sum(shear**2 for shear in shears)
 
 
 def _farthest(points: Array) -> tuple[int, int]:
@@ -302,139 +303,97 @@ _DIRECTIONS = _directions()
 
 
 @dataclass(frozen=True, eq=False)
-class Histories:
-    """Stresses over time of n designs: ``normal`` (n, places, t), and of places that are
-    ``sheared`` the ``shears``.
-
-    These are (n, axes, sheared, t), along one of ``axes`` after the other (0 is y, 1 is z), for in
-    a plane there are none along z.
-    """
-
-    normal: Array
-    shears: Array
-    sheared: npt.NDArray[np.intp]
-    axes: tuple[int, ...]
-
-    @classmethod
-    def of(cls, values: Array, sheared: npt.NDArray[np.intp], axes: tuple[int, ...]) -> Histories:
-        """Make them of stresses (n, stresses, t), those of one direction after another."""
-        n, count, t = values.shape
-        many = count - len(axes) * sheared.size
-        shears = values[:, many:].reshape(n, len(axes), sheared.size, t)
-        return cls(values[:, :many], shears, sheared, axes)
-
-    def at(self, design: int, place: int) -> Array:
-        """The stresses of a design at a place: (3, t)."""
-        found = np.zeros((3, self.normal.shape[2]))
-        found[0] = self.normal[design, place]
-        for column in np.flatnonzero(self.sheared == place):
-            found[[1 + axis for axis in self.axes]] = self.shears[design, :, column]
-        return found
-
-    def widest(self) -> tuple[Array, Array]:
-        """Amplitudes and means [Pa] that no swing is beyond, each (n, places)."""
-        high, low = self.normal.max(axis=2), self.normal.min(axis=2)
-        amplitude, mean = (high - low) ** 2, np.maximum(high, 0.0) ** 2
-        square, size = self._sheared()
-        amplitude[:, self.sheared] += square
-        mean[:, self.sheared] += size
-        return np.sqrt(amplitude) / 2, np.sqrt(mean)
-
-    def bounds(self, material: Material) -> Array:
-        """Bounds on utilisation by Goodman's rule, (n, places).
-
-        Of a history of normal stress alone the swing from its smallest to its largest value is the
-        worst, and the bound its utilisation.
-        """
-        endurance, strength = strengths(material, "goodman")
-        high, low = self.normal.max(axis=2), self.normal.min(axis=2)
-        bound = (high - low) / (2 * endurance) + np.maximum((high + low) / 2, 0.0) / strength
-        if self.sheared.size:
-            sheared = self.sheared
-            square, size = self._sheared()
-            high, low = high[:, sheared], low[:, sheared]
-            stress_cycle, middle = (high - low) ** 2, np.maximum((high + low) / 2, 0.0)
-            whole = (
-                np.sqrt(stress_cycle + square) / (2 * endurance)
-                + np.sqrt(middle**2 + size) / strength
-            )
-            # A smaller swing has a larger mean. Where shear is most of it, or means count for much,
-            # no more is known than this.
-            wide = 2.0 * square if strength >= math.sqrt(2.0) * endurance else stress_cycle + square
-            other = (
-                np.sqrt(wide) / (2 * endurance)
-                + np.sqrt(np.maximum(high, 0.0) ** 2 + size) / strength
-            )
-            bound[:, sheared] = np.maximum(whole, other) * ROUNDED
-        return np.asarray(bound)
-
-    def _sheared(self) -> tuple[Array, Array]:
-        """Three times the squares of the ranges of shear stress, and of its sizes, at places with
-        shear, each (n, sheared).
-        """
-        return 3.0 * np.sum(np.ptp(self.shears, axis=3) ** 2, axis=1), 3.0 * np.max(
-            np.sum(self.shears**2, axis=1), axis=2
-        )
-
-
-@dataclass(frozen=True, eq=False)
 class Score:
-    """Measure that is largest where a link is worst, ``of`` stresses (3, t) at a fibre; between
-    equals the next of its numbers decides.
+    """Measure that is largest where a link is worst, ``of`` stresses (3, t) at a place.
 
-    ``bound`` has for every place of designs numbers that it is not above, (n, places, numbers).
-    Where it is ``exact`` it is the score of fibres that have normal stress alone. ``swing`` says
-    how bad a swing is by its amplitude and its mean.
+    ``bound`` of stresses (k, ..., t), of which the first are normal stresses and all others shear
+    stresses, is convex in them, and no score is above it. If it is ``exact`` it is the score of
+    normal stress alone. ``swing`` says how bad a swing is by its amplitude and its mean.
     """
 
-    of: Callable[[Array], tuple[float, ...]]
-    bound: Callable[[Histories], Array]
+    of: Callable[[Array], float]
+    bound: Callable[[Array], Array]
     swing: Callable[[Array, Array], Operand]
     exact: bool = False
 
+    def of_swing(self, stresses: Array) -> Array:
+        """Rate swings (...) between two stresses, (k, ..., 2)."""
+        amplitude, mean = cycle_squares(stresses[..., 0], stresses[..., 1])
+        return np.asarray(self.swing(np.sqrt(amplitude), np.sqrt(mean)))
+
 
 def use_score(material: Material, criterion: str = "goodman") -> Score:
-    """The utilisation against fatigue. Raises what :func:`strengths` does."""
-    strengths(material, criterion)
-    goodman = criterion == "goodman"
+    """The utilisation against fatigue. Raises what :func:`strengths` does.
 
-    def of(values: Array) -> tuple[float]:
-        found = loaded(values)
-        return (float(np.max(used(found.amplitude, found.mean, material, criterion))),)
-
-    def bound(histories: Histories) -> Array:
-        if goodman:
-            return histories.bounds(material)[..., None]
-        most = used(*histories.widest(), material, criterion)
-        return np.asarray(most * ROUNDED)[..., None]
+    Of a history of normal stress alone the swing from its smallest to its largest value is the
+    worst, as long as means count for less than amplitudes.
+    """
+    endurance, strength = strengths(material, criterion)
+    linear = not criterion_of(criterion).square
+    exact = strength >= (1.0 if linear else 2.0) * endurance
 
     def swing(amplitude: Array, mean: Array) -> Operand:
         return used(amplitude, mean, material, criterion)
 
-    return Score(of, bound, swing, exact=goodman)
+    def of(values: Array) -> float:
+        found = loaded(values)
+        return float(np.max(swing(found.amplitude, found.mean)))
+
+    def bound(stresses: Array) -> Array:
+        low, high = stresses[0].min(axis=-1), stresses[0].max(axis=-1)
+        if exact and len(stresses) == 1:
+            return np.asarray(swing((high - low) / 2, (high + low) / 2))
+        ranges, sizes = _sheared(stresses)
+        square, largest = (high - low) ** 2 + ranges, np.maximum(high, 0.0) ** 2 + sizes
+        if exact and linear:
+            # A smaller swing has a larger mean. Where shear is most of it, or means count for much,
+            # no more is known than the second.
+            middle = np.maximum((high + low) / 2, 0.0) ** 2 + sizes
+            whole = swing(np.sqrt(square) / 2, np.sqrt(middle))
+            square = 2.0 * ranges if strength >= math.sqrt(2.0) * endurance else square
+            found = np.maximum(whole, swing(np.sqrt(square) / 2, np.sqrt(largest)))
+        else:
+            found = swing(np.sqrt(square) / 2, np.sqrt(largest))
+        return np.asarray(found * ROUNDED)
+
+    return Score(of, bound, swing, exact)
 
 
 def damage_score(material: Material, criterion: str = "goodman") -> Score:
-    """The damage by Miner's sum, and where there is none the largest amplitude.
+    """The damage by Miner's sum; where there is none, minus one over the largest amplitude.
 
     Raises what :func:`strengths` does.
     """
     strengths(material, criterion)
 
-    def of(values: Array) -> tuple[float, float]:
+    def score(sizes: Array, times: Array | float, axis: int | tuple[()]) -> Array:
+        with np.errstate(divide="ignore"):
+            damage = np.sum(times / cycles(sizes, material), axis=axis)
+        nothing = -1.0 / np.maximum(np.max(sizes, axis=axis), _NOTHING)
+        return np.asarray(np.where(damage > 0.0, damage, nothing))
+
+    def of(values: Array) -> float:
         found = loaded(values)
         sizes = reversed_amplitude(found.amplitude, found.mean, material, criterion)
-        with np.errstate(divide="ignore"):
-            return float(np.sum(found.times / cycles(sizes, material))), float(np.max(sizes))
+        return float(score(sizes, found.times, 0))
 
-    def bound(histories: Histories) -> Array:
-        amplitude, mean = (size * ROUNDED for size in histories.widest())
+    def bound(stresses: Array) -> Array:
+        low, high = stresses[0].min(axis=-1), stresses[0].max(axis=-1)
+        ranges, sizes = _sheared(stresses)
+        amplitude = np.sqrt((high - low) ** 2 + ranges) / 2 * ROUNDED
+        mean = np.sqrt(np.maximum(high, 0.0) ** 2 + sizes) * ROUNDED
         sizes = reversed_amplitude(amplitude, mean, material, criterion)
-        many = histories.normal.shape[2] / 2 + 1
-        with np.errstate(divide="ignore"):
-            return np.stack([many / cycles(sizes, material), sizes], axis=-1)
+        return score(sizes, stresses.shape[-1] / 2 + 1, ())
 
     def swing(amplitude: Array, mean: Array) -> Operand:
         return used(amplitude, mean, material, criterion)
 
     return Score(of, bound, swing)
+
+
+def _sheared(stresses: Array) -> tuple[Array, Array]:
+    """Three times the squares of the ranges of shear stresses, and of their largest size, of
+    stresses (k, ..., t).
+    """
+    ranges, sizes = np.ptp(stresses[1:], axis=-1) ** 2, np.sum(stresses[1:] ** 2, axis=0)
+    return 3.0 * np.sum(ranges, axis=0), 3.0 * np.max(sizes, axis=-1)

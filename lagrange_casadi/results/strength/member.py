@@ -3,31 +3,38 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from ...base.arrays import Array
-from ...base.bernstein import interpolation, product, value, within
+from ...base.bernstein import interpolation, product, raised, value, within
 from ...base.brief import Brief
+from ...base.quantities import Output
+from ...engine.model_data import ModelData
 from ...engine.section_function import Side
 from ...engine.stress import FORCES, CrossSections
 from ...engine.two_force_links import unaimed
 from ...errors import DeclarationError, check_kind
 from ...model.beams.beam import Beam
-from ..laws import SectionLaw
+from ..laws import SectionLaw, law_of
+from ..pieces import Pieces
 from ..solution import Solution
 from ..statistics import counted
 
-_EXACT, _DEGREES, _NARROW = 1e-13, (0, 4, 8, 12), 2.0**-12
-"""Tolerance of a polynomial for the factors of forces, its degrees, and the length of a part of a
-link too short to cut.
+_DEGREES, _NARROW = (4, 8, 10, 12), 2.0**-12
+"""Degrees of polynomials for the factors of forces, and the length of a part of a link too short to
+cut.
 """
 
 _TWIST = 1e-9
+
+_STILL = 1e-9
+"""Change of a place of a load, as a ratio xi/l, up to which it stands still."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,22 +55,69 @@ class Cell:
         """The names of its fibres."""
         return self.member.cross.fibres(self.index).names
 
-    def stresses(self, forces: Sequence[Array], low: Array, high: Array) -> Array:
-        """Ordinates (n + 1, 3, fibres, parts, t) of stresses in parts of the cell from ``low`` to
-        ``high`` (parts, t), by those of the section forces there, each (degree + 1, parts, t).
-        """
+    @cached_property
+    def polynomials(self) -> Array:
+        """Ordinates (degree + 1, 3, fibres, forces, n) of :meth:`factors`."""
         nodes, weights = interpolation(self.degree)
+        u = (self.high - (self.high - self.low) * nodes)[:, None]
+        return np.asarray(np.tensordot(weights, self.factors(u), (1, 3)))
+
+    def alone(self, *, sheared: bool) -> list[int]:
+        """The fibres that are like no other one, with shear stresses or without."""
+        shear = np.any(self.polynomials[:, 1:], axis=(0, 1, 3, 4))
+        return [k for k in self.member.cross.fibres(self.index).alone if shear[k] == sheared]
+
+    def components(self, fibres: Sequence[int]) -> int:
+        """The number of components that stresses of some fibres have: normal stress, and shear
+        stresses along y and along z.
+        """
+        every = self.polynomials[:, :, fibres].any(axis=(0, 2, 3, 4))
+        return 1 + int(np.max(np.flatnonzero(every), initial=0))
+
+    def parts(self, ends: Array) -> tuple[Array, Array]:
+        """Cut parts of the link between ``ends`` (parts + 1, ...) to the cell: the begins and the
+        ends of those that are in it, each (parts, ...).
+        """
+        inside = np.clip(ends, self.low, self.high)
+        some = np.diff(inside, axis=0).reshape(len(ends) - 1, -1).any(axis=1)
+        return inside[:-1][some], inside[1:][some]
+
+    def forces(self, low: Array, high: Array, side: Side = "tip") -> list[Array]:
+        """Ordinates (degree + 1, parts, t) of each section force in parts of the cell from ``low``
+        to ``high`` (parts, t), on a side of places.
+        """
+        found = [pieces.parts(low, high, side) for pieces in self.member.pieces]
+        return [raised(c, self.member.degree) for (c,) in found]
+
+    def stresses(
+        self,
+        forces: Sequence[Array],
+        low: Array,
+        high: Array,
+        fibres: Sequence[int] | slice = slice(None),
+    ) -> Array:
+        """Ordinates (n + 1, 3, fibres, parts, t) of the stresses of some fibres, by those of the
+        section :meth:`forces`.
+        """
         wide = self.high - self.low
-        factors = np.tensordot(weights, self.factors(self.high - wide * nodes), (1, 3))
         start, stop = (self.high - high) / wide, (self.high - low) / wide
-        size = self.degree + len(forces[0]), 3, len(self.names), *forces[0].shape[1:]
-        found = np.zeros(size)
+        factors, force = self.polynomials[:, :, fibres], forces[0]
+        unit = np.eye(len(force)).reshape(len(force), *(1,) * (force.ndim - 1), -1)
+        many = self.degree + len(force)
+        found = np.zeros((*factors.shape[1:3], *force.shape[1:-1], many, force.shape[-1]))
         for k, force in enumerate(forces):
-            for component in np.flatnonzero(factors[..., k].any(axis=(0, 2))):
-                factor = factors[:, component, :, k, None, None]
+            for component in np.flatnonzero(factors[:, :, :, k].any(axis=(0, 2, 3))):
+                # Axes of parts, of designs, and of instants.
+                factor = factors[:, component, :, k, None, :, None]
+                factor = factor if low.ndim > 2 else factor[..., 0]
                 factor = within(factor, start, stop) if self.degree else factor
-                found[:, component] += product(factor, force[:, None])
-        return found
+                if self.degree and factor.shape[-1] == 1:
+                    # The same at all instants: a matrix of ordinates of the force.
+                    matrix = np.moveaxis(product(factor, unit), 0, -2)
+                    found[component] += np.matmul(matrix, np.moveaxis(force, 0, -2))
+                else:
+                    found[component] += np.moveaxis(product(factor, force[:, None]), 0, -2)
+        return np.moveaxis(found, -2, 0)
 
     def factors(self, u: Array) -> Array:
         """Factors of stresses, normal and along y and along z, by each force at ratios ``u``: (3,
@@ -74,7 +128,11 @@ class Cell:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Member(Brief):
-    """A link of a solution with its beam, whose numbers are those of the solution's parameters."""
+    """A link of a solution with its beam, whose numbers are those of the solution's parameters; or
+    of n designs, each with its own numbers, at t instants (n, t).
+
+    ``accuracy`` is that of polynomials for the factors of forces.
+    """
 
     link: str
     beam: Beam
@@ -82,6 +140,7 @@ class Member(Brief):
     t: Array
     xi: Array
     space: bool
+    accuracy: float = 1e-13
 
     @classmethod
     def of(cls, solution: Solution, link: str, *, spun: bool = False) -> Member:
@@ -116,6 +175,21 @@ class Member(Brief):
             raise DeclarationError(unaimed(link))
         return member
 
+    @classmethod
+    def of_designs(
+        cls, data: ModelData, link: str, p: Array, outputs: Mapping[Output, Array]
+    ) -> Member:
+        """A link of n designs with parameters ``p`` (n, parameters), by ``outputs``, each (n, t),
+        among which are those that its law is made of.
+        """
+        body = data.template.each(data.content.bodies[link], p)
+        assert body.beam is not None
+        size, density = body.length_and_density
+        length: Any = np.zeros((len(p), 1)) + np.reshape(size, (-1, 1))
+        law = law_of(link, outputs, length, density)
+        t = np.arange(next(iter(outputs.values())).shape[-1], dtype=float)
+        return cls(link, body.beam, law, t, np.zeros(0), data.space)
+
     @cached_property
     def counted(self) -> Member:
         """Member at the instants that count: see :func:`.counted`.
@@ -132,6 +206,16 @@ class Member(Brief):
             )
         return self.during(np.flatnonzero(counts))
 
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The number of designs, if it is of some, and that of instants."""
+        return self.law.coefficients["n0"].shape
+
+    @property
+    def still(self) -> bool:
+        """True if no load moves along it."""
+        return bool(np.all(np.ptp(self.pieces[0].ends, axis=-1) <= _STILL))
+
     @cached_property
     def cross(self) -> CrossSections:
         """Cross-sections."""
@@ -142,6 +226,11 @@ class Member(Brief):
         """The names of the section forces that stresses are made of."""
         return self.cross.forces
 
+    @cached_property
+    def pieces(self) -> list[Pieces]:
+        """These forces as polynomials along the link."""
+        return [self.law.pieces(force) for force in self.forces]
+
     def at(self, u: Array, side: Side = "tip", scale: Array | None = None) -> Array:
         """The section forces at ratios ``u`` (t, n), each times its ``scale``: (forces, t, n)."""
         values = np.stack([self.law.at(force, u, side) for force in self.forces])
@@ -149,9 +238,7 @@ class Member(Brief):
 
     def during(self, instants: slice | npt.NDArray[np.generic]) -> Member:
         """Member at some of the instants, a slice or their numbers."""
-        return Member(
-            self.link, self.beam, self.law.during(instants), self.t[instants], self.xi, self.space
-        )
+        return replace(self, law=self.law.during(instants), t=self.t[instants])
 
     @cached_property
     def cells(self) -> tuple[Cell, ...]:
@@ -185,8 +272,7 @@ class Member(Brief):
     @property
     def strain_degree(self) -> int:
         """The degree of polynomials that give strains between two edges."""
-        changing = max(cell.degree for cell in self.cells)
-        return self.degree + (changing + 6 if changing else 0)
+        return self.degree + max(cell.degree for cell in self.cells)
 
     def index_at(self, u: Array) -> npt.NDArray[np.intp]:
         """The numbers of the parts of the beam, between breaks of its cross-section, in which
@@ -203,17 +289,20 @@ class Member(Brief):
     def _cells(self, index: int, low: float, high: float) -> Iterator[Cell]:
         """A part as one cell, or where no polynomial gives what it should, cut in halves."""
         first, last = self.beam.course.cells[index]
-        for degree in _DEGREES if first is not last else _DEGREES[:1]:
+        if first is last:
+            yield Cell(low, high, self, index, 0)
+            return
+        for degree in _DEGREES:
             nodes, weights = interpolation(degree)
-            finer = np.linspace(0.0, 1.0, 2 * degree + 3)
+            finer = np.linspace(0.0, 1.0, 2 * degree + 3)[:, None]
             here, there = (
-                np.moveaxis(self.cross.factors(index, low + (high - low) * x), -1, 0)
-                for x in (nodes, finer)
+                np.moveaxis(self.cross.factors(index, low + (high - low) * x), 3, 0)
+                for x in (nodes[:, None], finer)
             )
-            values = value(np.tensordot(weights, here, 1), finer[:, None, None, None])
-            # Of each force its own unit.
+            values = value(np.tensordot(weights, here, 1), finer.reshape(-1, 1, 1, 1, 1))
+            # Of each force, and of each design, its own unit.
             size = np.abs(there).max(axis=(0, 1, 2))
-            if np.all(np.abs(values - there) <= _EXACT * size) or (
+            if np.all(np.abs(values - there) <= self.accuracy * size) or (
                 high - low < _NARROW and degree == _DEGREES[-1]
             ):
                 yield Cell(low, high, self, index, degree)

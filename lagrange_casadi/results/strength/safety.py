@@ -19,9 +19,9 @@ from ...model.end_conditions import effective_lengths
 from ..solution import Solution
 from .critical_plane import FINDLEY, critical_plane, plane_factor, plane_score
 from .fatigue import CRITERIA, damage_score, lacking, loaded, use_score, used
+from .fibres import worst
 from .member import Member
 from .stress import Stress, StressPeak
-from .worst import LinkHistories
 
 
 @dataclass(frozen=True)
@@ -190,26 +190,26 @@ def rated(
 
 def tired(member: Member, criterion: str) -> Verdict:
     """The factor of safety of a link against fatigue."""
-    histories, material = LinkHistories.of(member), member.beam.material
+    material = member.beam.material
     if criterion == FINDLEY:
-        worst = histories.worst(plane_score())
-        plane = critical_plane(histories.history(worst))
+        found = worst(member, plane_score())
+        plane = critical_plane(found.history)
         value = plane_factor(plane, material)
         text = (
             f"{plane.amplitude / 1e6:.4g} MPa in shear and {plane.normal / 1e6:.4g} MPa across, on"
             f" a plane at {math.degrees(plane.angle):.0f} deg to the cross-section, by {criterion}"
         )
     else:
-        worst = histories.worst(use_score(material, criterion))
-        value = 1.0 / worst.value[0] if worst.value[0] else math.inf
-        cycles = loaded(histories.history(worst))
+        found = worst(member, use_score(material, criterion))
+        value = 1.0 / found.score if found.score else math.inf
+        cycles = loaded(found.history)
         k = int(np.argmax(used(cycles.amplitude, cycles.mean, material, criterion)))
         text = (
             f"mean {cycles.mean[k] / 1e6:.4g} MPa, amplitude {cycles.amplitude[k] / 1e6:.4g} MPa by"
             f" {criterion}"
         )
-    notch = ", notch" if worst.part.notch else ""
-    at = f"at xi/l = {histories.ratio(worst):.4f}, {worst.name}{notch}"
+    notch = ", notch" if found.strips.notch else ""
+    at = f"at xi/l = {found.xi:.4f}, {found.fibre}{notch}"
     return Verdict("fatigue", value, f"{text} {at}")
 
 
@@ -288,9 +288,8 @@ def life(solution: Solution, link: str, *, criterion: str = "goodman") -> Life:
     member = Member.of(solution, link).counted
     material = member.beam.material
     material.needs("a life", "endurance", "ultimate")
-    histories = LinkHistories.of(member)
-    worst = histories.worst(damage_score(material, criterion))
-    damage, _ = worst.value
+    found = worst(member, damage_score(material, criterion))
+    damage = max(found.score, 0.0)
     many = 1.0 / damage if damage else math.inf
     span = float(solution.t[-1] - solution.t[0])
-    return Life(link, damage, many, many * span / 3600.0, histories.ratio(worst), worst.name)
+    return Life(link, damage, many, many * span / 3600.0, found.xi, found.fibre)

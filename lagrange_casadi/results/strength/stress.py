@@ -18,7 +18,7 @@ import numpy as np
 
 from ...base.arguments import Share, public
 from ...base.arrays import Array
-from ...base.bernstein import product, raised, slope, value, within, zeros
+from ...base.bernstein import product, slope, value, zeros
 from ...base.brief import Brief
 from ...engine.section_function import Side
 from ...engine.stress import KINDS, concentration, squared
@@ -338,19 +338,9 @@ class Stress:
 
     def _parts(self) -> Iterator[_Part]:
         """The parts of the link between two marks, in each cell of its cross-section."""
-        member = self.member
-        forces = [member.law.pieces(force).parts() for force in member.forces]
-        ordinates = [raised(c, member.degree) for _, (c,), _ in forces]
-        ends = forces[0][0]
-        for cell in member.cells:
-            low, high = (np.clip(end, cell.low, cell.high) for end in (ends[:-1], ends[1:]))
-            there = np.flatnonzero((high > low).any(axis=1))
-            low, high, last = low[there], high[there], ends[1:][there]
-            wide = np.maximum(last - ends[:-1][there], np.finfo(float).tiny)
-            chosen = [
-                within(c[:, there], (last - high) / wide, (last - low) / wide) for c in ordinates
-            ]
-            stresses = cell.stresses(chosen, low, high)
+        for cell in self.member.cells:
+            low, high = cell.parts(self.member.pieces[0].ends)
+            stresses = cell.stresses(cell.forces(low, high), low, high)
             low, high = (np.broadcast_to(end, stresses.shape[3:]) for end in (low, high))
             yield _Part(cell.names, low, high, stresses)
 

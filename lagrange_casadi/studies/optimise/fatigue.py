@@ -13,7 +13,6 @@ from __future__ import annotations
 import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import casadi as ca
@@ -21,14 +20,37 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.arrays import Expression
-from ...engine.fibre_stresses import LinkStress
+from ...base.quantities import Column
+from ...base.symbolic import Graphs, symbolic_property
 from ...engine.program import Program
+from ...engine.section_function import SIDES, Side, edge
+from ...engine.strength import Loaded, Part
+from ...engine.stress import concentration, notch_factor
 from ...errors import DeclarationError
+from ...model.beams.beam import Notch
 from ...model.beams.material import Material
+from ...model.limits import END
 from ...results.statistics import counted
 from ...results.strength.fatigue import cycle_squares, loaded, strengths, use_score, used
-from ...results.strength.worst import LinkHistories, Maximum
+from ...results.strength.fibres import Maximum, maxima
+from ...results.strength.member import Member
 from .sampled_design import KEEP, Point, SampledDesign
+
+
+@dataclass(frozen=True, eq=False)
+class _Fibres(Graphs):
+    """Fibres by their ``names``, in a part of a link between two marks, or beside a notch.
+
+    ``where`` is the number of the part of the beam between breaks of its cross-section, the side of
+    places, and the notch. ``span(out, p)`` is where the part begins, and how wide it is;
+    ``stresses(out, p, x)`` are the normal stresses, and the shear stresses along y and along z, at
+    a place from 0 to 1 of the part.
+    """
+
+    names: list[str]
+    where: tuple[int, Side, Notch | None]
+    span: ca.Function
+    stresses: ca.Function
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,94 +71,101 @@ class Tired:
         """Material of the link."""
         return self.program.data.content.materials[self.link]
 
-    @property
-    def stress(self) -> LinkStress:
-        """Stresses in the link."""
-        return self.program.stress[self.link]
-
-    @cached_property
-    def rows(self) -> list[int]:
-        """The columns that are members of the link's law."""
-        return [self.program.outputs[member] for member in self.stress.fibres.members]
-
-    @cached_property
-    def first(self) -> dict[int, int]:
-        """The number of the first fibre of each part of the link, by the part's identity."""
-        parts = self.stress.fibres.parts()
-        counts = itertools.accumulate((len(part.fibres) for part in parts), initial=0)
-        return {id(part): count for part, count in zip(parts, counts, strict=False)}
-
-    @property
-    def fibres(self) -> int:
-        """Number of fibres of all parts."""
-        return sum(len(part.fibres) for part in self.stress.fibres.parts())
+    @symbolic_property
+    def fibres(self) -> list[_Fibres]:
+        """The fibres between marks, by functions of columns at an instant and of parameters; then
+        those on both sides of notches.
+        """
+        program = self.program
+        out, p, x = ca.SX.sym("out", len(program.columns)), program.data.symbols, ca.SX.sym("x")
+        columns: dict[Column, Any] = {output: out[k] for output, k in program.outputs.items()}
+        body = Loaded(program.data.space, program.data.link(self.link, p), columns)
+        found, breaks = [], body.course.breaks
+        places: list[tuple[Part, Side, Notch | None]] = [(part, "tip", None) for part in body.spans]
+        for one, side in itertools.product(body.beam.notches, SIDES):
+            touching = [k for k in range(len(breaks) - 1) if breaks[k] <= one.at <= breaks[k + 1]]
+            part = Part(ca.SX(one.at), ca.SX(0.0), touching[-1 if side == "tip" else 0])
+            places.append((part, side, notch_factor(one)))
+        for part, side, notch in places:
+            u, beyond = part.low + part.width * x, edge(part.low, END["double"], side)
+            forces = [
+                body.section.force(name, u, beyond) * concentration(notch, name)
+                for name in body.cross.forces
+            ]
+            fibres = body.cross.fibres(part.cell)
+            stresses = body.cross.stresses(part.cell, u, fibres.alone, forces)
+            found.append(
+                _Fibres(
+                    [fibres.names[k] for k in fibres.alone],
+                    (part.cell, side, notch),
+                    ca.Function("span", [out, p], [part.low, part.width]),
+                    ca.Function("stresses", [out, p, x], [*stresses], {"cse": True}),
+                )
+            )
+        return found
 
     def points(self, sampled: SampledDesign) -> list[Point]:
-        """The worst swings of a design, one a local maximum along a fibre, the worst first: a
+        """The worst swings of a design, one for each fibre between two marks, the worst first: a
         point's ``xi`` is the share of the swing's other instant.
 
         Raises :class:`.DeclarationError` where a load travels along the link.
         """
-        stress = self.stress
-        members = sampled.history.columns[self.rows]
-        instants = np.flatnonzero(counted(members))
-        members = members[None][:, :, instants]
+        columns, outputs = sampled.history.columns, self.program.outputs
+        law = [output for output in outputs if output.along and output.part == self.link]
+        instants = np.flatnonzero(counted(columns[[outputs[output] for output in law]]))
         if not instants.size:
             return []
-        if not stress.fibres.is_still(members)[0]:
+        values = {output: columns[None, outputs[output], instants] for output in law}
+        member = Member.of_designs(self.program.data, self.link, sampled.p[None], values)
+        if not member.still:
             raise DeclarationError(
                 f"a load moves along link '{self.link}'; its fatigue is available in sweeps only"
             )
-        histories = LinkHistories(stress.fibres, members, stress.numbers(sampled.p).full().T)
-        (maxima,) = histories.maxima(use_score(self.material), KEEP)
-        return [self._point(sampled, histories, maximum, instants) for maximum in maxima]
+        (found,) = maxima(member, use_score(self.material), KEEP)
+        spans = [fibres.span(columns[:, instants[0]], sampled.p) for fibres in self.fibres]
+        return [self._point(sampled, maximum, instants, spans) for maximum in found]
 
     def _point(
         self,
         sampled: SampledDesign,
-        histories: LinkHistories,
         maximum: Maximum,
         instants: npt.NDArray[np.intp],
+        spans: Sequence[Sequence[Any]],
     ) -> Point:
-        cycles = loaded(histories.history(maximum))
+        cycles = loaded(maximum.history)
         shares = used(cycles.amplitude, cycles.mean, self.material)
         worst = int(np.argmax(shares))
         first, last = (sampled.instant(int(instants[i])) for i in cycles.instants[worst])
+        strips, middle = maximum.strips, sum(maximum.ends) / 2.0
+        where, number, place = (strips.cell.index, strips.side, strips.notch), 0, 0.0
+        for fibres, (low, width) in zip(self.fibres, spans, strict=True):
+            if fibres.where == where and 0.0 <= middle - float(low) <= float(width):
+                place = (maximum.xi - float(low)) / (float(width) or 1.0)
+                number += fibres.names.index(maximum.fibre)
+                break
+            number += len(fibres.names)
         return Point(
             first.share,
             last.share,
-            self.first[id(maximum.part)] + maximum.fibre,
-            maximum.value[0],
+            number,
+            maximum.score,
             first.guess,
-            second=(maximum.x, *last.guess),
+            second=(place, *last.guess),
         )
 
     def stresses(self, out: Expression, p: Expression, x: Expression) -> Expression:
         """Normal stresses of all fibres, then their shear stresses along y and along z, of columns
         at an instant and at a place of each part: expressions.
         """
-        numbers = self.stress.numbers(p)
-        members = ca.vertcat(*(out[row] for row in self.rows))
-        found: list[list[Expression]] = [[], [], []]
-        for part in self.stress.fibres.parts():
-            values = part.stresses(members, numbers, x)
-            many = len(part.fibres)
-            shears = ca.SX(2, many)
-            for number, axis in enumerate(part.axes):
-                for k, fibre in enumerate(part.sheared.tolist()):
-                    shears[axis, fibre] = values[many + number * part.sheared.size + k]
-            for rows, own in zip(
-                found, (values[:many], shears[0, :].T, shears[1, :].T), strict=True
-            ):
-                rows.append(own)
-        return ca.densify(ca.vertcat(*itertools.chain.from_iterable(found)))
+        every = [fibres.stresses(out, p, x) for fibres in self.fibres]
+        return ca.densify(ca.vertcat(*itertools.chain.from_iterable(zip(*every, strict=True))))
 
     def cycle(self, at_time: ca.Function) -> ca.Function:
         """``value(share, guess, p, xi, place)``: a swing's utilisation, by stresses at a time;
         ``place`` names the fibre by a 1, and then the place in its part.
         """
         kind = ca.SX if at_time.is_a("SXFunction") else ca.MX
-        nz, count = at_time.numel_in(1), self.fibres
+        nz, count = at_time.numel_in(1), sum(len(fibres.names) for fibres in self.fibres)
         sizes: Sequence[int] = (1, nz, at_time.numel_in(2), 1, count + 1 + nz)
         given: list[Any] = [
             kind.sym(name, n)

@@ -1,7 +1,7 @@
 """Strength results of a sweep: least factors of safety, lives, and masses.
 
 Utilisation against yielding and buckling comes from the engine. Fatigue follows from whole
-histories, as of a solution (:mod:`.strength.worst`).
+histories, as of a solution (:mod:`.strength.fibres`).
 """
 
 from __future__ import annotations
@@ -9,28 +9,31 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
 from ...base.arrays import Array
+from ...base.quantities import Output
 from ...engine.model_data import ModelData
 from ...engine.program import Program
+from ...engine.section_function import SectionInputs
 from ...model.mass_properties import ALL
 from ...results.statistics import counted
 from ...results.strength.fatigue import Score, damage_score, lacking, use_score
-from ...results.strength.worst import LinkHistories
+from ...results.strength.fibres import maxima
+from ...results.strength.member import Member
 from .meanings import LEAST, LIFE, MASS, WAYS
 
 _ENDLESS = 0.999
 """Utilisation up to which nothing wears: what is found of it is nearer to the largest."""
 
-
-def _largest(histories: LinkHistories, score: Score) -> Array:
-    """The largest score of designs, each (n,)."""
-    return np.array([maxima[0].value[0] for maxima in histories.maxima(score)])
+_MANY = 4096
+"""Number of instants of designs that are looked at together, if none has a load that travels along
+the link: their stresses stay near a processor.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,29 +131,54 @@ class Kept:
         """Utilisation against fatigue, and the life in cycles, of every design."""
         share, lives = np.full(len(p), np.nan), np.full(len(p), np.nan)
         assert series is not None
-        if not there.size:
-            return share, lives
-        stress, material = self.program.stress[link], self.data.content.materials[link]
-        chosen = [self.series.index(str(member)) for member in stress.fibres.members]
-        members, matter = series[there][:, chosen], stress.numbers(p[there].T).full().T
-        counts = np.array([counted(member) for member in members])
-        kinds = np.column_stack([stress.fibres.is_still(members), counts])
-        for still, *moving in np.unique(kinds, axis=0).tolist():
-            alike = (kinds == [still, *moving]).all(axis=1)
-            some, values = there[alike], members[alike][..., moving]
-            if not any(moving):
+        material, outputs = self.data.content.materials[link], self._law(link)
+        members = series[:, [*outputs.values()]]
+        counts = np.array([counted(members[k]) for k in there])
+        for moving in np.unique(counts, axis=0):
+            if not moving.any():
                 continue
-            histories = LinkHistories(stress.fibres, values, matter[alike], still)
-            share[some] = _largest(histories, use_score(material))
-            if link not in self.life:
-                continue
-            lives[some] = math.inf
-            worn = (share[some] > _ENDLESS) | (not material.endless)
-            with np.errstate(divide="ignore"):
-                lives[some[worn]] = 1.0 / _largest(
-                    histories.of_designs(worn), damage_score(material)
-                )
+            some = there[(counts == moving).all(axis=1)]
+            values = dict(zip(outputs, np.moveaxis(members[..., moving], 1, 0), strict=True))
+            largest = partial(self._largest, link, p, values)
+            share[some] = largest(some, use_score(material))
+            if link in self.life:
+                lives[some] = math.inf
+                worn = some[(share[some] > _ENDLESS) | (not material.endless)]
+                with np.errstate(divide="ignore"):
+                    lives[worn] = 1.0 / np.maximum(largest(worn, damage_score(material)), 0.0)
         return share, lives
+
+    def _law(self, link: str) -> dict[Output, int]:
+        """The outputs that the section law of a link is made of, and their places in ``series``."""
+        outputs = SectionInputs.of(self.program.outputs, link)
+        return {one: self.series.index(str(one)) for one in (*outputs.law, *outputs.acting)}
+
+    def _largest(
+        self,
+        link: str,
+        p: Array,
+        law: Mapping[Output, Array],
+        designs: npt.NDArray[np.int64],
+        score: Score,
+    ) -> Array:
+        """The largest score (designs,) of designs by number, among all parameters and members of a
+        ``law``.
+        """
+        found, many = list[float](), max(1, _MANY // next(iter(law.values())).shape[1])
+        for start in range(0, designs.size, many):
+            some = designs[start : start + many]
+            whole = self._member(link, p, law, some)
+            members = (
+                [whole] if whole.still else [self._member(link, p, law, k) for k in some[:, None]]
+            )
+            found += [few[0].score for member in members for few in maxima(member, score)]
+        return np.array(found)
+
+    def _member(
+        self, link: str, p: Array, law: Mapping[Output, Array], some: npt.NDArray[np.int64]
+    ) -> Member:
+        values = {output: rows[some] for output, rows in law.items()}
+        return Member.of_designs(self.data, link, p[some], values)
 
     @cached_property
     def _masses(self) -> ca.Function:

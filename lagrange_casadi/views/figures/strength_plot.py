@@ -13,8 +13,8 @@ import numpy as np
 from ...base.arrays import Array
 from ...results.solution import Solution
 from ...results.strength.fatigue import Loaded, loaded, use_score, used
+from ...results.strength.fibres import sampled, worst
 from ...results.strength.stress import Stress
-from ...results.strength.worst import LinkHistories
 from ..shapes.readable import Scale
 
 if TYPE_CHECKING:
@@ -108,23 +108,20 @@ def _goodman(axes: Axes, stress: Stress, unit: Scale) -> None:
         for strength in material.needs("Goodman's diagram", "endurance", "ultimate")
     )
     cycles: dict[str, list[Loaded]] = {"swings, every fibre": [], "in notches": []}
-    histories = LinkHistories.of(stress.member)
-    for part in histories.parts:
-        along = histories.at(part, histories.places(part)[None])
-        cycles["in notches" if part.notch else "swings, every fibre"] += [
-            loaded(along.at(*index)) for index in np.ndindex(along.normal.shape[:2])
-        ]
-    worst = histories.worst(use_score(material))
-    most = loaded(histories.history(worst))
+    for notch, histories in sampled(stress.member):
+        label = "in notches" if notch else "swings, every fibre"
+        cycles[label] += [loaded(history) for history in histories]
+    found = worst(stress.member, use_score(material))
+    most = loaded(found.history)
     axes.plot([0.0, ultimate], [endurance, 0.0], color="#b2182b", label="Goodman")
     if material.yield_strength is not None:
         strength = material.yield_strength / _MEGA
         axes.plot([0.0, strength], [strength, 0.0], color="0.6", linestyle="--", label="yield")
     top = endurance
-    for (label, found), color in zip(cycles.items(), ("#2166ac", "#e08214"), strict=True):
-        if found:
+    for (label, counted), color in zip(cycles.items(), ("#2166ac", "#e08214"), strict=True):
+        if counted:
             means, amplitudes = (
-                np.concatenate([getattr(one, name) for one in found]) / _MEGA
+                np.concatenate([getattr(one, name) for one in counted]) / _MEGA
                 for name in ("mean", "amplitude")
             )
             axes.plot(means, amplitudes, ".", markersize=3, color=color, label=label)
@@ -139,11 +136,11 @@ def _goodman(axes: Axes, stress: Stress, unit: Scale) -> None:
     axes.set_ylabel(f"amplitude [{unit.unit}]")
     unit.put(axes.xaxis)
     unit.put(axes.yaxis)
-    least = 1.0 / worst.value[0] if worst.value[0] else math.inf
-    where = "in the notch at " if worst.part.notch else "at "
+    least = 1.0 / found.score if found.score else math.inf
+    where = "in the notch at " if found.strips.notch else "at "
     axes.set_title(
         f"fatigue: least factor {least:.4g} {where}"
-        rf"$\xi/l$ = {histories.ratio(worst):.3f}, {worst.name}",
+        rf"$\xi/l$ = {found.xi:.3f}, {found.fibre}",
         fontsize=10,
     )
     axes.legend(frameon=False, fontsize=9)

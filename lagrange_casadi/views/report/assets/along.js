@@ -4,6 +4,7 @@
 class Along {
   constructor(entry, live, engine, sourceOf) {
     Object.assign(this, { entry, live, engine });
+    this.degree = live.degree;
     this.many = live.degree + 1;
     this.plain = entry.forces.filter((force) => !force.parts.length);
     const place = new Map(this.plain.map((force, k) => [force.name, k]));
@@ -22,9 +23,6 @@ class Along {
     this.rowsOf = this.plain.map((force) => force.terms.map(([coefficient, row, sign]) => [kept(coefficient), array(row), sign]));
     this.scratch = this.plain.map(() => new Float64Array(this.many));
     this.factor = new Float64Array(this.many);
-    this.values = new Float64Array(this.many);
-    this.within = Array.from(this.values, () => new Float64Array(this.many));
-    this.units = this.within.map((one, k) => one.map((_, j) => Number(j === k)));
     this.tallies = entry.forces.map(() => new Float64Array(6).fill(NaN));
     this.asked = entry.forces.flatMap((force, k) => {
       const parts = (force.parts.length ? force.parts : [force.name]).map((name) => this.scratch[place.get(name)]);
@@ -51,7 +49,7 @@ class Along {
 
   /** Take the design that the engine is prepared for, of which all instants are kept. */
   prepare(length) {
-    const { live, engine, entry, held, many } = this;
+    const { live, engine, entry, held, degree } = this;
     this.length = length;
     for (const { known } of this.asked) [known[0], known[1]] = [Infinity, -Infinity];
     const constants = this.spreads.flat().map((own) => [this.outputs[own], held[own]]);
@@ -60,18 +58,19 @@ class Along {
     engine.fit(1);
     const outputs = engine.outputs;
     const columns = this.plain.map((force) => contents.live.forces.indexOf(force.name));
-    const values = this.plain.map(() => new Float64Array(many));
+    const values = this.plain.map(() => new Float64Array(this.many));
+    const { places } = interpolation(degree);
     for (const source of new Set(this.terms.flat())) {
       outputs.fill(0);
       for (const [output, value] of constants) outputs[output] = value;
       outputs[this.outputs[source]] = 1;
       const changing = this.plain.map((_, k) => k).filter((k) => this.terms[k].includes(source));
       for (const piece of this.pieces) {
-        for (let j = 0; j < many; j += 1) {
-          const forces = this.forcesAt(Math.max(0, Math.min(1, piece.middle + piece.half * Math.cos((Math.PI * j) / live.degree))));
+        for (let j = 0; j <= degree; j += 1) {
+          const forces = this.forcesAt(Math.min(1, piece.low + (piece.high - piece.low) * places[j]));
           for (const k of changing) values[k][j] = forces[columns[k]];
         }
-        for (const k of changing) if (chebyshevInto(piece.rows[k][this.terms[k].indexOf(source)], values[k])) changed = true;
+        for (const k of changing) if (ordinatesInto(piece.rows[k][this.terms[k].indexOf(source)], values[k])) changed = true;
       }
       if (changed) this.fill(array(entry.xi), source, changing, columns);
     }
@@ -81,7 +80,7 @@ class Along {
   cut(cuts) {
     if (cuts.length === this.pieces.length + 1 && this.pieces.every(({ low, high }, k) => low === cuts[k] && high === cuts[k + 1])) return false;
     const rows = () => this.terms.map((own) => own.map(() => new Float64Array(this.many)));
-    this.pieces = cuts.slice(1).map((high, k) => ({ low: cuts[k], high, middle: (cuts[k] + high) / 2, half: (high - cuts[k]) / 2, rows: rows() }));
+    this.pieces = cuts.slice(1).map((high, k) => ({ low: cuts[k], high, rows: rows() }));
     return true;
   }
 
@@ -91,7 +90,7 @@ class Along {
       const piece = this.pieces.find(({ low, high }) => xi[j] > low && xi[j] < high);
       const forces = piece ? null : this.forcesAt(xi[j]);
       for (const k of changing) {
-        const value = piece ? chebyshevAt(piece.rows[k][this.terms[k].indexOf(source)], (xi[j] - piece.middle) / piece.half, this.many) : forces[columns[k]];
+        const value = piece ? valueAt(piece.rows[k][this.terms[k].indexOf(source)], this.degree, (xi[j] - piece.low) / (piece.high - piece.low)) : forces[columns[k]];
         for (const [own, row, sign] of this.rowsOf[k]) if (own === source) row[j] = value / sign;
       }
     }
@@ -143,50 +142,29 @@ class Along {
 
   /** Look for smallest and largest values in a part of a piece; what acts beyond its `low` end is included there. */
   look(piece, low, high, place, whole) {
+    const { degree, scratch } = this;
     const edge = edgeAt(this.entry, low);
     for (let k = 0; k < this.plain.length; k += 1) if (this.needed[k]) this.sum(k, piece, edge, place);
-    if (high > low && (low > piece.low || high < piece.high)) this.narrow(piece, low, high);
-    const whence = high > low ? (low + high) / 2 : piece.middle;
-    const half = high > low ? (high - low) / 2 : piece.half;
+    const [from, to] = [low, high].map((u) => (u - piece.low) / (piece.high - piece.low));
+    if (low > piece.low || high < piece.high) for (let k = 0; k < scratch.length; k += 1) if (this.needed[k]) cutTo(scratch[k], degree, from, to);
     for (const one of this.asked) {
       if (!whole && high > low && isWithin(one)) continue;
       const { parts, tally, slope, known } = one;
-      put(tally, known, sizeAt(parts, high > low ? -1 : (low - whence) / half), low);
+      put(tally, known, sizeAt(parts, 0), low);
       if (high > low) {
         put(tally, known, sizeAt(parts, 1), high);
-        const count = parts.length > 1 ? squaredSlope(parts, slope, this.factor) : slopeInto(slope, parts[0], this.many);
-        const zeros = zerosOf(slope, count, -1, 1);
-        for (let z = 0; z < zeros.count; z += 1) put(tally, known, sizeAt(parts, zeros.at[z]), whence + half * zeros.at[z]);
+        if (parts.length > 1) squaredSlope(parts, slope, this.factor);
+        else slopeInto(slope, parts[0], degree);
+        const zeros = zerosOf(slope, parts.length > 1 ? 2 * degree - 1 : degree - 1);
+        for (let z = 0; z < zeros.count; z += 1) put(tally, known, sizeAt(parts, zeros.at[z]), low + (high - low) * zeros.at[z]);
       }
       if (tally[0] === 0) one.none = true;
     }
   }
 
-  /** Have the sums of a piece as those of a part of it. */
-  narrow(piece, low, high) {
-    const { many, values, scratch, within } = this;
-    const whence = ((low + high) / 2 - piece.middle) / piece.half;
-    const half = (high - low) / 2 / piece.half;
-    const cosines = cosinesOf(many - 1);
-    // What each of Chebyshev's polynomials is there.
-    for (let k = 0; k < many; k += 1) {
-      for (let j = 0; j < many; j += 1) values[j] = chebyshevAt(this.units[k], whence + half * cosines[j], k + 1);
-      chebyshevInto(within[k], values);
-    }
-    for (let n = 0; n < scratch.length; n += 1) {
-      if (!this.needed[n]) continue;
-      const c = scratch[n];
-      for (let j = 0; j < many; j += 1) {
-        let sum = 0;
-        for (let k = j; k < many; k += 1) sum += c[k] * within[k][j];
-        c[j] = sum;
-      }
-    }
-  }
-
   /** A force in a piece, with what acts at the stations beyond an edge. */
   sum(k, piece, edge, place) {
-    const { many, held, stations } = this;
+    const { degree, many, held, stations } = this;
     const c = this.scratch[k];
     const rows = piece.rows[k];
     const terms = this.terms[k];
@@ -202,53 +180,44 @@ class Along {
     for (let l = 0; l < stations.length; l += 1) {
       const station = held[place + stations[l]];
       if (!(edge < station)) continue;
-      c[0] += held[place + acting[l]];
-      if (!across) continue;
-      const slope = this.plain[k].arm * this.length * held[place + across[l]];
-      c[0] += slope * (station - piece.middle);
-      c[1] -= slope * piece.half;
+      const slope = across ? this.plain[k].arm * this.length * held[place + across[l]] : 0;
+      const first = held[place + acting[l]] + slope * (station - piece.low);
+      for (let j = 0; j < many; j += 1) c[j] += first - (slope * (piece.high - piece.low) * j) / degree;
     }
   }
 }
 
-/** A sum at a place; of several the size, which is nothing where it is no more than rounding. */
-function sizeAt(parts, v) {
-  if (parts.length === 1) return chebyshevAt(parts[0], v, parts[0].length);
+/** A force at a place; of several the size, which is nothing where it is no more than rounding. */
+function sizeAt(parts, x) {
+  if (parts.length === 1) return valueAt(parts[0], parts[0].length - 1, x);
   let sum = 0;
   let scale = 0;
   for (let p = 0; p < parts.length; p += 1) {
     const c = parts[p];
-    sum += chebyshevAt(c, v, c.length) ** 2;
-    for (let k = 0; k < c.length; k += 1) scale += Math.abs(c[k]);
+    sum += valueAt(c, c.length - 1, x) ** 2;
+    scale += largestSize(c);
   }
   const size = Math.sqrt(sum);
   return size > VANISHING * scale ? size : 0;
 }
 
-/** Whether a force is everywhere on -1 to 1 between what is known, or at the nothing that there was before. */
-function isWithin(one) {
-  const { parts, known } = one;
-  if (parts.length > 1) return isSizeWithin(one);
-  const c = parts[0];
-  // No polynomial of Chebyshev's is above 1.
-  let reach = 0;
-  for (let k = 1; k < c.length; k += 1) reach += Math.abs(c[k]);
-  reach += ROUNDED * (Math.abs(c[0]) + reach);
-  return c[0] + reach < known[1] && c[0] - reach > known[0];
+function largestSize(c) {
+  let most = 0;
+  for (let k = 0; k < c.length; k += 1) most = Math.max(most, Math.abs(c[k]));
+  return most;
 }
 
-/** The same for a size, whose square is a polynomial; that is between its ordinates of Bernstein, which are at its ends where it only
- *  rises or falls. */
-function isSizeWithin({ parts, square, known, none }) {
+/** Whether a force is everywhere from 0 to 1 between what is known, or at the nothing that there was before. The square of a size is a
+ *  polynomial. */
+function isWithin({ parts, square, known, none }) {
+  if (parts.length === 1) {
+    const rounded = ROUNDED * largestSize(parts[0]);
+    return isBetween(parts[0], known[0] + rounded, known[1] - rounded, 1);
+  }
   square.fill(0);
-  let scale = 0;
-  for (let p = 0; p < parts.length; p += 1) addProduct(square, parts[p], parts[p].length, parts[p], parts[p].length);
-  for (let k = 0; k < square.length; k += 1) scale += Math.abs(square[k]);
-  const rounded = ROUNDED * scale;
-  const least = none ? -Infinity : known[0] * known[0] + rounded;
-  const most = known[1] * known[1] - rounded;
-  if (scale < most && least < 0) return true;
-  return isBetween(ordinatesInto(halves(0, square.length).left, square), least, most, 1);
+  for (const c of parts) addProduct(square, c, c.length - 1, c, c.length - 1);
+  const rounded = ROUNDED * largestSize(square);
+  return isBetween(square, none ? -Infinity : known[0] * known[0] + rounded, known[1] * known[1] - rounded, 1);
 }
 
 /** Whether a polynomial is between two values, by its ordinates of Bernstein, or those of its halves and of theirs. */
@@ -280,7 +249,7 @@ function halves(depth, many) {
 
 const ROUNDED = 1e-12; // Over a value: more than rounding can hide.
 
-const VANISHING = 2e-13; // Over the coefficients of a size: what is smaller at a place is the rounding of nothing.
+const VANISHING = 2e-13; // Over the ordinates of a size: what is smaller at a place is the rounding of nothing.
 
 function put(tally, known, value, u) {
   const first = Number.isNaN(tally[0]);
@@ -300,10 +269,12 @@ function put(tally, known, value, u) {
   }
 }
 
-/** Half the slope of a sum of squares, into `found`; returns how many coefficients it has. `slope` has room for the slope of a part. */
+/** Half the slope of a sum of squares, into `found`. `slope` has room for the slope of a part. */
 function squaredSlope(parts, found, slope) {
-  const many = parts[0].length;
+  const n = parts[0].length - 1;
   found.fill(0);
-  for (const c of parts) addProduct(found, c, many, slope, slopeInto(slope, c, many));
-  return 2 * many - 2;
+  for (const c of parts) {
+    slopeInto(slope, c, n);
+    addProduct(found, c, n, slope, n - 1);
+  }
 }

@@ -1,0 +1,260 @@
+"""Search for the worst place of a link by fatigue, along the fibres of its cross-sections, of one
+solution or of many designs at once.
+
+Between two marks stresses are polynomials of the place (:meth:`.Cell.stresses`). The history of a
+place is a mean of the histories of their ordinates, with weights from 0 to 1, and bounds on scores
+are convex in stresses. So no place is above the largest bound of an ordinate. Strips with lower
+bounds are left out, others are halved, until no place may be above what was found by more than a
+part in 1e9. Where a bound is no score, swings are counted at few places, and where the widest swing
+of the worst of these is largest.
+
+A load that travels along the link divides it at all places where it is at an instant.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from ...base.arrays import Array
+from ...base.bernstein import halves, value
+from ...engine.section_function import SIDES, Side
+from ...engine.stress import concentration, notch_factor
+from ...model.beams.beam import Notch
+from .fatigue import Score, widest
+from .member import Cell, Member
+
+_CLOSE, _HALVED = 1e-9, 24
+"""Fraction by which a maximum may be missed, and how often strips are halved at most."""
+
+_PLACES = (1.0 - np.cos(np.pi * np.arange(9) / 8)) / 2
+"""Places of a strip at which swings are counted."""
+
+_NARROW = 1.0 / 64.0
+"""Length of a strip, as a ratio xi/l, of which nothing but the ends needs to be looked at."""
+
+_MISSED = 0.04
+"""Fraction by which the maximum of a score may be above the largest at these places."""
+
+_NUMBERS = 1 << 22
+"""Ordinates that are at hand at once."""
+
+
+@dataclass(frozen=True, eq=False)
+class Strips:
+    """Fibres between two marks of designs, by numbers: the ``fibre``, the ``design``, and the
+    ratios ``low`` and ``high``, each (strips,).
+
+    ``ordinates`` (degree + 1, k, strips, t) are those of normal stress alone, or of shear stresses
+    along y and z too.
+    """
+
+    cell: Cell
+    side: Side
+    notch: Notch | None
+    ordinates: Array
+    fibre: npt.NDArray[np.intp]
+    design: npt.NDArray[np.intp]
+    low: Array
+    high: Array
+
+    @classmethod
+    def of(
+        cls, cell: Cell, low: Array, high: Array, side: Side = "tip", notch: Notch | None = None
+    ) -> Iterator[Strips]:
+        """Make them of parts of a cell from ``low`` to ``high``, each (parts, 1), or (parts, n, 1)
+        of n designs: of fibres with normal stress alone, then of others.
+        """
+        forces = [
+            concentration(notch, name) * force
+            for name, force in zip(cell.member.forces, cell.forces(low, high, side), strict=True)
+        ]
+        for sheared in (False, True):
+            fibres = cell.alone(sheared=sheared)
+            ordinates = cell.stresses(forces, low, high, fibres)[:, : cell.components(fibres)]
+            # Axes of fibres, of parts, and of designs.
+            shape = ordinates.shape[2:-1]
+            begins, ends = (np.broadcast_to(end[..., 0], shape) for end in (low, high))
+            some = np.ones(shape, bool) if notch else ends > begins
+            index, _, *designs = np.nonzero(some)
+            design = designs[0] if designs else np.zeros_like(index)
+            fibre = np.array(fibres, np.intp)[index]
+            stresses = ordinates[:, :, some]
+            yield cls(cell, side, notch, stresses, fibre, design, begins[some], ends[some])
+
+    def places(self, strip: int) -> Array:
+        """Places at which swings are counted: the ends of a narrow strip, one of a notch."""
+        if self.notch:
+            return _PLACES[:1]
+        return _PLACES[:: 1 if self.high[strip] - self.low[strip] > _NARROW else len(_PLACES) - 1]
+
+    def at(self, strip: int, x: Array) -> Array:
+        """Stresses (3, places, t) at places ``x`` from 0, the end towards the tip, to 1."""
+        values = value(self.ordinates[:, :, strip], x[:, None, None])
+        found = np.zeros((3, *values.shape[::2]))
+        found[: values.shape[1]] = np.moveaxis(values, 1, 0)
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class Maximum:
+    """The largest ``score`` along a fibre between two marks: the ``strip`` by its number, and a
+    place ``x`` from 0, the end towards the tip, to 1.
+    """
+
+    score: float
+    strips: Strips
+    strip: int
+    x: float
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The ratios of the marks."""
+        return float(self.strips.low[self.strip]), float(self.strips.high[self.strip])
+
+    @property
+    def xi(self) -> float:
+        """The ratio of the place."""
+        low, high = self.ends
+        return high - (high - low) * self.x
+
+    @property
+    def fibre(self) -> str:
+        """The name of the fibre."""
+        return str(self.strips.cell.names[self.strips.fibre[self.strip]])
+
+    @property
+    def history(self) -> Array:
+        """The stresses (3, t)."""
+        return self.strips.at(self.strip, np.array([self.x]))[:, 0]
+
+
+def maxima(member: Member, score: Score, beside: float = 1.0) -> list[list[Maximum]]:
+    """The maxima of each design that are at least ``beside`` times the first, its largest."""
+    best = np.full(member.shape[:-1] or 1, -np.inf)
+    found: list[list[Maximum]] = [[] for _ in best]
+    for strips in _strips(member):
+        search = _halved if score.exact and len(strips.ordinates[0]) == 1 else _counted
+        scores, places = search(strips, score, best, beside)
+        higher = np.isfinite(scores) & (scores >= beside * best[strips.design])
+        for k in np.flatnonzero(higher).tolist():
+            maximum = Maximum(float(scores[k]), strips, k, float(places[k]))
+            found[int(strips.design[k])].append(maximum)
+    return [
+        sorted((one for one in some if one.score >= beside * most), key=lambda one: -one.score)
+        for some, most in zip(found, best.tolist(), strict=True)
+    ]
+
+
+def worst(member: Member, score: Score) -> Maximum:
+    """The largest maximum of a link of one solution."""
+    return maxima(member, score)[0][0]
+
+
+def sampled(member: Member) -> Iterator[tuple[Notch | None, Array]]:
+    """Stresses (n, 3, t) at places of all fibres of a link of one solution, beside a notch or none,
+    part after part.
+    """
+    for strips in _strips(member):
+        for k in range(strips.design.size):
+            yield strips.notch, np.moveaxis(strips.at(k, strips.places(k)), 0, 1)
+
+
+def _strips(member: Member) -> Iterator[Strips]:
+    """The strips of all fibres, those beside notches last. In each part those that have normal
+    stress alone come first: they cost less, and leave out others.
+    """
+    member = replace(member, accuracy=_CLOSE)
+    ends = member.pieces[0].ends
+    ends = ends[..., :1] if member.still else np.unique(ends)[:, None]
+    for cell in member.cells:
+        low, high = cell.parts(ends)
+        size = 3 * len(cell.names) * (cell.degree + member.degree + 1) * low[0].size * member.t.size
+        few = max(1, _NUMBERS // size)
+        for start in range(0, len(low), few):
+            yield from Strips.of(cell, low[start : start + few], high[start : start + few])
+    for notch, side in itertools.product(member.beam.notches, SIDES):
+        at = np.full_like(ends[:1], notch.at)
+        cell = member.cell_at(notch.at, side)
+        yield from Strips.of(cell, at, at, side, notch_factor(notch))
+
+
+def _halved(strips: Strips, score: Score, best: Array, beside: float) -> tuple[Array, Array]:
+    """The scores of strips (strips,) whose bounds are scores, and their places from 0 to 1; what is
+    below ``beside`` times the ``best`` of a design, which they raise, may be less than its maximum.
+    """
+    return _largest(strips.ordinates, score.bound, strips.design, best, beside)
+
+
+def _counted(strips: Strips, score: Score, best: Array, beside: float) -> tuple[Array, Array]:
+    """As :func:`_halved`, by counting swings; -inf of strips that are not looked at."""
+    scores, places = np.full(strips.design.size, -np.inf), np.zeros(strips.design.size)
+    bounds = score.bound(np.moveaxis(strips.ordinates, 1, 0)).max(axis=0)
+    for k in np.argsort(-bounds, kind="stable").tolist():
+        floor = beside * float(best[strips.design[k]])
+        if bounds[k] <= floor + _CLOSE * abs(floor):
+            continue
+        x = strips.places(k)
+        histories = strips.at(k, x)
+        most, at = _most(score, histories, floor - _MISSED * abs(floor))
+        place = float(x[at])
+        if most > floor - _MISSED * abs(floor) and not strips.notch:
+            ends = strips.ordinates[:, :, k, None][..., list(widest(histories[:, at]))]
+            _, (near,) = _largest(ends, score.of_swing, np.zeros(1, int), np.array([-np.inf]))
+            if near != place:
+                other = score.of(strips.at(k, np.array([near]))[:, 0])
+                most, place = max((most, place), (other, float(near)))
+        scores[k], places[k] = most, place
+        best[strips.design[k]] = max(best[strips.design[k]], most)
+    return scores, places
+
+
+def _most(score: Score, histories: Array, floor: float) -> tuple[float, int]:
+    """The largest score of histories (3, places, t) that may be above a floor, else -inf, and the
+    number of its place.
+    """
+    bounds = score.bound(histories)
+    most, at = -np.inf, 0
+    for k in np.argsort(-bounds, kind="stable").tolist():
+        if bounds[k] <= max(most, floor):
+            break
+        most, at = max((most, at), (score.of(histories[:, k]), k))
+    return most, at
+
+
+def _largest(
+    c: Array,
+    size: Callable[[Array], Array],
+    design: npt.NDArray[np.intp],
+    best: Array,
+    beside: float = 1.0,
+) -> tuple[Array, Array]:
+    """The largest of a convex size of stresses along strips (strips,), and its places from 0 to 1.
+
+    ``size`` is a function of stresses (k, ..., t). It raises the ``best`` of a design, and is
+    followed where it may be above ``beside`` times that.
+    """
+    sizes = size(np.moveaxis(c, 1, 0))
+    found, places = np.maximum(sizes[0], sizes[-1]), np.where(sizes[-1] > sizes[0], 1.0, 0.0)
+    strip, start, width = np.arange(design.size), np.zeros(design.size), 1.0
+    for _ in range(_HALVED):
+        np.maximum.at(best, design, found)
+        floor = np.fmax(found, beside * best[design])[strip]
+        some = np.flatnonzero(sizes.max(axis=0) > floor * (1.0 + _CLOSE))
+        if not some.size:
+            break
+        width /= 2.0
+        strip, start = strip[some], start[some]
+        middle = start + width
+        c = np.concatenate(halves(c[:, :, some]), axis=2)
+        sizes = size(np.moveaxis(c, 1, 0))
+        values = sizes[0, some.size :]
+        np.maximum.at(found, strip, values)
+        higher = values == found[strip]
+        places[strip[higher]] = middle[higher]
+        strip, start = np.tile(strip, 2), np.concatenate([start, middle])
+    return found, places
