@@ -30,9 +30,7 @@ from lagrange_casadi.results.elastic.compliance import Compliance, nodes
 from lagrange_casadi.results.elastic.deflection import deflection
 from lagrange_casadi.results.strength.member import Member
 from lagrange_casadi.results.verification.certificate import certify
-from lagrange_casadi.results.verification.disturbed import TRIALS, Instants, effects
 from lagrange_casadi.results.verification.reference import arithmetic, reference
-from lagrange_casadi.results.verification.roundings import rounding_error
 from lagrange_casadi.studies.designs.engine import DesignEngine
 from lagrange_casadi.studies.designs.outcome import Outcome
 from lagrange_casadi.studies.peaks import rates

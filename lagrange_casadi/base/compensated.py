@@ -31,7 +31,9 @@ ROUNDING: dict[Precision, float] = {
 }
 """The largest relative error of one rounding."""
 
-_SPLITTER: dict[Precision, float] = {"double": 134217729.0, "single": 4097.0}
+SPLITTER: dict[Precision, float] = {"double": 134217729.0, "single": 4097.0}
+"""The factor that splits a number into halves of its digits."""
+
 _TURN = (6.283185307179586, 2.4492935982947064e-16, -5.989539619436679e-33)
 """2 pi as the sum of three doubles."""
 
@@ -252,10 +254,10 @@ class Pairs:
         """
         if a.is_constant():
             kind = DTYPES[self.precision].type
-            number, splitter = kind(float(a)), kind(_SPLITTER[self.precision])
+            number, splitter = kind(float(a)), kind(SPLITTER[self.precision])
             half = splitter * number - (splitter * number - number)
             return ca.SX(float(half)), ca.SX(float(number - half))
-        c = self._times(_SPLITTER[self.precision], a)
+        c = self._times(SPLITTER[self.precision], a)
         high = self._minus(c, self._minus(c, a))
         return high, self._minus(a, high)
 

@@ -1,8 +1,8 @@
 """An SX function followed instruction by instruction, in any arithmetic.
 
 CasADi's own machine knows doubles. Here the same instructions run on whatever an
-:class:`Arithmetic` computes with: numbers of many digits, arrays with errors put on operations, or
-expressions that become another function.
+:class:`Arithmetic` computes with: numbers of many digits, arrays of any numbers, or expressions
+that become another function.
 """
 
 from __future__ import annotations
@@ -259,7 +259,7 @@ def operation_name(operation: int) -> str:
 @functools.cache
 def numpy_arithmetic() -> Arithmetic:
     """NumPy's arithmetic on doubles and arrays of them."""
-    known = _ROUNDED | _FUNCTIONS | _EXACT | {ca.OP_CALL: lambda lookup, x: lookup.at(x)}
+    known = _ARITHMETIC | {ca.OP_CALL: lambda lookup, x: lookup.at(x)}
     return Arithmetic(
         np.float64, known | {code: _truth(function) for code, function in _TRUTHS.items()}
     )
@@ -279,7 +279,14 @@ def _remainder(x: Array, y: float) -> Operand:
     return np.where(np.signbit(x), -remainder, remainder)
 
 
-_EXACT: dict[int, Callable[..., Any]] = {
+_ARITHMETIC: dict[int, Callable[..., Any]] = {
+    ca.OP_ADD: np.add,
+    ca.OP_SUB: np.subtract,
+    ca.OP_MUL: np.multiply,
+    ca.OP_DIV: np.divide,
+    ca.OP_SQ: np.square,
+    ca.OP_SQRT: np.sqrt,
+    ca.OP_INV: np.reciprocal,
     ca.OP_NEG: np.negative,
     ca.OP_TWICE: lambda x: x + x,
     ca.OP_ASSIGN: lambda x: x,
@@ -293,26 +300,6 @@ _EXACT: dict[int, Callable[..., Any]] = {
     ca.OP_COPYSIGN: np.copysign,
     ca.OP_IF_ELSE_ZERO: lambda x, y: np.where(x, y, 0.0),
     ca.OP_REMAINDER: _remainder,
-}
-_TRUTHS: dict[int, Callable[..., Any]] = {
-    ca.OP_LT: np.less,
-    ca.OP_LE: np.less_equal,
-    ca.OP_EQ: np.equal,
-    ca.OP_NE: np.not_equal,
-    ca.OP_NOT: np.logical_not,
-    ca.OP_AND: np.logical_and,
-    ca.OP_OR: np.logical_or,
-}
-_ROUNDED: dict[int, Callable[..., Any]] = {
-    ca.OP_ADD: np.add,
-    ca.OP_SUB: np.subtract,
-    ca.OP_MUL: np.multiply,
-    ca.OP_DIV: np.divide,
-    ca.OP_SQ: np.square,
-    ca.OP_SQRT: np.sqrt,
-    ca.OP_INV: np.reciprocal,
-}
-_FUNCTIONS: dict[int, Callable[..., Any]] = {
     ca.OP_POW: np.power,
     ca.OP_CONSTPOW: np.power,
     ca.OP_ATAN2: np.arctan2,
@@ -325,13 +312,17 @@ _FUNCTIONS: dict[int, Callable[..., Any]] = {
     ca.OP_ATANH: np.arctanh,
     ca.OP_ERF: np.vectorize(math.erf),
 }
-_FUNCTIONS |= {
+_ARITHMETIC |= {
     code: getattr(np, name)
     for code, name in codes("sin cos tan sinh cosh tanh exp log log1p expm1").items()
 }
-ROUNDINGS: Mapping[int, float] = dict.fromkeys(_ROUNDED, 1.0) | dict.fromkeys(_FUNCTIONS, 2.0)
-"""Largest number of roundings in the result of an operation: two for functions such as a sine, for
-libraries differ. Others round nothing.
-"""
-
-_KNOWN = {ca.OP_CONST, ca.OP_INPUT, ca.OP_OUTPUT, *_EXACT, *_TRUTHS, *_ROUNDED, *_FUNCTIONS}
+_TRUTHS: dict[int, Callable[..., Any]] = {
+    ca.OP_LT: np.less,
+    ca.OP_LE: np.less_equal,
+    ca.OP_EQ: np.equal,
+    ca.OP_NE: np.not_equal,
+    ca.OP_NOT: np.logical_not,
+    ca.OP_AND: np.logical_and,
+    ca.OP_OR: np.logical_or,
+}
+_KNOWN = {ca.OP_CONST, ca.OP_INPUT, ca.OP_OUTPUT, *_ARITHMETIC, *_TRUTHS}

@@ -203,9 +203,8 @@ def trade(
     """Measure every method on a scene, ``t`` or ``over`` as in :func:`.evaluate`; ``progress`` is
     called with each before it is measured.
 
-    Raises :class:`LagrangeCasadiError` where mpmath is not installed, :class:`DeclarationError` for
-    graphs that call functions of their own, and what :func:`.evaluate` raises where the scene has
-    no result.
+    Raises :class:`DeclarationError` for graphs that call functions of their own, and what
+    :func:`.evaluate` raises where the scene has no result.
     """
     parameter_values = scene.values(parameters)
     values = np.array(list(parameter_values.values()))

@@ -6,17 +6,19 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
-from ...base.arrays import Array
+from ...base.arrays import Array, Operand
 from ...base.compensated import ROUNDING
+from ...base.interpret import Arithmetic, interpret, numpy_arithmetic
 from ...base.quantities import Output, motion_names
 from ...base.vocabulary import Precision
 from ...engine.codegen.stages import compensated
-from ...engine.instants.backends import run
+from ...engine.instants.backends import Evaluated, run
 from ...engine.instants.evaluation_method import EvaluationMethod
 from ...engine.program import Program
 from ...results.solution import Solution
@@ -29,6 +31,9 @@ ALLOWED = 16.0
 """Estimates of the error: the same arithmetic by other compilers, libraries
 and machines is within.
 """
+
+_STEPS = 3
+"""Newton steps in single precision from loops that are closed in doubles."""
 
 _MOTION = 4096.0
 """Roundings of a motion's largest value."""
@@ -107,14 +112,38 @@ def _errors(program: Program, precision: Precision, exact: Solution, p: Array) -
         for name, error in exact.errors.items()
     }
     if precision == "single":
-        evaluated, _ = run(program, exact.t, p, EvaluationMethod("vm"))
-        estimated = estimate(
-            program, replace(evaluated, stages=compensated(program, precision)), exact, p
-        )
+        estimated = estimate(program, _in_singles(program, exact.t, p), exact, p)
         errors |= {
             str(output): max(errors[str(output)], error) for output, error in estimated.items()
         }
     return errors
+
+
+def _in_singles(program: Program, t: Array, p: Array) -> Evaluated:
+    """The columns of a graph in single precision, by NumPy: without a compiler."""
+    evaluated, _ = run(program, t, p, EvaluationMethod("vm"))
+    stages, known = compensated(program, "single"), numpy_arithmetic().operations
+    singles = Arithmetic(np.float32, {code: _rounded(rule) for code, rule in known.items()})
+    moment, values = ([np.float32(x), np.float32(_rest(x))] for x in (t, p))
+    z: list[Any] = [*np.float32(evaluated.iterated)]
+    with np.errstate(all="ignore"):
+        counted, *changes = interpret(stages.drive, [moment, [*values[0], *values[1]]], singles)
+        for _ in range(_STEPS):
+            if stages.loops is not None:
+                correction, _size = interpret(stages.loops, [z, counted, values[0]], singles)
+                z = [a + b for a, b in zip(z, correction, strict=True)]
+        (found,) = interpret(stages.instant, [counted, *changes, z, values[0]], singles)
+    out = np.array([np.broadcast_to(row, t.shape) for row in found], float)
+    return replace(evaluated, out=out, iterated=np.array(z).reshape(-1, t.size), stages=stages)
+
+
+def _rounded(rule: Callable[..., Operand]) -> Callable[..., Operand]:
+    return lambda *values: np.float32(rule(*values))
+
+
+def _rest(values: Array) -> Array:
+    """Remainder of values after rounding to single precision."""
+    return np.asarray(values - values.astype(np.float32))
 
 
 def _worst(contract: Contract, exact: Solution, errors: Array) -> tuple[float, str]:
@@ -147,5 +176,5 @@ def _input(moved: Mapping[str, Array], source: str, precision: Precision) -> Arr
     """The values of an input over instants; of a rest, what rounding its value to single leaves."""
     values = moved[source.removeprefix(REST)]
     if source.startswith(REST):
-        return np.asarray(values - values.astype(np.float32))
+        return _rest(values)
     return np.asarray(values.astype(np.float32).astype(float) if precision == "single" else values)

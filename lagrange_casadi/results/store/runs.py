@@ -33,7 +33,8 @@ from ...model.wanted_names import SENSITIVITY
 from ..histories import Histories
 from ..ordering import in_order
 from ..solution import Solution, solution_of
-from ..verification.certificate import COARSE, TOLERANCE, blur, certify
+from ..verification.certificate import certify
+from ..verification.reported import COARSE, TOLERANCE, blur
 from .attributes import (
     SCHEMA_VERSION,
     attributes_to_write,

@@ -1,11 +1,8 @@
 """Error estimates: the distance of a result from its formulas' exact value, for every output.
 
-The graphs are followed once more at some of the instants (:mod:`.interpret`), every operation with
-a random error as large as its rounding, several times over (Monte Carlo arithmetic: D. S. Parker,
-*Monte Carlo Arithmetic*, UCLA CSD-970002, 1997). What that does to an output is its condition,
-times the rounding. The result itself is one trial more, so that what a compiler or a narrower type
-has made of it shows. Iterated coordinates take the corrections with them that they still want, so
-loops that were left half closed show, times what they do to each output.
+The graphs are followed once more in longer numbers (:mod:`.longer`), at all instants or at many.
+What a result is off there is its error: what a compiler or a narrower type has made of it shows,
+and so do loops that were left half closed.
 """
 
 from __future__ import annotations
@@ -17,19 +14,32 @@ import numpy as np
 
 from ...base.arrays import Array, spread
 from ...base.compensated import DTYPES, ROUNDING
+from ...base.interpret import Arithmetic, followable
 from ...base.quantities import Output
+from ...engine.codegen.stages import plain
 from ...engine.instants.backends import Evaluated
 from ...engine.instants.cycle_table import CycleTable
 from ...engine.instants.refusing import resting
 from ...engine.program import Program
 from ..histories import Histories
 from ..sizes import largest
-from .digits import blur
-from .disturbed import Instants, effects, openness
+from .longer import LONG, long_doubles, missed
+from .reference import elementwise
+from .reported import blur
 
-INSTANTS = 48
-_MANY, _FIRST, _WORST = 2000, 10, 30
-_CLOSED = 10.0
+_LONG, _FEW, _OPERATIONS = 1000, 6, 4_000_000
+"""The most evenly spread instants that are looked at in long doubles, and in many digits; and the
+most operations of them all.
+"""
+
+_ALLOWED, _UNSEEN = 1.1, 2.0
+"""Factors of what was seen: for what longer numbers round themselves and for sections between those
+that are looked at, and for other instants too.
+"""
+
+_DIGITS = 2.0**10
+"""Longer numbers round so much less."""
+
 _DEAD = ("closure", "gimbal", "roll", "hold")
 _FORCES = (
     "effort",
@@ -59,39 +69,32 @@ def estimate(
     """
     if evaluated.cycle is not None:
         return _of_cycle(program, evaluated.cycle, histories)
-    instants = Instants(evaluated.stages, histories.t, p, np.asarray(evaluated.iterated, float))
-    if not instants.followable:
+    if not all(
+        map(followable, [program.instant, *([program.newton.step] if program.newton else [])])
+    ):
         return {}
-    found, angles = [], np.array([column in program.loop_angles for column in program.columns])
-    for some in instants.blocks(np.union1d(_chosen(program, evaluated), _open(instants))):
-        found.append(
-            _worst(
-                program,
-                histories,
-                *effects(instants.at(some), np.asarray(evaluated.out[:, some], float), angles),
-            )
-        )
-    worst = (
-        {output: max(errors[output] for errors in found) for output in found[0]} if found else {}
-    )
-    # What was exact at all these instants may be rounded once at others; and what underflows is in
-    # no trial.
-    once = ROUNDING[evaluated.stages.precision]
-    least = float(np.finfo(DTYPES[evaluated.stages.precision]).tiny)
-    return {
-        output: max(least, error or once * abs(histories.peak(output).value))
-        for output, error in worst.items()
-    }
+    chosen, factor, longer = _chosen(program, evaluated)
+    out, z = (np.asarray(rows[:, chosen], float) for rows in (evaluated.out, evaluated.iterated))
+    precision = evaluated.stages.precision
+    stages = evaluated.stages if precision == "double" else plain(program)
+    off = missed(program, stages, out, histories.t[chosen], p, z, longer)
+    worst = _worst(program, histories, *off)
+    unit, least = ROUNDING[precision], float(np.finfo(DTYPES[precision]).tiny)
+    errors = {output: max(least, factor * error) for output, error in worst.items()}
+    largest_of_unit = by_unit(histories)
+    for output in errors.keys() & histories.outputs.keys():
+        # The last digit is never sure; nor is, of what vanishes, that of the largest of its unit.
+        size = most(histories.outputs[output])
+        vanishes = size <= 2.0 * errors[output]
+        beside = largest_of_unit[histories.unit(output)] if vanishes else size
+        errors[output] = max(errors[output], unit * beside)
+    return errors
 
 
 def _worst(
     program: Program, histories: Histories, changes: Array, columns: Array
 ) -> dict[Output, float]:
-    """The largest changes, (columns, trials, n), of columns (columns, n) by the quantities of
-    histories.
-
-    A trial that came to nothing, as a root of less than zero does, says nothing.
-    """
+    """The largest changes of columns, both (columns, n), by the quantities of histories."""
     change, at = (
         {output: rows[k] for output, k in program.outputs.items()} for rows in (changes, columns)
     )
@@ -102,8 +105,8 @@ def _worst(
             law.of(link, at).changed(law.of(link, change), ALONG).items()
         ):
             # A force is itself a sum that is rounded, in doubles always.
-            errors[Output("section", link, force)] = max(
-                most(residuals), ROUNDING["double"] * most(sizes)
+            errors[Output("section", link, force)] = most(
+                np.abs(residuals) + 2.0 * ROUNDING["double"] * sizes
             )
     return {output: error for output, error in errors.items() if histories.determined(output)}
 
@@ -111,6 +114,15 @@ def _worst(
 def most(values: Array) -> float:
     """The largest size among values, 0 where none is a number."""
     return float(np.fmax.reduce(np.abs(values), axis=None, initial=0.0))
+
+
+def by_unit(histories: Histories) -> dict[str, float]:
+    """The largest size of any output, by unit."""
+    found: dict[str, float] = {}
+    for output, values in histories.outputs.items():
+        unit = histories.unit(output)
+        found[unit] = max(found.get(unit, 0.0), most(values))
+    return found
 
 
 def explained(
@@ -171,33 +183,21 @@ def _of_cycle(program: Program, cycle: CycleTable, histories: Histories) -> dict
     return errors
 
 
-def _chosen(program: Program, evaluated: Evaluated) -> Array:
-    """Instants to look at: evenly spread ones, those at which a loop is nearest to a dead centre,
-    and where outputs peak.
+def _chosen(program: Program, evaluated: Evaluated) -> tuple[Array, float, Arithmetic]:
+    """Instants to look at, the factor of what is seen there, and the numbers to look with.
+
+    The instants are evenly spread; if these are not all, there are those at which a loop is nearest
+    to a dead centre too, and in long doubles those where columns peak.
     """
-    n = evaluated.status.size
-    distributed = spread(n, INSTANTS)
-    closures = [k for kind in _DEAD for k in program.checks(kind).values()]
-    peaks = [
-        int(np.argmin(row) if k in closures else largest(row))
-        for k, row in enumerate(evaluated.out)
-    ]
-    chosen: Array = np.unique([*distributed, *peaks])
-    return np.asarray(chosen[~resting(program, evaluated.out)[chosen]])
-
-
-def _open(instants: Instants) -> Array:
-    """The instants at which iterated loops are open furthest; none where no more than rounding is
-    left of what they want.
-
-    Steps that are too few leave most anywhere: the first instant is closed, so the second may be
-    the worst.
-    """
-    n = instants.t.size
-    looked_at = np.unique([*range(min(n, _FIRST)), *spread(n, _MANY)])
-    residual = openness(instants.at(looked_at))
-    return (
-        looked_at[np.argsort(residual)[-_WORST:]]
-        if np.fmax.reduce(residual) > _CLOSED
-        else looked_at[:0]
-    )
+    stages, out = evaluated.stages, evaluated.out
+    moving = ~resting(program, out)
+    long = ROUNDING[stages.precision] >= LONG * _DIGITS
+    most = min(_LONG, _OPERATIONS // stages.instructions(1)) if long else _FEW
+    chosen = [*spread(moving.size, most)]
+    if most < moving.size:
+        dead = [k for kind in _DEAD for k in program.checks(kind).values()]
+        chosen += [int(np.argmin(out[k])) for k in dead]
+        chosen += [int(largest(row)) for row in out] if long else []
+    some = np.unique(chosen)
+    factor = _ALLOWED if some.size == moving.size else _UNSEEN
+    return some[moving[some]], factor, long_doubles() if long else elementwise()

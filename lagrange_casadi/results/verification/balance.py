@@ -17,7 +17,6 @@ from ...model.description import Description
 from ...model.stated import Equation
 from .closure import Residuals
 from .contacts import actions, sense
-from .digits import Digits
 from .loads import off_laws
 from .placing import Motion, Placed
 from .unplaced import stacked
@@ -109,7 +108,7 @@ def forces_needed(declared: Description, body: str = "") -> Iterator[Output]:
     yield from (Output("multiplier", name) for name in declared.multipliers)
 
 
-def balance(placed: Placed, digits: Digits) -> dict[str, list[Residuals]]:
+def balance(placed: Placed) -> dict[str, list[Residuals]]:
     """The residuals of forces, each with what it is to be compared with."""
     acting = list(all_actions(placed))
     centres = {
@@ -138,21 +137,19 @@ def balance(placed: Placed, digits: Digits) -> dict[str, list[Residuals]]:
     turned, fastest, _ = placed.rates
     # Reported digits leave open places, which give arms, and the joints' rates, of which the rates
     # of bodies are sums.
-    largest = sums.largest * (1.0 + digits.coarseness * placed.declared.extent / size)
-    worst = np.maximum(worst, off_laws(placed, digits, float(np.max(largest))))
-    scale = max(float(np.max(largest)), digits.least)
+    largest = sums.largest * (1.0 + placed.reported.coarseness * placed.declared.extent / size)
+    worst = np.maximum(worst, off_laws(placed, float(np.max(largest))))
+    scale = max(float(np.max(largest)), placed.reported.least)
     flow = (
         sums.flow
-        + digits.least * fastest
-        + digits.coarseness * (sums.pushes * fastest + sums.twists * turned)
+        + placed.reported.least * fastest
+        + placed.reported.coarseness * (sums.pushes * fastest + sums.twists * turned)
     )
     found = {
         "balance": [(worst, scale)],
         "power": [(np.abs(power), float(np.max(flow)))],
     }
-    return found | (
-        {"ends": [_ends(placed, acting, digits, scale)]} if placed.reported.laws else {}
-    )
+    return found | ({"ends": [_ends(placed, acting, scale)]} if placed.reported.laws else {})
 
 
 def all_actions(placed: Placed) -> Iterator[Action]:
@@ -280,7 +277,7 @@ def _unlike(placed: Placed) -> Scalar:
     return worst
 
 
-def _ends(placed: Placed, acting: Sequence[Action], digits: Digits, scale: float) -> Residuals:
+def _ends(placed: Placed, acting: Sequence[Action], scale: float) -> Residuals:
     """Return by how much sections at the bases of links differ from the opposite of all that acts
     there [N], and the largest force of the mechanism.
 
@@ -289,7 +286,7 @@ def _ends(placed: Placed, acting: Sequence[Action], digits: Digits, scale: float
     """
     declared, reported = placed.declared, placed.reported
     worst = np.zeros_like(reported.t)
-    blurred = digits.coarseness * declared.extent
+    blurred = placed.reported.coarseness * declared.extent
     for link, law in reported.laws.items():
         inside, twisted = reported.inside(link)
         force, moment, flow = _before(placed, link, acting, law.slack * law.length)

@@ -27,13 +27,9 @@ from ..laws import SectionLaw
 from ..solution import Solution
 from .balance import balance, forces_reported
 from .closure import Residuals, closure
-from .digits import COARSE as COARSE
-from .digits import TOLERANCE as TOLERANCE
-from .digits import Digits
-from .digits import blur as blur
 from .friction import friction_residuals
 from .placing import Placed, place
-from .reported import Reported
+from .reported import COARSE, TOLERANCE, Reported, blur, precision_of
 from .unplaced import place_all
 
 NEAR = 1e3
@@ -73,14 +69,13 @@ def certify(
         return merged
     whole = replace(histories, outputs={**histories.outputs, **(hidden or {})}, indeterminate=())
     reported = reported_of(whole, phases or {})
-    digits = Digits.of(histories)
     found: dict[tuple[str, int], list[Array]] = {}
     scales: dict[tuple[str, int], float] = {}
     for start in range(0, whole.t.size, _BLOCK):
         block = (
             reported if whole.t.size <= _BLOCK else reported.during(slice(start, start + _BLOCK))
         )
-        for name, parts in _residuals(histories.description, stated, block, digits).items():
+        for name, parts in _residuals(histories.description, stated, block).items():
             for part, (distances, scale) in enumerate(parts):
                 found.setdefault((name, part), []).append(np.broadcast_to(distances, block.t.shape))
                 scales[name, part] = max(scales.get((name, part), 0.0), scale)
@@ -155,6 +150,7 @@ def reported_of(histories: Histories, phases: Mapping[Output, Array]) -> Reporte
         space=histories.table is SPACE,
         two_force_links=description.bars,
         unmeasured=frozenset(description.unmeasured),
+        precision=precision_of(histories),
     )
 
 
@@ -180,12 +176,12 @@ def placed_of(declared: Description, stated: Stated, reported: Reported) -> Plac
 
 
 def _residuals(
-    declared: Description, stated: Stated, reported: Reported, digits: Digits
+    declared: Description, stated: Stated, reported: Reported
 ) -> dict[str, list[Residuals]]:
     """The gaps of each residual, each with the largest of what it is to be compared with."""
     if (placed := placed_of(declared, stated, reported)) is None:
         return {}
-    found = {"closure": closure(placed, digits)}
-    if (residuals := friction_residuals(placed, digits)) is not None:
+    found = {"closure": closure(placed)}
+    if (residuals := friction_residuals(placed)) is not None:
         found["friction"] = [(residuals, 1.0)]
-    return found | (balance(placed, digits) if forces_reported(placed) else {})
+    return found | (balance(placed) if forces_reported(placed) else {})

@@ -12,8 +12,8 @@ from ...base.arrays import Array
 from ...base.quantities import Output
 from ...model.stated import Equation
 from .contacts import idle
-from .digits import NEARBY, ROUNDINGS, Digits
 from .placing import Placed
+from .reported import NEARBY
 from .unplaced import joint_residuals, stacked
 from .vectors import Scalar, Vector, most
 
@@ -21,21 +21,21 @@ Residuals = tuple[Array, float]
 """Gaps (t,), and what they are to be compared with."""
 
 
-def closure(placed: Placed, digits: Digits) -> list[Residuals]:
+def closure(placed: Placed) -> list[Residuals]:
     """The largest gap of places and angles, beside the length of all links; and those of rates,
     beside the largest there are.
     """
     worst = np.zeros_like(placed.reported.t)
     for residuals in (_of_joints, _of_angles, _of_poses, _of_equations):
-        for residual in residuals(placed, digits):
+        for residual in residuals(placed):
             worst = np.maximum(worst, residual)
-    motions = list(_of_motions(placed, digits))
+    motions = list(_of_motions(placed))
     for rotations, (residual, _, _) in motions:
         worst = np.maximum(worst, residual * placed.declared.size if rotations else residual)
     return [(worst, placed.declared.size), *_of_rates(placed, motions)]
 
 
-def _of_joints(placed: Placed, digits: Digits) -> Iterator[Scalar]:
+def _of_joints(placed: Placed) -> Iterator[Scalar]:
     """Residual of a joint: the child's position and direction against the joint's reported
     motion.
     """
@@ -65,7 +65,7 @@ def _of_rates(placed: Placed, motions: Sequence[tuple[bool, Array]]) -> list[Res
     return found
 
 
-def _of_motions(placed: Placed, digits: Digits) -> Iterator[tuple[bool, Array]]:
+def _of_motions(placed: Placed) -> Iterator[tuple[bool, Array]]:
     """Residual of driven coordinates against their laws, with rate and acceleration, (3, t); and
     whether it is an angle.
 
@@ -81,13 +81,13 @@ def _of_motions(placed: Placed, digits: Digits) -> Iterator[tuple[bool, Array]]:
         off = np.abs(found)
         if entry.kind == "direction":
             off[0] = np.abs(2.0 * np.sin(found[0] / 2.0))
-        off[0] = np.maximum(off[0] - ROUNDINGS * digits.rounding * np.abs(moving[0][0]), 0.0)
+        off[0] = np.maximum(off[0] - placed.reported.rounded(moving[0][0]), 0.0)
         largest = [size, *(float(np.max(one)) for one in fastest)]
         if any(
-            np.max(residual) * (size if rotations else 1.0) > digits.doubted * one
+            np.max(residual) * (size if rotations else 1.0) > placed.reported.doubted * one
             for residual, one in zip(off, largest, strict=True)
         ):
-            blur = NEARBY * digits.rounding * np.max(np.abs(t))
+            blur = NEARBY * placed.reported.rounding * np.max(np.abs(t))
             blurred = np.nansum(
                 [np.abs(motion.at(*moving, t + direction) - found) for direction in (-blur, blur)],
                 axis=0,
@@ -96,18 +96,18 @@ def _of_motions(placed: Placed, digits: Digits) -> Iterator[tuple[bool, Array]]:
         yield rotations, off
 
 
-def _of_angles(placed: Placed, digits: Digits) -> Iterator[Scalar]:
+def _of_angles(placed: Placed) -> Iterator[Scalar]:
     """Residual of reported angles against phases that are known more closely; an angle of many
     turns has fewer digits.
     """
     for output, phase in placed.reported.phases.items():
         if output.part not in placed.reported.unmeasured:
             angle = placed.reported.outputs[output]
-            known = ROUNDINGS * digits.rounding * np.abs(angle)
+            known = placed.reported.rounded(angle)
             yield (np.abs(2.0 * np.sin((angle - phase) / 2.0)) - known) * placed.declared.size
 
 
-def _of_poses(placed: Placed, digits: Digits) -> Iterator[Scalar]:
+def _of_poses(placed: Placed) -> Iterator[Scalar]:
     """Residual of bodies against their reported poses, whose axes must be at right angles.
 
     The y axis of a bar must be in the plane of the bar and the direction that was declared for it.
@@ -120,11 +120,7 @@ def _of_poses(placed: Placed, digits: Digits) -> Iterator[Scalar]:
             continue
         axes = reported.axes(name)
         if not reported.space:
-            known = (
-                ROUNDINGS
-                * digits.rounding
-                * np.abs(reported.outputs[Output("pose", name, "angle")])
-            )
+            known = reported.rounded(reported.outputs[Output("pose", name, "angle")])
             yield (axes.off(body.axes) - known) * declared.size
             continue
         x, y, z = axes.x, axes.y, axes.z
@@ -146,7 +142,7 @@ def _of_poses(placed: Placed, digits: Digits) -> Iterator[Scalar]:
             yield np.where(beside.dot(y) >= 0.0, np.abs(beside.dot(z)), 1.0) * declared.size
 
 
-def _of_equations(placed: Placed, digits: Digits) -> Iterator[Scalar]:
+def _of_equations(placed: Placed) -> Iterator[Scalar]:
     """Residuals of users' equations, over their slopes; and of the work of transmissions."""
     for equation in placed.stated.equations:
         yield _missed(placed, equation) * placed.declared.size

@@ -11,7 +11,6 @@ import numpy as np
 from ...base.arrays import Array
 from ...base.quantities import Output
 from ...model.description import JointNumbers
-from .digits import Digits
 from .placing import Placed
 from .reported import Reported
 from .vectors import Axes, Scalar, Vector
@@ -27,20 +26,20 @@ Pressing = Callable[[Array], Scalar]
 """Factor of mu, for signs of the rate."""
 
 
-def friction_residuals(placed: Placed, digits: Digits) -> Array | None:
+def friction_residuals(placed: Placed) -> Array | None:
     """Residuals of frictions against their laws, and between the power they take and that of their
     forces (t,).
 
     None where there is no friction, or what it takes is not among the outputs. What is open at rest
     is no gap.
     """
-    found = [*_of_losses(placed, digits)]
+    found = [*_of_losses(placed)]
     if (off := _of_laws(placed)) is not None:
         found.append(off)
     return np.fmax.reduce(found) if found else None
 
 
-def _of_losses(placed: Placed, digits: Digits) -> Iterator[Array]:
+def _of_losses(placed: Placed) -> Iterator[Array]:
     """Residual of the power of each friction against its force times its rate, relative to the
     largest.
     """
@@ -51,7 +50,7 @@ def _of_losses(placed: Placed, digits: Digits) -> Iterator[Array]:
         )
         if value is None or lost is None:
             continue
-        blur = digits.coarseness * np.max(turned if rotates else fastest)
+        blur = placed.reported.coarseness * np.max(turned if rotates else fastest)
         scale = _largest(value) * (_largest(rate) + float(blur))
         residual = np.abs(lost + value * rate) / (scale or 1.0)
         yield np.where(np.isnan(residual), 0.0, residual)

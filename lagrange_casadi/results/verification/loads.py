@@ -16,8 +16,8 @@ from ...base.arrays import Array
 from ...base.quantities import Output
 from ...model.description import LoadNumbers
 from ...model.stated import LoadLaw
-from .digits import NEARBY, Digits
 from .placing import Placed
+from .reported import NEARBY
 from .unplaced import stacked
 from .vectors import NIL, Axes, Vector, total
 
@@ -28,7 +28,7 @@ _TRIALS, _MOST = 8, 1e9
 """Number of trials for turns, and the largest number of turns."""
 
 
-def off_laws(placed: Placed, digits: Digits, largest: float) -> Array:
+def off_laws(placed: Placed, largest: float) -> Array:
     """Residuals of loads against their laws [N] (t,), couples over the size; ``largest`` is the
     largest force of the cycle.
     """
@@ -38,11 +38,11 @@ def off_laws(placed: Placed, digits: Digits, largest: float) -> Array:
         given, (places, rates, _) = _given(placed, law.name), stacked(placed, law)
         acts = _acting(placed, law, load, law.at(places, rates, placed.reported.t))
         residual = _apart(placed, given, acts)
-        if np.max(residual) > digits.doubted * largest:
+        if np.max(residual) > placed.reported.doubted * largest:
             places = _turned(placed, law, load, given, places, rates)
             acts = _acting(placed, law, load, law.at(places, rates, placed.reported.t))
             residual = np.maximum(
-                _apart(placed, given, acts) - _open(placed, law, load, places, rates, acts, digits),
+                _apart(placed, given, acts) - _open(placed, law, load, places, rates, acts),
                 0.0,
             )
         worst = np.maximum(worst, residual)
@@ -145,12 +145,11 @@ def _open(
     places: Array,
     rates: Array,
     acts: Acts,
-    digits: Digits,
 ) -> Array:
     """Uncertainty of a load that ``acts`` so by the rounding of its arguments: the sum of its
     changes with each.
     """
-    declared, off = placed.declared, NEARBY * digits.rounding
+    declared, off = placed.declared, NEARBY * placed.reported.rounding
     t, (turned, fastest, _) = placed.reported.t, placed.rates
     found = np.zeros_like(t)
     for sign in (-off, off):

@@ -11,14 +11,15 @@ import functools
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import casadi as ca
+import numpy as np
 
-from ...base.arrays import Array
+from ...base.arrays import Array, Operand
 from ...base.interpret import Arithmetic, codes, interpret
 from ...engine.program import Program
-from ...errors import AssemblyError, LagrangeCasadiError
+from ...errors import AssemblyError
 
 if TYPE_CHECKING:
     from mpmath import mpf
@@ -42,11 +43,12 @@ def reference(
 
     Times and parameters are doubles, taken as exact, or mpmath numbers. Iterated loops start from
     ``z`` (k, n), and are closed to all digits. A motion by samples is read in doubles.
-    ``following`` has the last word on the arithmetic of an instant. Raises
-    :class:`LagrangeCasadiError` where mpmath is not installed, :class:`AssemblyError` where a loop
-    does not close, and :class:`DeclarationError` for graphs that call functions of their own.
+    ``following`` has the last word on the arithmetic of an instant. Raises :class:`AssemblyError`
+    where a loop does not close, and :class:`DeclarationError` for graphs that call functions of
+    their own.
     """
-    mp = _mpmath()
+    from mpmath import mp  # takes its time
+
     with mp.workdps(digits):
         # A turn is meant, not the double that is nearest to it.
         plain = arithmetic()
@@ -59,19 +61,40 @@ def reference(
             time = mp.mpf(moment)
             driven = interpret(program.laws.motion, [[time], values], plain)
             guess = [] if z is None else [mp.mpf(float(x)) for x in z[:, i]]
-            inner = _closed(program, guess, time, driven[0], values, mp.mpf(10) ** (4 - digits))
-            (out,) = interpret(program.instant, [[time], *driven, inner, values], following(known))
+            if program.newton is not None:
+                given = [[time], driven[0], values]
+                small = mp.mpf(10) ** (4 - digits)
+                guess, done = closed(program.newton.step, guess, given, plain, small.__gt__, _STEPS)
+                if not done:
+                    raise AssemblyError(
+                        f"the loops closed by {program.newton.joints} do not close to all digits at"
+                        f" t = {float(time):.6g} s"
+                    )
+            (out,) = interpret(program.instant, [[time], *driven, guess, values], following(known))
             rows.append(out)
     return rows
 
 
 def arithmetic() -> Arithmetic:
-    """Mpmath's numbers of the digits that are set when they are computed.
+    """Mpmath's numbers of the digits that are set when they are computed."""
+    from mpmath import mp
 
-    Raises where mpmath is not installed.
-    """
-    mp = _mpmath()
     return Arithmetic(mp.mpf, _operations(mp))
+
+
+@functools.cache
+def elementwise() -> Arithmetic:
+    """Arrays of mpmath's numbers of :data:`DIGITS` digits, whatever digits are set."""
+
+    def rule(known: Callable[..., mpf]) -> Callable[..., Operand]:
+        return lambda *values: np.frompyfunc(known, len(values), 1)(*values)
+
+    from mpmath import mp
+
+    digits = mp.clone()
+    digits.dps = DIGITS
+    known = _operations(digits)
+    return Arithmetic(digits.mpf, {code: rule(known[code]) for code in known})
 
 
 @functools.cache
@@ -117,30 +140,21 @@ def _operations(mp: MPContext) -> Mapping[int, Callable[..., mpf]]:
     return unary | {code: getattr(mp, name) for code, name in names.items()} | binary
 
 
-def _mpmath() -> MPContext:
-    try:
-        from mpmath import mp
-    except ImportError:
-        raise LagrangeCasadiError(
-            "a reference of many digits needs mpmath; install it with: pip install '.[trade]'"
-        ) from None
-    return mp
-
-
-def _closed(
-    program: Program, z: list[mpf], time: mpf, driven: list[mpf], values: list[mpf], small: mpf
-) -> list[mpf]:
-    """The iterated coordinates, closed from a guess."""
-    if program.newton is None:
-        return []
-    for _ in range(_STEPS):
-        correction, (size,) = interpret(
-            program.newton.step, [z, [time], driven, values], arithmetic()
-        )
-        z = [a + b for a, b in zip(z, correction, strict=True)]
-        if size < small:
-            return z
-    raise AssemblyError(
-        f"the loops closed by {program.newton.joints} do not close to all digits at t ="
-        f" {float(time):.6g} s"
-    )
+def closed(
+    step: ca.Function,
+    z: Sequence[Operand],
+    given: Sequence[Sequence[Operand]],
+    arithmetic: Arithmetic,
+    small: Callable[[Operand], Any],
+    most: int,
+) -> tuple[list[Operand], bool]:
+    """Iterated coordinates after at most so many Newton steps from ``z`` in an arithmetic, and
+    whether the size of the last correction is ``small``.
+    """
+    add, z = arithmetic.operations[ca.OP_ADD], list(z)
+    for _ in range(most):
+        correction, (size,) = interpret(step, [z, *given], arithmetic)
+        z = [add(a, b) for a, b in zip(z, correction, strict=True)]
+        if small(size):
+            return z, True
+    return z, False

@@ -8,15 +8,48 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...base.arrays import Array, during
+from ...base.compensated import DTYPES, ROUNDING
 from ...base.quantities import Output
+from ...base.vocabulary import Precision
 from ...model.description import Description, JointNumbers
+from ..histories import Histories
 from ..laws import SectionLaw
 from .vectors import GROUND, Axes, Scalar, Vector
+
+_ROUNDINGS = 4.0
+"""So many roundings may be in what is reported."""
+
+NEARBY = 32.0
+"""So many roundings may be between what is reported, and what a law has seen of it."""
+
+TOLERANCE, COARSE = 1e-9, 1e-3
+"""A residual above it means that the solution is wrong, not that it is rounded; in doubles, and
+where less was asked for.
+"""
 
 _NEAR = 1e-3
 """The square of the cosine of a second turn below which the rates of three turns have lost digits
 of the body's.
 """
+
+
+def precision_of(histories: Histories) -> Precision:
+    """The precision that histories were made with."""
+    return "single" if histories.provenance.precision == "single" else "double"
+
+
+def blur(histories: Histories) -> float:
+    """Uncertainty of a phase by the reported angles: one rounding of the largest of them [rad]."""
+    angles = [
+        Output("motion", name)
+        for name, kind in histories.description.coordinates.items()
+        if kind == "angle"
+    ]
+    angles += [Output("pose", name, "angle") for name in histories.description.bodies]
+    reported = (histories.outputs[angle] for angle in angles if angle in histories.outputs)
+    return ROUNDING[precision_of(histories)] * max(
+        (float(np.max(np.abs(values))) for values in reported), default=0.0
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,6 +69,33 @@ class Reported:
     space: bool
     two_force_links: Collection[str]
     unmeasured: frozenset[str]
+    precision: Precision
+
+    @property
+    def rounding(self) -> float:
+        """The largest relative error of one rounding."""
+        return ROUNDING[self.precision]
+
+    def rounded(self, values: Array) -> Array:
+        """Largest error of reported values by their last digits."""
+        return _ROUNDINGS * self.rounding * np.abs(values)
+
+    @property
+    def least(self) -> float:
+        """The force beside which what underflows is as small as a rounding."""
+        return float(np.finfo(DTYPES[self.precision]).tiny) / self.rounding
+
+    @property
+    def doubted(self) -> float:
+        """Limit of a residual by the roundings of a law alone; a larger one is examined more
+        closely.
+        """
+        return 256.0 * self.rounding
+
+    @property
+    def coarseness(self) -> float:
+        """A rounding as a share of the least residual that fails."""
+        return _ROUNDINGS * self.rounding / (COARSE if self.precision == "single" else TOLERANCE)
 
     def during(self, instants: slice) -> Reported:
         """The results at some of the instants."""

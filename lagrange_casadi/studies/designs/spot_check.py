@@ -22,9 +22,10 @@ from ...engine.instants.evaluation_method import EvaluationMethod
 from ...engine.instants.phases import outputs_of, phases
 from ...engine.program import Program
 from ...results.histories import Histories
-from ...results.verification.accuracy import estimate
-from ...results.verification.certificate import COARSE, tolerance
+from ...results.verification.accuracy import by_unit, estimate
+from ...results.verification.certificate import tolerance
 from ...results.verification.evidence import residuals_of
+from ...results.verification.reported import COARSE
 
 INSTANTS = 5
 _WANTED = {"stress": "stress", "utilisation": "safety", "deflection": "deflection"}
@@ -99,13 +100,7 @@ def _agreement(
     """Distance of outputs from those of histories, beyond what is ``rounded``, relative to the
     largest of their unit.
     """
-    largest: dict[str, float] = {}
-    for name, values in whole.outputs.items():
-        unit = whole.unit(name)
-        largest[unit] = max(
-            largest.get(unit, 0.0), float(np.fmax.reduce(np.abs(values), initial=0.0))
-        )
-    worst = 0.0
+    largest, worst = by_unit(whole), 0.0
     for name, values in found.items():
         there = ~np.isnan(
             values

@@ -15,7 +15,7 @@
    same time; calls with a model each may, and those that take a const model. Do not compile with -ffast-math or what it stands
    for: there NaN is not distinguished from a number. Ranges "over the scene's motion" are what its author saw, no limits.
 
-   In double precision; options of the export: (default). Its outputs are off by about 3e-15 of their largest values over the
+   In double precision; options of the export: (default). Its outputs are off by about 2e-15 of their largest values over the
    scene's motion at most (effort_O).
 
    Conventions: SI units; plane x-y; angles in rad, counter-clockwise; a link's axis e runs from its base (xi = 0) to its tip
