@@ -214,7 +214,7 @@ def largest(curve):
     return best
 
 
-@pytest.mark.parametrize("together", [64, 3])
+@pytest.mark.parametrize("together", [64, 2])
 @pytest.mark.parametrize("name", KINDS)
 def test_the_largest_is_found_in_as_few_times(name, together, monkeypatch):
     monkeypatch.setattr(search, "_TOGETHER", together)
@@ -225,7 +225,7 @@ def test_the_largest_is_found_in_as_few_times(name, together, monkeypatch):
         work += times
         size = abs(peaks.value[0])
         assert peaks.resolved[0]
-        assert size == abs(curve.at(peaks.t)[0])
+        assert peaks.value[0] == curve.at(peaks.t)[0]
         assert largest(curve) * (1 - 1e-11) <= size <= largest(curve) * (1 + 1e-9)
     assert work == WORK[name]
 
