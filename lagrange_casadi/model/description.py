@@ -25,7 +25,7 @@ from .beams.material import Material
 from .beams.shape import Course, Shape
 from .density import Density, NumericDensity
 from .fitted import Fittings, Pin, Plain, Rolling
-from .joints import Joint
+from .joints import Joint, JointKind
 from .mass_properties import mass_of
 from .mechanism import Mechanism
 from .parts import Friction, Link, Load, Point, PointMass, RigidMass
@@ -150,7 +150,7 @@ class JointNumbers(Brief):
     """
 
     name: str
-    kind: str
+    kind: JointKind
     parent: Place
     child: Place
     triad: Rows

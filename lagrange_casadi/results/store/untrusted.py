@@ -84,7 +84,9 @@ def structured(kind: Any, value: Any, place: str) -> Any:
         return None if value is None else structured(last, value, place)
     if isinstance(kind, type) and is_dataclass(kind):
         check_shape(value, {}, place)
-        hints = _hints(kind)
+        hints, known = _hints(kind), {one.name for one in fields(kind)}
+        if more := sorted(value.keys() - known):
+            raise ValueError(f"{place} has an unknown part '{more[0]}'")
         given = {
             one.name: structured(hints[one.name], value.get(one.name), f"{place}.{one.name}")
             for one in fields(kind)
@@ -105,6 +107,8 @@ def structured(kind: Any, value: Any, place: str) -> Any:
         check_shape(value, {}, place)
         return {name: structured(of[1], one, f"{place}.{name}") for name, one in value.items()}
     check_shape(value, str if origin is Literal else kind, place)
+    if origin is Literal and value not in of:
+        raise ValueError(f"{place} is not of the expected kind")
     return float(value) if kind is float else value
 
 

@@ -81,12 +81,14 @@ def estimate(
     worst = _worst(program, histories, *off)
     unit, least = ROUNDING[precision], float(np.finfo(DTYPES[precision]).tiny)
     errors = {output: max(least, factor * error) for output, error in worst.items()}
-    largest_of_unit = by_unit(histories)
+    # Coefficients of section laws are in no result.
+    read = {output: values for output, values in histories.outputs.items() if not output.along}
+    largest_of_unit = by_unit(replace(histories, outputs=read))
     for output in errors.keys() & histories.outputs.keys():
         # The last digit is never sure; nor is, of what vanishes, that of the largest of its unit.
         size = most(histories.outputs[output])
         vanishes = size <= 2.0 * errors[output]
-        beside = largest_of_unit[histories.unit(output)] if vanishes else size
+        beside = largest_of_unit.get(histories.unit(output), size) if vanishes else size
         errors[output] = max(errors[output], unit * beside)
     return errors
 
