@@ -57,6 +57,27 @@ def test_each_encoder_has_its_counts(tmp_path):
             read_measurements(path, names={"B": "slow"}, counts_per_turn=wrong)
 
 
+def test_an_angle_that_begins_again_after_each_turn_goes_on(tmp_path):
+    path, turn = tmp_path / "run.csv", np.arange(41) / 16
+    rows = [f"{k},{360.0 * (x % 1.0):g},{x % 0.7:g}" for k, x in enumerate(turn)]
+    path.write_text("\n".join(["t [s],A [deg],B [m]", *rows]))
+    given = read_measurements(path)
+    np.testing.assert_allclose(given.columns["A"], 2 * np.pi * turn, atol=1e-12)
+    np.testing.assert_allclose(given.columns["B"], turn % 0.7, atol=1e-6)
+
+
+def test_smoothing_halves_the_power_at_its_cutoff():
+    """By the spectra of a noisy record and of what is left of the noise."""
+    draw, t = np.random.default_rng(2), np.arange(20_000) / 1000
+    noise = draw.normal(scale=1e-3, size=t.size)
+    given = Measurements(t, {"A": np.sin(2 * np.pi * t) + noise}, noise={"A": 1e-3})
+    left = given.motion(["A"], trim=0.0).d[:, 0] - np.sin(2 * np.pi * t)
+    frequencies, cutoff = np.fft.rfftfreq(t.size, 1e-3), given.cutoff("A")
+    near = np.abs(frequencies / cutoff - 1.0) < 0.2
+    share = np.fft.rfft(left)[near] / np.fft.rfft(noise)[near]
+    assert np.median(share.real) == pytest.approx(0.5**0.5, rel=0.05)
+
+
 def test_a_drive_at_rest_and_a_wrong_sign_are_said():
     scene = two_links()
     given = record(scene, ARM, "effort:A")

@@ -104,6 +104,13 @@ def test_walls_are_the_polygon_of_their_outline(kind):
         )
 
 
+def test_shear_in_the_middle_of_a_polygon_is_that_of_its_shape():
+    """Along both axes: a rectangle's, half as much again as the mean."""
+    corners = [(H / 2, B / 2), (-H / 2, B / 2), (-H / 2, -B / 2), (H / 2, -B / 2)]
+    middle = beams.polygon(corners).properties().fibres[-1]
+    assert (middle.along_y[0], middle.along_z[1]) == pytest.approx((1.5 / (H * B),) * 2, rel=1e-12)
+
+
 def test_shear_flows_of_a_thin_hollow_section_carry_the_force_and_the_torsion():
     """The flow goes along the wall, and its sum along y is the force."""
     t, radius = 2e-4, 6e-3

@@ -64,6 +64,7 @@ def test_the_largest_is_that_of_a_fine_grid(solutions, name, kind):
     squares = [KINDS[kind][0] * s**2 + KINDS[kind][1] * (y**2 + z**2) for s, y, z in there]
     if kind == "normal":
         assert np.sign(peak.value) == np.sign(there[int(np.argmax(squares))][0])
+        assert found.value.min() < 0.0 < found.value.max()
     assert math.sqrt(max(squares)) == pytest.approx(size, rel=1e-9 if name != "even" else 1e-6)
 
 
