@@ -260,6 +260,16 @@ def test_local_peaks_are_listed(kind, sign):
             assert size(there[:, 1])[0] >= sizes[k] * (1 - 1e-9)
 
 
+@pytest.mark.parametrize("speed", [7.0, 31.0, 55.0])
+def test_of_tops_as_large_the_first_is_told(speed):
+    """Whatever rounding says of tops and troughs."""
+    for phase in np.linspace(0.0, math.pi, 24, endpoint=False):
+        watched = ((Kind.RATE, (), lambda t: speed + 0 * t),)
+        peaks, _ = searched([Curve(lambda t, x=phase: sine(speed * t + x), watched)])
+        turns = math.ceil((phase - speed) / math.pi - 0.5)
+        assert peaks.t[0] == pytest.approx(((turns + 0.5) * math.pi - phase) / speed, abs=1e-6)
+
+
 def test_quantities_of_several_curves_at_places():
     """A quantity's peak is that of the curve of its own that goes furthest, at the place of it."""
     draw, curves, quantities = np.random.default_rng(8), [], []
