@@ -84,13 +84,14 @@ class Program(Graphs):
 
     def described(self, p: Array, out: Array) -> Description:
         """The mechanism in plain numbers, for parameters ``p``; where axes are rounded, with what
-        loops miss in its columns ``out`` (columns, t), by what closes them.
+        loops miss in its columns ``out`` (columns, t), by what closes them, if any does.
         """
         description = self.data.at(p)
         if not self.data.rounding:
             return description
         gaps = {name: float(np.max(out[row])) for name, row in self.checks("misfit").items()}
-        return replace(description, missed={name: gap for name, gap in gaps.items() if gap > FITS})
+        missed = {name: gap for name, gap in gaps.items() if gap > FITS}
+        return replace(description, missed=missed, rounding=self.data.rounding if missed else 0.0)
 
     def checks(self, kind: str) -> Mapping[str, int]:
         """The parts that have a check of a kind, and its row of ``out``."""

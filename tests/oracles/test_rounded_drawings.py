@@ -166,6 +166,12 @@ def test_places_that_fit_at_first_hide_no_rounded_axes(noise, turn):
     assert_near(found, exact, noise)
 
 
+def test_nothing_is_said_of_loops_that_fit_at_all_instants():
+    scene = placed_four_bar(1e-9, 0.0)
+    assert rounded(evaluate(scene, backend="vm"))
+    assert not rounded(evaluate(scene, t=(0.0, 0.0, 1), backend="vm"))
+
+
 def rounded(solution):
     return any("rounding" in note for note in solution.notes)
 
