@@ -15,12 +15,13 @@ from ..model.description import Description, JointNumbers
 from ..model.scene import Scene, kinds
 from ..results.solution import Solution
 from ..results.store import runs as store
+from ..results.store.attributes import described
 from ..studies.case import load_case
 from ..studies.sweep import Sweep, is_sweep
 from ..studies.sweep.axes import counted
 from ..studies.sweep.checking import progress, unfinished
 from ..studies.sweep.meanings import in_words
-from ..studies.sweep.plan import Identity, described_in
+from ..studies.sweep.plan import Identity
 from .echo import echo
 from .options import HDF5
 from .report import Rows, asked_line
@@ -84,12 +85,12 @@ def _describe_file(solution: Solution) -> None:
 
 
 def _describe_sweep(identity: Identity) -> None:
-    described = described_in(identity)
-    _describe_mechanism(described)
+    mechanism = described(identity["mechanism"])
+    _describe_mechanism(mechanism)
     for name, words in identity["grid"].items():
         echo(f"swept {name}: {words}")
     asked, xi = identity["t"][:4], identity["xi"]
-    echo(asked_line(asked, len(asked) > 3 and described.coordinates[asked[3]] == "slide"))
+    echo(asked_line(asked, len(asked) > 3 and mechanism.coordinates[asked[3]] == "slide"))
     if xi:
         echo(f"xi/l: {xi[0]:g} to {xi[1]:g}, {xi[2]} points")
     made = (identity["backend"], identity["precision"], identity["compiler"], identity["flags"])

@@ -197,8 +197,8 @@ class Description(Brief):
     links. ``losses`` are transmissions with friction. ``unturned`` are the joints whose child is a
     slender link that slides in a direction that was not declared. ``snapped`` are the corrections
     of a rounded drawing [rad and m]; its loops may miss within ``rounding``, and ``missed`` says by
-    how much each of them does. ``bars`` are two-force links in space, whose
-    spin about their own axis is taken to be none, and ``unmeasured`` coordinates without a value.
+    how much each of them does. ``bars`` are two-force links in space, whose spin about their own
+    axis is taken to be none, and ``unmeasured`` coordinates without a value.
     """
 
     name: str
@@ -316,9 +316,7 @@ class Description(Brief):
 
     @cached_property
     def extent(self) -> float:
-        """The size of the mechanism, and how far from the origin it
-        stands: the largest of places.
-        """
+        """The size of the mechanism, and how far from the origin it stands [m]."""
         points = [end for joint in self.joints.values() for end in joint.ends]
         points += [place for load in self.loads.values() for place in load.points]
         return self.size + max(

@@ -63,7 +63,10 @@ def smooth(draw):
 def pole(draw):
     """A bump of any width."""
     base, c, w, h = polynomial(draw), place(draw), 10 ** draw.uniform(-3, 0), draw.uniform(-4, 4)
-    divisor = lambda t: 1 + ((t - c) / w) ** 2  # noqa: E731
+
+    def divisor(t):
+        return 1 + ((t - c) / w) ** 2
+
     return Curve(lambda t: base(t) + h / divisor(t), ((Kind.POLE, (), divisor),), (c,))
 
 
@@ -92,14 +95,20 @@ def switch(draw):
 def knot(draw):
     """A kink in the slope, or in what bends a curve."""
     base, c, a, k = polynomial(draw), place(draw), draw.uniform(-6, 6), draw.integers(1, 4)
-    kinked = lambda t: base(t) + a * np.maximum(t - c, 0.0) ** k  # noqa: E731
+
+    def kinked(t):
+        return base(t) + a * np.maximum(t - c, 0.0) ** k
+
     return Curve(kinked, ((Kind.KNOT, (c,), lambda t: t),), (c,))
 
 
 def steps(draw):
     """A sawtooth of jumps that may be nearer to each other than two instants."""
     base, s, b = polynomial(draw), draw.uniform(0.5, 12), draw.uniform(-1, 1)
-    u = lambda t: s * t + b  # noqa: E731
+
+    def u(t):
+        return s * t + b
+
     jumps = (np.arange(math.floor(b - s) + 1, math.floor(b + s) + 1) - b) / s
     return Curve(
         lambda t: base(t) + 0.3 * np.floor(u(t)) - 0.25 * s * t,
@@ -113,7 +122,10 @@ def rate(draw):
     base, q = polynomial(draw), draw.uniform(0, 0.5)
     w = draw.choice([draw.uniform(3, 8), 10 ** draw.uniform(0.5, 2.0)])
     phase, h = draw.uniform(0, 6), draw.uniform(0.1, 2)
-    angle = lambda t: w * t * (1 + q * t) + phase  # noqa: E731
+
+    def angle(t):
+        return w * t * (1 + q * t) + phase
+
     watched = ((Kind.RATE, (), lambda t: w * (1 + 2 * q * t)), (Kind.TURN, (), angle))
     return Curve(lambda t: base(t) + h * sine(angle(t)), watched)
 
@@ -121,14 +133,22 @@ def rate(draw):
 def soft(draw):
     """A steep change."""
     base, c, w = polynomial(draw), place(draw), 10 ** draw.uniform(-3, 0)
-    u = lambda t: (t - c) / w  # noqa: E731
-    steep = lambda t: base(t) * u(t) / np.sqrt(1 + u(t) ** 2)  # noqa: E731
+
+    def u(t):
+        return (t - c) / w
+
+    def steep(t):
+        return base(t) * u(t) / np.sqrt(1 + u(t) ** 2)
+
     return Curve(steep, ((Kind.SOFT, (20.0,), u),), (c,))
 
 
 def power(draw):
     base, c, w = polynomial(draw), place(draw), 10 ** draw.uniform(-2.5, 0)
-    u = lambda t: -(((t - c) / w) ** 2)  # noqa: E731
+
+    def u(t):
+        return -(((t - c) / w) ** 2)
+
     return Curve(lambda t: base(t) + 4 * np.exp(u(t)), ((Kind.POWER, (), u),), (c,))
 
 
@@ -230,6 +250,16 @@ def test_the_largest_is_found_in_as_few_times(name, together, monkeypatch):
     assert work == WORK[name]
 
 
+def sizes_of(curve, t, sign):
+    """Sizes of values; of one ``sign``, their distance from as far below the least instant as the
+    largest is above it.
+    """
+    if not sign:
+        return np.abs(curve.at(t))
+    instants = sign * curve.at(T)
+    return sign * curve.at(t) - (2 * instants.min() - instants.max())
+
+
 @pytest.mark.parametrize("sign", [0, 1, -1])
 @pytest.mark.parametrize("kind", [smooth, pole, root, rate])
 def test_local_peaks_are_listed(kind, sign):
@@ -240,15 +270,12 @@ def test_local_peaks_are_listed(kind, sign):
     for _ in range(40):
         curve = kind(draw)
         peaks, _ = searched([curve], listed=Listed(share, sign))
-        values = curve.at(T)
-        base = 0.0 if not sign else 2 * (sign * values).min() - (sign * values).max()
-        size = lambda t: np.abs(curve.at(t)) if not sign else sign * curve.at(t) - base  # noqa: B023, E731
         rows = peaks.tops[0][peaks.tops[0, :, 0] == 0]
         np.testing.assert_allclose(rows[:, 3], curve.at(rows[:, 1]), rtol=1e-12, atol=1e-13)
         t = dense(curve)
-        sizes = size(t)
+        sizes = sizes_of(curve, t, sign)
         best = sizes.max()
-        assert np.all(size(rows[:, 1]) >= best * (share - 1e-6))
+        assert np.all(sizes_of(curve, rows[:, 1], sign) >= best * (share - 1e-6))
         tops = np.flatnonzero((sizes[1:-1] > sizes[:-2]) & (sizes[1:-1] >= sizes[2:])) + 1
         tops = [k for k in tops if sizes[k] > share * best * (1 + 1e-6)]
         tops = [k for k in tops if sizes[k] == sizes[np.abs(t - t[k]) <= 2 * STEP].max()]
@@ -257,7 +284,7 @@ def test_local_peaks_are_listed(kind, sign):
         for k in tops:
             there = rows[np.abs(rows[:, 1] - t[k]) < 1e-3]
             assert len(there) == 1
-            assert size(there[:, 1])[0] >= sizes[k] * (1 - 1e-9)
+            assert sizes_of(curve, there[:, 1], sign)[0] >= sizes[k] * (1 - 1e-9)
 
 
 @pytest.mark.parametrize("speed", [7.0, 31.0, 55.0])

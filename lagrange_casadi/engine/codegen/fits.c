@@ -17,7 +17,8 @@ typedef struct {
 
 /* A value of a panel beside which a curve may rise: where to look, and what is expected there: its size, and the size's slope and
    curve by steps of time. What a polynomial misses there bends its slope by steep times that; its sixth difference shows how rough it
-   is, unless it is broken by a kink or a jump. kink_t and kink_size are the times at which to look for a kink, if any, and the sizes expected there. */
+   is, unless it is broken by a kink or a jump. kink_t and kink_size are the times at which to look for a kink, if any, and the sizes
+   expected there. */
 typedef struct {
   int curve, closed, again, kinked, broken;
   long long at;

@@ -27,9 +27,8 @@ typedef struct {
 
 enum { SEARCH_HIDES = 1, SEARCH_DONE = 2 };
 
-/* A search. left are panels that it may still take of a quota; none says which
-   curves are no number at any instant, ignored which of the watched hide too much. In a step
-   between instants that is searched, noise is the rounding of what is watched, and sides are those on which it is before and after;
+/* A search. left are panels that it may still take of a quota; none says which curves are no number at any instant, ignored which of
+   the watched hide too much. In a step between instants that is searched, noise is the rounding of what is watched, and sides are those on which it is before and after;
    step is below zero elsewhere, near what is watched there. inner are rows of panels within each other, columns what such panels
    have at their ends, found what was evaluated last. */
 typedef struct {

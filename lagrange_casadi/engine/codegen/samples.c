@@ -134,7 +134,8 @@ static int search_broken(const search_now* now, const search_panel* panel, int c
   int k;
   for (k = 0; k < now->curves->watches; ++k) {
     if (!search_is_switching(now, k) || now->curves->watch[k] == SEARCH_IS_KNOT) continue;
-    for (i = first; search_depends(now, k, now->quantity[curve]) && i < first + SEARCH_FIT - 1; ++i) {
+    if (!search_depends(now, k, now->quantity[curve])) continue;
+    for (i = first; i < first + SEARCH_FIT - 1; ++i) {
       if (search_kinks_in(now, panel, k, i)) return 1;
     }
   }

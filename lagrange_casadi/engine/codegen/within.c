@@ -148,10 +148,8 @@ static int search_find_sides(search_now* now, const search_panel* panel, long lo
   if (!(panel->t[step + 1] - panel->t[step] > 8*search_beside(now, panel))) return 0;
   for (k = 0; k < curves->watches; ++k) {
     kind = curves->watch[k];
-    j = curves->watch_first[k];
     if (kind == SEARCH_IS_STEP || SEARCH_NUMBERED(kind) || now->ignored[k]) continue;
-    if (search_kinks(search_watched(panel, k), step, panel->n, kind, curves->watch_at + j, curves->watch_first[k + 1] - j,
-                     search_width(panel), 0) == SEARCH_MANY) return 0;
+    if (search_kinks_in(now, panel, k, step) == SEARCH_MANY) return 0;
   }
   for (numbered = 0; numbered < 2; ++numbered) {
     for (k = 0; k < curves->watches; ++k) {

@@ -6,6 +6,7 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, TypeAlias
 
+from ...base.arrays import Json
 from ...base.methods import method
 from ...base.quantities import Output
 from ...engine.instants.beyond_equilibrium import Elasticity
@@ -33,8 +34,8 @@ def attributes_to_write(solution: Solution, figures: str, grids: Sequence[str]) 
     """
     check_shape(dict(solution.errors), {str: float}, "errors")
     found = _attributes(solution, figures, grids)
-    read_attributes(found)
-    for fault in check_attributes(found):
+    fields, _ = read_attributes(found)
+    for fault in check_attributes(found, fields["description"]):
         raise ValueError(fault)
     return found
 
@@ -85,7 +86,7 @@ def read_attributes(attributes: Attributes) -> tuple[dict[str, Any], dict[str, A
         text = attributes[key] if otherwise is None else attributes.get(key, otherwise)
         return parsed(text, shape, key)
 
-    description = described(attributes["mechanism"])
+    description = described(read_json(attributes["mechanism"], "mechanism"))
     description.check_places()
     words = {name: shown(attributes[key]) for key, name in _PROVENANCE.items()}
     completed, reasons = (stated(key, [str], "[]") for key in ("by_elasticity", "open_because"))
@@ -102,19 +103,18 @@ def read_attributes(attributes: Attributes) -> tuple[dict[str, Any], dict[str, A
     }
 
 
-def described(text: str) -> Description:
-    """The mechanism of a file. Raises ``ValueError`` for a text of another form."""
-    found: Description = structured(Description, read_json(text, "mechanism"), "mechanism")
+def described(mechanism: Json) -> Description:
+    """The mechanism of a file. Raises ``ValueError`` for JSON of another form."""
+    found: Description = structured(Description, mechanism, "mechanism")
     return found
 
 
-def check_attributes(attributes: Attributes) -> Iterator[str]:
-    """Faults of figures, and of the case and parameters, which are stated twice."""
+def check_attributes(attributes: Attributes, description: Description) -> Iterator[str]:
+    """Faults of figures, and of the case and parameters, which the ``description`` has too."""
     try:
         figures_of(attributes)
     except ValueError as error:
         yield str(error)
-    description = described(attributes["mechanism"])
     if (
         parsed(attributes["parameters"], {str: float}, "parameters") != description.values
         or attributes["case"] != description.name

@@ -256,7 +256,7 @@ def check(path: str | os.PathLike[str]) -> list[str]:
         )
         listed = map(Output.of, parsed(file.attrs["outputs"], [str]))
         found = [f"{_place(output)}: missing" for output in listed if output not in outputs]
-        found += check_attributes(file.attrs)
+        found += check_attributes(file.attrs, solution.description)
         if not found:
             found += unlike_conventions(file, solution.table)
             found += _check_axes(file, solution)

@@ -10,6 +10,7 @@ from typing import Any, TypedDict
 import h5py
 import numpy as np
 
+from ...results.store.attributes import described
 from ...results.store.untrusted import (
     check_dataset,
     check_links,
@@ -21,7 +22,7 @@ from ...results.store.untrusted import (
 from .axes import DESIGN
 from .file import WORDS
 from .meanings import KINDS, STATUS
-from .plan import IDENTITY, Identity, described_in
+from .plan import IDENTITY, Identity
 
 _NAMED = (
     "backend",
@@ -70,7 +71,7 @@ def contents(file: h5py.File) -> Contents:
         key: _plain(attributes[key]) for key in _NAMED
     }
     check_shape(identity, IDENTITY, "attributes")
-    described_in(identity)
+    described(identity["mechanism"])
     columns: dict[str, KeptColumn] = {}
     status = file[STATUS]
     names = [dim[0].name.rpartition("/")[2] for dim in status.dims]

@@ -22,9 +22,10 @@ from typing import BinaryIO, TypedDict
 from ...base.locks import lock
 from ...base.publish import flush, put, reporting, settled
 from ...errors import BusyError, PathError, StoreError, one_line
+from ...results.store.attributes import described
 from ...results.store.untrusted import parsed
 from .columns import Column
-from .plan import IDENTITY, Identity, described_in
+from .plan import IDENTITY, Identity
 
 
 class _Head(TypedDict):
@@ -177,7 +178,7 @@ class Folder:
         """Identity of the parts. Raises :class:`StoreError` if it cannot be read."""
         try:
             found: Identity = parsed((self.path / _PLAN).read_text(), IDENTITY, "plan")
-            described_in(found)
+            described(found["mechanism"])
         except (OSError, ValueError, RecursionError) as error:
             raise StoreError(
                 f"{self.path / _PLAN}: damaged: {one_line(error)}; start anew with force=True"

@@ -22,7 +22,6 @@ from ...model.description import Description
 from ...model.even_points import checked_ratios
 from ...model.scene import STRENGTH, Scene
 from ...model.wanted_names import SENSITIVITY, among, by_parameters, without_fitted
-from ...results.store.untrusted import structured
 from ..designs.spot_check import wanted_whole
 from ..request import Request
 from .axes import Designs, check_designs, counted
@@ -70,15 +69,6 @@ class Identity(TypedDict):
     xi: list[Any] | None
     mechanism: dict[str, Json]
     grid: dict[str, str]
-
-
-def described_in(identity: Identity) -> Description:
-    """The mechanism of a sweep, swept parameters at their defaults.
-
-    Raises ``ValueError`` for another form, as of a forged file.
-    """
-    found: Description = structured(Description, identity["mechanism"], "mechanism")
-    return found
 
 
 MANY, MOST = 10**9, 10**12

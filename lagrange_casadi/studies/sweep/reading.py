@@ -32,13 +32,14 @@ from ...errors import (
     shown,
 )
 from ...model.description import Description
+from ...results.store.attributes import described
 from ...results.store.opening import opened_file
 from .axes import DESIGN, counted
 from .blocks import chunk_of, slabs
 from .contents import KeptColumn, contents
 from .meanings import CYCLE, OVER, STATUS, Meanings
 from .parts import Folder
-from .plan import SCHEMA, SCHEMA_VERSION, Identity, described_in
+from .plan import SCHEMA, SCHEMA_VERSION, Identity
 from .selection import Selected, matches
 
 if TYPE_CHECKING:
@@ -499,7 +500,7 @@ class Sweep:
     @cached_property
     def description(self) -> Description:
         """The mechanism as a file describes it, swept parameters at their defaults."""
-        return described_in(self.identity)
+        return described(self.identity["mechanism"])
 
     def check_columns(self, names: Sequence[str], along: Sequence[str] = ()) -> None:
         """Raise for columns that are none or have other axes than these.
