@@ -14,6 +14,7 @@ from sphinx import addnodes
 from sphinx.util.nodes import make_refnode
 
 import lagrange_casadi
+from lagrange_casadi.base.tables import QUANTITIES, SPATIAL_QUANTITIES
 
 HERE = Path(__file__).parent
 CASES = HERE.parent / "cases"
@@ -84,7 +85,10 @@ UNLISTED = [
 suppress_warnings = ["myst.header"]  # the glossary has its words at one level
 nitpicky = True
 nitpick_ignore_regex = [
-    ("py:class", r"lagrange_casadi\..*"),  # types in signatures that are no part of the interface
+    (
+        "py:class",
+        r"lagrange_casadi\..*",
+    ),  # types in signatures that are no part of the interface
     ("py:.*", r"casadi\..*|(SX|DM|Function)"),  # CasADi has no inventory
     ("py:(class|func|meth|data|attr)", "|".join(UNLISTED)),
     ("py:mod", r"\.*[a-z_.]+"),  # modules that docstrings name to developers
@@ -122,9 +126,46 @@ doors = [
 names = [f"{door.__name__}.{name}" for door in doors for name in dir(door)]
 twins = Counter(map(str.lower, names))
 autosummary_filename_map = {
-    name: f"{name}_class" for name in names if not name.islower() and twins[name.lower()] > 1
+    name: f"{name}_class"
+    for name in names
+    if not name.islower() and twins[name.lower()] > 1
 }
-autodoc_default_options = {"members": True, "inherited-members": True, "show-inheritance": False}
+
+
+def write(path, text):
+    """Write a file that is made, if it is to be another; what is unchanged is not read again by the
+    build.
+    """
+    path.parent.mkdir(exist_ok=True)
+    if not path.is_file() or path.read_text() != text:
+        path.write_text(text)
+
+
+def names_of(module):
+    """A heading for a public module, and a table of its names."""
+    purpose = inspect.getdoc(module).split("\n\n")[0].split(": the public part of")[0]
+    head = f".. currentmodule:: {module.__name__}\n\n.. autosummary::\n   :toctree: .\n"
+    names = "".join(f"   {name}\n" for name in sorted(module.__all__, key=str.lower))
+    title = module.__name__.rpartition(".")[2]
+    return f"## {title}\n\n{purpose}\n\n```{{eval-rst}}\n{head}\n{names}```\n"
+
+
+# Before the build looks for pages: autosummary reads those alone that are there at its begin.
+write(
+    HERE / "reference" / "generated" / "modules.md",
+    "\n".join(
+        [
+            "# Modules\n",
+            *(names_of(door) for door in doors[1:] if hasattr(door, "__all__")),
+        ]
+    ),
+)
+
+autodoc_default_options = {
+    "members": True,
+    "inherited-members": True,
+    "show-inheritance": False,
+}
 autodoc_member_order = "bysource"
 autodoc_typehints_format = "short"
 autodoc_preserve_defaults = True
@@ -144,20 +185,72 @@ html_theme_options = {
 }
 
 
+PLACES = {
+    "motion": "JOINT",
+    "pose": "BODY/",
+    "effort": "JOINT",
+    "holding": "JOINT/",
+    "reaction": "JOINT/",
+    "multiplier": "NAME",
+    "load": "NAME/",
+    "friction": "NAME/",
+    "output": "NAME",
+    "certificate": "",
+    "section": "LINK/",
+    "deflection": "LINK/",
+    "stress": "LINK/",
+    "utilisation": "LINK/",
+    "law": "LINK/law/",
+    "station": "LINK/NAME/",
+    "spread": "LINK/NAME/",
+}
+"""What stands in a file's path between the group of a quantity and its member."""
+
+
+def quantities(_app):
+    """Write the tables of all datasets in files: in the plane, and in space in addition."""
+    folder = HERE / "reference" / "generated"
+    axes = [
+        "| /t | t | s | time | |",
+        "| /xi | xi | 1 | position along a link, ratio xi/l | |",
+    ]
+    others = [quantity for quantity in SPATIAL_QUANTITIES if quantity not in QUANTITIES]
+    write_table(folder / "quantities.txt", [*axes, *map(row, QUANTITIES)])
+    write_table(folder / "quantities_in_space.txt", map(row, others))
+
+
+def write_table(path, rows):
+    """Write rows of datasets below their heads."""
+    heads = ["| dataset | axes | unit | is | sign |", "| --- | --- | --- | --- | --- |"]
+    write(path, "\n".join([*heads, *rows]) + "\n")
+
+
+def row(quantity):
+    """One row for a quantity: /GROUP/NAME/member, its axes, unit, meaning and sign."""
+    group, member = quantity.group, quantity.member
+    if group == "motion" and member:
+        member = f"_{member}"
+    if group == "spread" and member[0] in "qc":
+        member += "J"  # the power
+    place = f"/{'section' if group in ('law', 'station', 'spread') else group}/{PLACES[group]}"
+    units = " or ".join(
+        dict.fromkeys(quantity.unit_for(kind) for kind in ("angle", "slide"))
+    )
+    about = f"{quantity.long_name} | {quantity.sign}"
+    return f"| {place}{member} | {', '.join(quantity.axes)} | {units} | {about} |"
+
+
 def gallery(_app):
     """Write a page for each case: its picture, a link to its report, its README and its code; and a
     card with the first line of its code for each.
     """
     folder = HERE / "gallery" / "generated"
-    folder.mkdir(exist_ok=True)
     cards = []
     for case in sorted(CASES.glob("*/case.py")):
         name, code = case.parent.name, case.read_text()
         picture = f"![{name} in motion](../{name}.svg)"
-        link = (
-            f'<a href="../reports/{name}.html">Open its report</a>: the mechanism with its forces,'
-        )
-        about = f"{link} charts, tables and the diagrams of each link."
+        link = f'<a href="../reports/{name}.html">Open its report</a>'
+        about = f"{link}: the mechanism with its forces, charts, tables and diagrams."
         title, rest = case.with_name("README.md").read_text().split("\n", 1)
         write(
             folder / f"{name}.md",
@@ -168,7 +261,10 @@ def gallery(_app):
             f":::{{grid-item-card}} {name}\n:link: generated/{name}\n:link-type: doc\n:img-top:"
             f" {name}.svg\n\n{purpose}\n:::\n"
         )
-    write(folder / "cards.txt", f"::::{{grid}} 1 2 3 3\n:gutter: 3\n\n{''.join(cards)}::::\n")
+    write(
+        folder / "cards.txt",
+        f"::::{{grid}} 1 2 3 3\n:gutter: 3\n\n{''.join(cards)}::::\n",
+    )
 
 
 def reports(app, error):
@@ -182,14 +278,6 @@ def reports(app, error):
         wanted = [*scene.wanted, "motion"]
         solution = lagrange_casadi.evaluate(scene, wanted=wanted, backend="vm")
         solution.report(folder / f"{case.parent.name}.html")
-
-
-def write(path, text):
-    """Write a file that is made, if it is to be another; what is unchanged is not read again by the
-    build.
-    """
-    if not path.is_file() or path.read_text() != text:
-        path.write_text(text)
 
 
 def offer_a_notebook(_app, name, source):
@@ -233,7 +321,10 @@ def without_marks(_app, thing, _bound):
 def short_arrays(_app, _what, _name, _thing, _options, signature, returned):
     """Write an array as ``ndarray``; all are of doubles."""
     return tuple(
-        text and re.sub(r"(numpy\.)?ndarray\[.*?, (numpy\.)?dtype\[[\w.]*\]\]", "ndarray", text)
+        text
+        and re.sub(
+            r"(numpy\.)?ndarray\[.*?, (numpy\.)?dtype\[[\w.]*\]\]", "ndarray", text
+        )
         for text in (signature, returned)
     )
 
@@ -245,12 +336,16 @@ def by_last_name(_app, env, node, shown):
     domain = env.get_domain("py")
     found = {
         entry.node_id: entry
-        for _, entry in domain.find_obj(env, None, None, node["reftarget"].lstrip("."), None, 1)
+        for _, entry in domain.find_obj(
+            env, None, None, node["reftarget"].lstrip("."), None, 1
+        )
     }
     if len(found) != 1:
         return None
     (entry,) = found.values()
-    return make_refnode(env.app.builder, node["refdoc"], entry.docname, entry.node_id, shown)
+    return make_refnode(
+        env.app.builder, node["refdoc"], entry.docname, entry.node_id, shown
+    )
 
 
 def out_of_the_pages(app, tree):
@@ -263,7 +358,12 @@ def out_of_the_pages(app, tree):
         if place.is_relative_to(CASES):
             case = place.relative_to(CASES).parts[:1]
             link = addnodes.pending_xref(
-                "", *node.children, refdomain="std", reftype="doc", refexplicit=True, refwarn=True
+                "",
+                *node.children,
+                refdomain="std",
+                reftype="doc",
+                refexplicit=True,
+                refwarn=True,
             )
             link["reftarget"], link["refdoc"] = (
                 f"/gallery/{'/'.join(('generated', *case)) if case else 'index'}",
@@ -277,6 +377,7 @@ def out_of_the_pages(app, tree):
 def setup(app):
     """Connect what is above."""
     app.connect("builder-inited", gallery)
+    app.connect("builder-inited", quantities)
     app.connect("build-finished", reports)
     app.connect("source-read", offer_a_notebook)
     app.connect("autodoc-before-process-signature", without_marks)

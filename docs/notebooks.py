@@ -45,4 +45,6 @@ def prose(text, folder):
         pictures[name] = {mimetypes.guess_type(name)[0]: picture}
     text = re.sub(r"(!\[[^]]*\]\()([^):]+\))", r"\1attachment:\2", text)
     text = re.sub(r"(?<!!)\[([^]]*)\]\((?!https?:)[^)]*\)", r"\1", text)
-    return v4.new_markdown_cell(text.strip("\n"), **({"attachments": pictures} if pictures else {}))
+    return v4.new_markdown_cell(
+        text.strip("\n"), **({"attachments": pictures} if pictures else {})
+    )

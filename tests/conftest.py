@@ -174,10 +174,7 @@ def solution(slider_crank):
 
 
 def pytest_addoption(parser):
-    generated = "parts of the documentation, and golden texts"
-    parser.addoption(
-        "--update", action="store_true", help=f"write anew what is generated: {generated}"
-    )
+    parser.addoption("--update", action="store_true", help="write the golden texts anew")
     parser.addoption(
         "--long",
         action="store_true",

@@ -9,7 +9,6 @@ from lagrange_casadi.base.interpret import interpret, numpy_arithmetic
 from lagrange_casadi.base.methods import METHODS as METHODS_METHODS
 from lagrange_casadi.base.quantities import Output
 from lagrange_casadi.base.status import Status
-from lagrange_casadi.base.tables import QUANTITIES, SPATIAL_QUANTITIES
 from lagrange_casadi.base.threads import in_threads
 from lagrange_casadi.engine import assembly, blocks, codegen, loops
 from lagrange_casadi.engine.codegen import compiler, library

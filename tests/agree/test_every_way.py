@@ -89,7 +89,6 @@ their errors.
 """
 
 SOUGHT = {
-    "cam": ["effort", "output:contact_force"],
     "every_joint_and_load": ["effort", "section:rod", "reaction:S"],
     "plane": ["effort", "output", "section:rod", "section:rocker"],
     "space": ["effort", "output", "section:rod"],

@@ -1,7 +1,7 @@
 """How estimates of errors compare with the errors, which fifty digits tell.
 
 ``python tests estimates`` prints the table of the cases, ``python tests estimates SCENES``
-that of so many random scenes of every kind, in docs/accuracy.md.
+that of so many random scenes of every kind.
 """
 
 from __future__ import annotations

@@ -3,7 +3,6 @@ refusals at singular limits.
 """
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -46,16 +45,6 @@ def test_extremes(extreme):
             extreme.solution(precision="single")
     else:
         assert_exact(extreme, precision="single")
-
-
-def test_the_documentation_lists_every_extreme():
-    """``python tests extremes`` prints its table."""
-    page = (
-        (Path(__file__).parents[2] / "docs" / "accuracy.md").read_text().partition("## Extremes")[2]
-    )
-    assert [line.split(" | ")[0][2:] for line in page.splitlines() if line.startswith("| ")][
-        2:
-    ] == [e.name for e in EXTREMES]
 
 
 @pytest.mark.sampled(11)

@@ -79,5 +79,5 @@ def called_as_rates():
 
 SCENES = {
     title.replace(" ", "_").lower(): (lambda title=title: shown(title)["scene"])
-    for title in ("V-twin", "Scissor lift", "Toggle press", "Cam", "SCARA", "Geneva drive")
+    for title in ("Scissor lift", "Geneva drive")
 } | {"rolling_gear": rolling, "rolling_gear_elsewhere": elsewhere}

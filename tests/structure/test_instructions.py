@@ -66,37 +66,33 @@ def test_every_case_is_counted():
     assert sorted(INSTANT) == sorted(path.parent.name for path in CASES.glob("*/case.py"))
 
 
-def told():
-    """Of each case in the tables of docs/speed.md: everything, efforts, and a step."""
-    for line in (CASES.parent / "docs" / "speed.md").read_text().splitlines():
-        name, *cells = (cell.strip().replace("*", "") for cell in line.strip("|").split("|"))
-        if (
-            name in INSTANT
-            and len(cells) in (3, 4)
-            and cells[0][:1].isdigit()
-            and "." not in "".join(cells)
-        ):
-            everything, efforts = (cells[1], cells[3]) if len(cells) == 4 else cells[:2]
-            step = (
-                everything.partition("+")[2].removesuffix("a step") if len(cells) == 4 else cells[2]
-            )
-            yield pytest.param(
-                name, int(everything.split()[0]), int(efforts.split()[0]), int(step or 0), id=name
-            )
-
-
-TOLD = list(told())
+EFFORTS = {
+    "slider_crank": 81,
+    "engine": 288,
+    "four_bar": 157,
+    "quick_return": 149,
+    "six_bar": 280,
+    "andrews_squeezer": 376,
+    "rrr3": 545,
+    "arm": 113,
+    "sleigh": 100,
+    "rssr": 361,
+    "spatial_slider_crank": 213,
+    "stewart_gough": 3482,
+    "arm6": 423,
+    "cardan_shaft": 379,
+    "five_link_suspension": 1581,
+    "delta": 2872,
+    "bricard": 1060,
+}
+"""Instructions of an instant if only the efforts are wanted."""
 
 
 @pytest.mark.sampled(6)
-@pytest.mark.parametrize(("name", "everything", "efforts", "step"), TOLD)
-def test_the_counts_that_speed_tells(name, everything, efforts, step):
-    """Of many cases."""
-    assert len(TOLD) == 17
-    scene = load_case(CASES / name).scene
-    count = derive(scene, ["all"]).instructions
-    assert (count["instant"], count.get("loops", 0)) == (pytest.approx(everything, rel=0.01), step)
-    assert derive(scene, ["effort"]).instructions["instant"] == pytest.approx(efforts, rel=0.01)
+@pytest.mark.parametrize("name", EFFORTS)
+def test_efforts_alone_take_fewer(name):
+    count = derive(load_case(CASES / name).scene, ["effort"]).instructions
+    assert count["instant"] == pytest.approx(EFFORTS[name], rel=0.01)
 
 
 def chain(links):
