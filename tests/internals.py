@@ -3,7 +3,6 @@
 # ruff: noqa: F401
 
 from lagrange_casadi.base import bernstein, cache, symbolic
-from lagrange_casadi.base import seal as base_seal
 from lagrange_casadi.base.compensated import Pair, Pairs
 from lagrange_casadi.base.interpret import interpret, numpy_arithmetic
 from lagrange_casadi.base.methods import METHODS as METHODS_METHODS
@@ -27,6 +26,7 @@ from lagrange_casadi.model.scene import Wanted
 from lagrange_casadi.model.stated import Stated
 from lagrange_casadi.results.elastic.compliance import Compliance, nodes
 from lagrange_casadi.results.elastic.deflection import deflection
+from lagrange_casadi.results.store import opening
 from lagrange_casadi.results.strength.member import Member
 from lagrange_casadi.results.verification.certificate import certify
 from lagrange_casadi.results.verification.reference import arithmetic, reference

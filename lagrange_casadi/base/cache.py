@@ -13,19 +13,18 @@ from __future__ import annotations
 
 import atexit
 import functools
-import hashlib
 import os
 import re
 import shutil
 import stat
 import tempfile
-import time
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import DeclarationError, PathError, lacking, warn
+from .files import LOCK, beside, digest
 from .numerals import real
 
 VARIABLE = "LAGRANGE_CASADI_CACHE_SIZE"
@@ -36,10 +35,8 @@ LIMIT = 500_000_000
 
 _UNITS = {"": 1, "k": 10**3, "M": 10**6, "G": 10**9, "T": 10**12}
 _OURS = re.compile(r"([0-9a-f]{32}(?:-iterated)?)\.(?:graph|c|cpp|so|sha256|log)")
-_WORK, _DRAFT, _FORGOTTEN = "lagrange_casadi-", "build-", 86_400.0
-"""First parts of names of temporary folders, and of files that are being written; and seconds after
-which such a file is abandoned.
-"""
+_WORK, _ARRIVING = "lagrange_casadi-", "arriving"
+"""First part of names of temporary folders, and name beside which files are written."""
 
 
 @dataclass(frozen=True)
@@ -224,11 +221,11 @@ def _arriving(place: Path) -> Iterator[Path]:
     """A folder whose files are put into the cache, seals before libraries, and room is made for
     them. Raises ``OSError``.
     """
-    with tempfile.TemporaryDirectory(dir=place, prefix=_DRAFT) as near:
-        yield Path(near)
-        names = sorted(os.listdir(near))
+    with beside(place / _ARRIVING) as near:
+        yield near
+        names = sorted(name for name in os.listdir(near) if name != LOCK)
         for name in names:
-            os.replace(Path(near) / name, place / name)
+            os.replace(near / name, place / name)
     _make_space(place, {name.partition(".")[0] for name in names})
 
 
@@ -236,11 +233,6 @@ def use(file: Path) -> None:
     """Note that what a file belongs to was used now."""
     with suppress(OSError):
         os.utime(file)
-
-
-def digest(content: bytes) -> str:
-    """Digest that shows whether a content is whole."""
-    return hashlib.sha256(content).hexdigest()
 
 
 def entries(place: Path) -> dict[str, Entry]:
@@ -275,22 +267,18 @@ def remove(entries: Iterable[Entry]) -> int:
 
 
 def _make_space(place: Path, fresh: set[str]) -> None:
-    """Remove what was used longest ago, until the rest is within the limit, and what was left
-    behind; what is ``fresh`` stays.
+    """Remove what was used longest ago, until the rest is within the limit; what is ``fresh``
+    stays.
     """
     with suppress(OSError):
         # Sizes alone first: a folder holds thousands of files, is nearly always within its limit,
         # and is looked at whenever something is kept.
-        size, forgotten = 0, time.time() - _FORGOTTEN
+        size = 0
         with os.scandir(place) as files:
             for file in files:
-                try:
-                    if _OURS.fullmatch(file.name):
+                if _OURS.fullmatch(file.name):
+                    with suppress(FileNotFoundError):
                         size += file.stat().st_size
-                    elif file.name.startswith(_DRAFT) and file.stat().st_mtime < forgotten:
-                        shutil.rmtree(file.path, ignore_errors=True)
-                except FileNotFoundError:
-                    pass
         if size > limit():
             _remove_oldest(place, fresh)
 

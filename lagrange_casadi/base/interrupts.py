@@ -8,7 +8,9 @@ from __future__ import annotations
 import os
 import signal
 import sys
-from contextlib import suppress
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import FrameType
 
@@ -30,6 +32,37 @@ def interrupts() -> list[signal.Signals]:
     """
     numbers = [getattr(signal, name) for name in _NAMES if hasattr(signal, name)]
     return [number for number in numbers if signal.getsignal(number) not in (signal.SIG_IGN, None)]
+
+
+@contextmanager
+def uninterrupted() -> Iterator[Callable[[], None]]:
+    """Hold interrupts back, for HDF5 does not survive an exception in its midst.
+
+    What is yielded lets one through where it is called; one that nobody let through comes at the
+    end.
+    """
+    noticed = threading.Event()
+
+    def breathe() -> None:
+        if noticed.is_set():
+            raise KeyboardInterrupt
+
+    repeated = [signal.SIGALRM] if hasattr(signal, "SIGALRM") else []
+    able = threading.current_thread() is threading.main_thread()
+    before = (
+        [
+            (number, signal.signal(number, lambda *_: noticed.set()))
+            for number in (*interrupts(), *repeated)
+        ]
+        if able
+        else []
+    )
+    try:
+        yield breathe
+    finally:
+        for number, handler in before:
+            signal.signal(number, handler)
+    breathe()
 
 
 def is_program() -> bool:

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 
-from .publish import uninterrupted
+from .interrupts import uninterrupted
 
 _GRACE = 0.5
 """Seconds in which a program may tidy up after it was asked to end."""

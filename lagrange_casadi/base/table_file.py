@@ -16,8 +16,8 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from ..errors import DeclarationError, StoreError
+from .files import check_writable, writing
 from .packages import check_installed
-from .publish import check_writable, writing
 
 Cell = float | str
 
@@ -76,7 +76,7 @@ class TableFile:
         many there are.
         """
         self.check()
-        with writing(self.path) as (file,):
+        with writing(self.path) as file:
             write = self._write_workbook if self._is_workbook else self._write_csv
             yield write(file, heads, rows)
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import click
 
-from ..base.publish import check_writable
+from ..base.files import check_writable
 from ..model.scene import Scene, kinds
 from ..results.store.runs import load
 from ..results.store.untrusted import reported_as

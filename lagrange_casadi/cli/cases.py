@@ -11,7 +11,7 @@ import shlex
 import shutil
 from pathlib import Path
 
-from ..base.publish import filling
+from ..base.folders import filling
 from ..base.shipped_cases import shipped_cases
 from ..base.vocabulary import SIMPLE
 from ..errors import DeclarationError, ModelFileError, PathError, UnknownNameError

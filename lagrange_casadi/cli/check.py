@@ -8,15 +8,14 @@ from pathlib import Path
 import click
 
 from ..base.apart import LostError, run_apart
-from ..base.seal import kind_of
 from ..base.vocabulary import TIME_LIMIT
 from ..errors import StoreError
 from ..results.store import runs as store
-from ..results.store.opening import IDENTIFICATION, check_identification
+from ..results.store.opening import IDENTIFICATION, check_identification, kind_of
 from ..results.store.untrusted import check_shape
 from ..studies.optimise.file import check_optimum, is_optimum
 from ..studies.sweep import is_sweep
-from ..studies.sweep.checking import check_sweep, progress, unfinished
+from ..studies.sweep.checking import check_sweep, flaws, progress, unfinished
 from .echo import echo
 
 _VARIABLES = {"HDF5_PLUGIN_PRELOAD": "::"}
@@ -47,7 +46,7 @@ def check(file: Path, untrusted: bool, time_limit: float | None) -> int:
 def _findings(file: Path) -> list[str]:
     folder = unfinished(file)
     if folder:
-        return [progress(folder), *folder.flaws()]
+        return [progress(folder), *flaws(folder)]
     if is_optimum(file):
         return check_optimum(file)
     if kind_of(file) == IDENTIFICATION:

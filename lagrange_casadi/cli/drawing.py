@@ -9,8 +9,8 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 
+from ..base.files import writing
 from ..base.methods import method
-from ..base.publish import writing
 from ..errors import LagrangeCasadiError, PostureError
 from ..model.scene import Scene
 from ..results.solution import Solution
@@ -60,7 +60,7 @@ def drawn_ways(error: PostureError, asked: Mapping[str, object]) -> tuple[str, l
     with suppress(LagrangeCasadiError):
         postures, complete = method("PostureError.drawn")(scene, picture)
         if postures:
-            with writing(path) as (file,):
+            with writing(path) as file:
                 file.write(picture.getvalue())
             many = f"the {len(postures)}" if complete else str(len(postures))
             words = (

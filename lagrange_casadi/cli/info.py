@@ -19,7 +19,7 @@ from ..results.store.attributes import described
 from ..studies.case import load_case
 from ..studies.sweep import Sweep, is_sweep
 from ..studies.sweep.axes import counted
-from ..studies.sweep.checking import progress, unfinished
+from ..studies.sweep.checking import identity_of, progress, unfinished
 from ..studies.sweep.meanings import in_words
 from ..studies.sweep.plan import Identity
 from .echo import echo
@@ -35,7 +35,7 @@ def info(target: Path, wanted: Sequence[str] | None) -> None:
         if wanted:
             raise click.UsageError("--want goes with a case, not with a file")
         if folder:
-            _describe_sweep(folder.identity)
+            _describe_sweep(identity_of(folder))
             echo(progress(folder))
         elif is_sweep(target):
             _describe_whole(Sweep.open(target))

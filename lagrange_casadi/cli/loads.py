@@ -10,7 +10,7 @@ from typing import Any
 
 import click
 
-from ..base.publish import check_writable
+from ..base.files import check_writable
 from ..base.table_file import TableFile
 from ..base.vocabulary import LOAD_FORMATS
 from ..errors import DeclarationError

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from ..base.publish import check_writable, writing
+from ..base.files import check_writable, writing
 from ..studies.case import load_case
 from ..studies.optimise import Front, Optimum
 from ..studies.optimise import optimise as search
@@ -52,7 +52,7 @@ def optimise(
             signal.ITIMER_REAL, 0.0
         )  # the interrupt has arrived, and is repeated no more
     scene = loaded.scene
-    with writing(figure) as (picture,):
+    with writing(figure) as picture:
         if isinstance(found, Optimum):
             draw_optimum(scene, found, picture, figure.suffix)
         else:

@@ -8,7 +8,7 @@ from typing import cast
 
 import click
 
-from ..base.publish import check_writable
+from ..base.files import check_writable
 from ..base.units import typed
 from ..errors import NoDesignError
 from ..results.store.runs import figure_specs, load

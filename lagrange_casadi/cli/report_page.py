@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from ..base.publish import check_writable
+from ..base.files import check_writable
 from ..engine.codegen.compiler import statements
 from ..errors import DeclarationError, LagrangeCasadiError, one_line
 from ..interop.portable.wasm import check_zig

@@ -13,7 +13,7 @@ import click
 import numpy as np
 
 from ..base.arrays import Array
-from ..base.publish import check_writable
+from ..base.files import check_writable
 from ..base.quantities import AVERAGED, Output
 from ..base.streams import is_standard_output
 from ..base.table_file import TableFile

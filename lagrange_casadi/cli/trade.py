@@ -7,7 +7,7 @@ import math
 from pathlib import Path
 from typing import Any
 
-from ..base.publish import check_writable, writing
+from ..base.files import check_writable, writing
 from ..engine.instants.evaluation_method import EvaluationMethod
 from ..errors import DeclarationError
 from ..studies.case import load_case
@@ -42,8 +42,9 @@ def trade(
             bar.update()
 
         found = measure(loaded.scene, progress=progress, **given)
-    with writing(out, figure) as (numbers, picture):
+    with writing(out) as numbers, writing(figure) as picture:
         numbers.write(f"{json.dumps(found.as_dict(), indent=1)}\n".encode())
+        numbers.flush()
         draw_trade(found, picture, figure.suffix)
     _print(found)
     echo(f"wrote {out} and {figure}")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 
-from internals import base_seal as seal
+from internals import opening
 
 LARGEST = 1 << 13
 
@@ -17,7 +17,7 @@ def damaged(content: bytes, chance: random.Random) -> bytes:
         [
             chance.randrange(size),
             chance.randrange(min(size, 2048)),
-            size - 1 - chance.randrange(2 * seal.SIZE),
+            size - 1 - chance.randrange(min(size, 2 * opening.SIZE)),
         ]
     )
     other = chance.randrange(size)
@@ -38,8 +38,8 @@ def damaged(content: bytes, chance: random.Random) -> bytes:
         lambda: content + noise,
         lambda: content + zeros,
         lambda: content + content[-long:],
-        lambda: content[: -seal.SIZE],
-        lambda: content[: -seal.SIZE] + content,
+        lambda: content[: -opening.SIZE],
+        lambda: content[: -opening.SIZE] + content,
         lambda: b"",
     ]
     return chance.choice(kinds)()

@@ -5,14 +5,14 @@ from __future__ import annotations
 import contextlib
 
 import h5py
-from internals import base_seal as seal
+from internals import opening
 
 
 def unseal(path):
     """Take the seal off a file; what it is of."""
-    kind, content = seal.kind_of(path), path.read_bytes()
+    kind, content = opening.kind_of(path), path.read_bytes()
     assert kind
-    path.write_bytes(content[: -seal.SIZE])
+    path.write_bytes(content[: -opening.SIZE])
     return kind
 
 
@@ -22,7 +22,8 @@ def forging(path):
     kind = unseal(path)
     with h5py.File(path, "r+") as file:
         yield file
-    seal.seal(path, kind)
+    with path.open("ab") as file:
+        opening.seal(file, kind)
 
 
 def edit(path, change):

@@ -21,7 +21,7 @@ from pathlib import Path
 
 import h5py
 from damaging import damaged
-from internals import base_seal as seal
+from internals import opening
 
 import lagrange_casadi.cli  # noqa: F401
 from lagrange_casadi.errors import LagrangeCasadiError
@@ -132,11 +132,12 @@ def checked(path: Path) -> str:
 def run(source: Path, seed: int, count: int) -> None:
     """Damage, seal and read so many times."""
     chance, path = random.Random(seed), Path("damaged.h5").absolute()
-    kind, content = seal.kind_of(source), source.read_bytes()[: -seal.SIZE]
+    kind, content = opening.kind_of(source), source.read_bytes()[: -opening.SIZE]
     known = contents(source, ONCE[kind])
     for number in range(count):
         path.write_bytes(damaged(content, chance))
-        seal.seal(path, kind)
+        with path.open("ab") as file:
+            opening.seal(file, kind)
         word = ending(path, known, ONCE[kind])
         if word.startswith(("hang", "crash")):
             word += f" {checked(path)}"

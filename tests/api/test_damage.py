@@ -7,9 +7,9 @@ import json
 import os
 import random
 import re
+import shutil
 import subprocess
 import sys
-import zlib
 from pathlib import Path
 
 import h5py
@@ -35,7 +35,7 @@ from lagrange_casadi import (
     sweep,
 )
 from lagrange_casadi.cli import main
-from lagrange_casadi.errors import LagrangeCasadiError, PathError, StoreError
+from lagrange_casadi.errors import LagrangeCasadiError, StoreError
 from lagrange_casadi.motion import polynomial
 
 pytestmark = pytest.mark.filterwarnings("ignore::RuntimeWarning")  # of numbers beyond numbers
@@ -87,16 +87,8 @@ def source(kind, folder, slider_crank, monkeypatch):
             xi=(0, 1, 3),
             keep="histories",
         )
-    elif kind == "search":
-        searched(path)
     else:
-
-        def stop(start, _objective, _excess):
-            if start == 2:
-                raise KeyboardInterrupt
-
-        searched(path, progress=stop)
-        return path.with_name("x.h5.journal")
+        searched(path)
     return path
 
 
@@ -292,30 +284,49 @@ def test_a_forged_file_is_one_line(here, slider_crank, monkeypatch, capsys, kind
             assert not PYTHON.search(told), told
 
 
-ODD = ['{"identity": 3}', "3", '{"of": "x", "trail": {}}', '{"of": []}', "[" * 9999, "\\xff"]
+def swept(out, **keywords):
+    """A sweep of few designs, in blocks of five."""
+    grid = {"l": (0.15, 0.4, 20), "r": [0.05, 0.1]}
+    sweep(sweeps.scene(), grid, out=out, t=(0, 0.08, 7), workers=1, **keywords)
 
 
-def test_a_journal_is_gone_on_with_or_refused(tmp_path, slider_crank, monkeypatch):
-    """Cut anywhere in its first line it holds nothing; lines that are odd or damaged are done
-    again; what no search wrote is left alone.
-    """
-    journal = source("journal", tmp_path, slider_crank, monkeypatch)
-    own, out = journal.read_bytes(), tmp_path / "x.h5"
-    first, second, *rest = own.splitlines(keepends=True)
-    searched(tmp_path / "whole.h5")
-    whole = (tmp_path / "whole.h5").read_bytes()
-    odd = b"".join(b"%08x %b\n" % (zlib.crc32(t), t) for t in map(str.encode, ODD))
-    damaged = second.replace(b"1", b"7", 1)
-    for content in (b"", first[:9], first[:100], own + odd + own, first + damaged + b"".join(rest)):
-        journal.write_bytes(content)
-        searched(out, resume=True)
-        assert out.read_bytes() == whole
-        assert not journal.exists()
+def stop_late(start, _objective, _excess):
+    """What stops a search in its last run."""
+    if start == 2:
+        raise KeyboardInterrupt
+
+
+@pytest.mark.parametrize("act", [swept, searched])
+@pytest.mark.parametrize("count", [FEW, pytest.param(MANY, marks=pytest.mark.long)])
+def test_what_is_damaged_of_an_unfinished_study_is_done_again(tmp_path, monkeypatch, act, count):
+    """To the same bytes; of a damaged plan it is said that it is, and nothing is touched."""
+    if act is swept:
+        monkeypatch.setattr("lagrange_casadi.studies.sweep.columns._MOST", 5)
+        sweeps.use(monkeypatch)
+    out, folder, kept = tmp_path / "x.h5", tmp_path / "x.h5.parts", tmp_path / "kept"
+    act(out)
+    whole, chance = out.read_bytes(), random.Random(count)
+    out.unlink()
+    with contextlib.suppress(sweeps.StopError):
+        act(out, progress=sweeps.stop_after(4) if act is swept else stop_late)
+    out.unlink(missing_ok=True)
+    shutil.copytree(folder, kept)
+    names = sorted(path.name for path in kept.iterdir() if path.name != "lock")
+    assert len(names) > 2
+    for number in range(count):
+        path, told = folder / names[number % len(names)], ""
+        wrong = damaged(path.read_bytes(), chance)
+        path.write_bytes(wrong)
+        try:
+            act(out, resume=True)
+        except StoreError as error:
+            told = str(error)
+        if re.search("damaged: plan|is of another (sweep|search)", told):
+            assert (path.name, path.read_bytes()) == ("plan.json", wrong)
+            act(out, force=True)
+        elif told:
+            assert path.name != "plan.json"
+            act(out, resume=True)
+        assert (out.read_bytes(), folder.exists()) == (whole, False)
         out.unlink()
-    for content in (b"notes", first[:20] + b"\n", first[1:], odd):
-        journal.write_bytes(content)
-        with pytest.raises(StoreError, match="is not the file of a search"):
-            searched(out, resume=True)
-        with pytest.raises(PathError, match="is of an unfinished search"):
-            searched(out)
-        assert journal.read_bytes().rstrip() == content.rstrip()
+        shutil.copytree(kept, folder)

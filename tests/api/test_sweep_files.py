@@ -149,6 +149,19 @@ def test_what_is_there_is_not_overwritten(whole, tmp_path):
     assert (path.read_text(), os.listdir(folder)) == ("mine", ["thesis.txt"])
 
 
+def test_a_part_of_another_sweep_is_none(whole, tmp_path):
+    """It has the same name, and as many columns of as many designs."""
+    for name, words in (("x", {}), ("other", {"parameters": {"m3": 0.2}})):
+        with pytest.raises(StopError):
+            run(tmp_path / f"{name}.h5", workers=1, progress=stop_after(3), **words)
+    part = min((tmp_path / "x.h5.parts").glob("*.part"))
+    part.write_bytes((tmp_path / "other.h5.parts" / part.name).read_bytes())
+    assert command("check", tmp_path / "x.h5.parts") == 1
+    with pytest.raises(StoreError, match=r"\.part was damaged, and is deleted; .*continue with"):
+        run(tmp_path / "x.h5", resume=True)
+    assert run(tmp_path / "x.h5", resume=True) == whole
+
+
 OTHERS = [
     ({"grid": {"l": (0.15, 0.4, 21), "r": GRID["r"]}}, "grid l was 0.15:0.4:20 and is 0.15:0.4:21"),
     ({"grid": {"l": GRID["l"]}}, "grid r was there, and is not"),

@@ -91,7 +91,7 @@ def test_both_files_or_none(here, monkeypatch, capfd):
     with monkeypatch.context() as patch:
         patch.setattr(Figure, "savefig", full)
         assert command(asked) == 1
-    told = "error: cannot write x.json and x.png: No space left on device\n"
+    told = "error: cannot write x.png: No space left on device\n"
     assert capfd.readouterr() == ("", told)
     assert [path.read_text() for path in here.iterdir()] == ["of before"]
     assert command(asked) == 1

@@ -27,6 +27,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from ...base import cache, programs
+from ...base.files import digest
 from ...base.numerals import real
 from ...base.vocabulary import Precision
 from ...errors import CompilerError, lacking, warn
@@ -358,7 +359,7 @@ def _kept(library: Path) -> ctypes.CDLL | None:
     else:
         if found:
             why = f"is not trusted ({found})"
-        elif seal == cache.digest(content).encode():
+        elif seal == digest(content).encode():
             try:
                 there = ctypes.CDLL(str(library))
                 cache.use(library)
@@ -397,7 +398,7 @@ def _compile(
                 cache.keep([code, log], folder)
                 where = f" (whole message in {folder / log.name})"
         raise CompilerError(f"{complaint(compiler, run)}{where}")
-    library.with_suffix(".sha256").write_text(cache.digest(library.read_bytes()))
+    library.with_suffix(".sha256").write_text(digest(library.read_bytes()))
     return library
 
 

@@ -11,8 +11,8 @@ import casadi as ca
 
 from ...base.arguments import LATER, Outputs, public
 from ...base.arrays import Json
-from ...base.manifest import Manifest
-from ...base.publish import check_writable
+from ...base.files import check_writable
+from ...base.folders import Manifest
 from ...base.vocabulary import Precision
 from ...engine.instants.evaluation_method import EvaluationMethod
 from ...errors import PathError

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from ...base.arguments import public
-from ...base.publish import check_writable, writing
+from ...base.files import check_writable, writing
 from ...errors import LagrangeCasadiError, ModelFileError, PathError
 from ...model.scene import Scene
 from . import asmt, json_model, mjcf, sdf, urdf
@@ -105,7 +105,7 @@ def save_model(
     file = Path(path)
     check_writable(file)
     text = json_model.write(checked(model_of(scene, parameters or {}, file)))
-    with writing(file) as (draft,):
+    with writing(file) as draft:
         draft.write(text.encode())
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from ...base.arguments import public
 from ...base.csv_table import csv_text
-from ...base.publish import filling
+from ...base.folders import filling
 from ...base.vocabulary import LOAD_FORMATS
 from ...errors import DeclarationError, UnknownNameError, shown
 from .beam_model import beam_model

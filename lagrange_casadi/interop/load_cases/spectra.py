@@ -11,7 +11,7 @@ import numpy as np
 from ...base.arguments import Index, public
 from ...base.arrays import Array
 from ...base.csv_table import csv_text
-from ...base.publish import writing
+from ...base.files import writing
 from ...errors import DeclarationError, UnknownNameError
 from ...results.solution import Solution
 from ...results.strength.rainflow import counted
@@ -71,7 +71,7 @@ def write_spectrum(
         rows = [size, mean, np.bincount(same.ravel(), times), size, size, mean, mean]
     seconds, again = np.ptp(solution.t), "which repeat" if repeating else "once"
     head = f"# {name} [{unit}], counted over {seconds:.9g} s, {again}\n"
-    with writing(Path(path)) as (draft,):
+    with writing(Path(path)) as draft:
         draft.write((head + csv_text([_HEADS, *np.column_stack(rows).tolist()])).encode())
 
 

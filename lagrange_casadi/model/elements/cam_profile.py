@@ -17,7 +17,7 @@ import numpy.typing as npt
 from ...base.arguments import public
 from ...base.arrays import Array
 from ...base.brief import Brief
-from ...base.publish import writing
+from ...base.files import writing
 from ...base.table_file import TableFile
 from ...errors import DeclarationError, LagrangeCasadiError, shown
 
@@ -117,7 +117,7 @@ class CamProfile(Brief):
         points = (_MILLIMETRES * np.column_stack([self.x, self.y])).tolist()
         drawing.add_polyline([tuple(point) for point in points], closed=True, layer="PROFILE")
         drawing.close()
-        with writing(Path(path)) as (file,):
+        with writing(Path(path)) as file:
             file.write(text.getvalue().encode())
 
     def _refuse_undercut(self) -> None:

@@ -13,14 +13,12 @@ from ...engine.instants.beyond_equilibrium import Elasticity
 from ...engine.instants.evaluation_method import Provenance
 from ...model.description import Description
 from ..solution import Solution
-from .opening import SCHEMA
 from .untrusted import check_shape, number, parsed, read_json, shown, structured
 from .words import conventions
 
 Attributes: TypeAlias = Mapping[str, Any]
 """Texts and numbers of a file, by name."""
 
-SCHEMA_VERSION = 1
 _PROVENANCE = {key: key for key in ("backend", "precision", "compiler", "flags")} | {
     "rung": "method"
 }
@@ -44,8 +42,6 @@ def _attributes(solution: Solution, figures: str, grids: Sequence[str]) -> Attri
     """Attributes of the file of a solution; those of its datasets are apart."""
     provenance, elasticity = solution.provenance, solution.elasticity
     found: dict[str, Any] = {
-        "schema": SCHEMA,
-        "schema_version": SCHEMA_VERSION,
         "case": solution.case,
         **conventions(solution.table),
         "mechanism": json.dumps(solution.description.plain()),

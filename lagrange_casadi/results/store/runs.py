@@ -1,8 +1,8 @@
 """A solution in an HDF5 file, and back: the schema is written down in ``docs/schema.md``.
 
-A file is written under a temporary name beside its place, flushed, sealed, and renamed: a reader
-finds the file of before, or the whole new one. What is read is held to its seal before HDF5 sees it
-(:mod:`.seal`), and looked at before it is believed (:mod:`.untrusted`).
+A file is sealed, and appears whole: a reader finds the file of before, or the new one. What is read
+is held to its seal before HDF5 sees it (:mod:`.opening`), and looked at before it is believed
+(:mod:`.untrusted`).
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ import numpy as np
 
 from ...base.arguments import public
 from ...base.arrays import Array
-from ...base.publish import PatientFile, check_writable, is_hdf5, replacing, settled, uninterrupted
+from ...base.files import check_writable, is_hdf5, settled, writing
+from ...base.interrupts import uninterrupted
 from ...base.quantities import Output
-from ...base.seal import kind_of, seal
 from ...base.tables import ANGLE, LENGTH
 from ...engine.instants.beyond_equilibrium import ENDS, Holding, held_outputs
 from ...errors import PathError, StoreError, UnknownNameError, one_line
@@ -36,13 +36,12 @@ from ..solution import Solution, solution_of
 from ..verification.certificate import certify
 from ..verification.reported import COARSE, TOLERANCE, blur
 from .attributes import (
-    SCHEMA_VERSION,
     attributes_to_write,
     check_attributes,
     figures_of,
     read_attributes,
 )
-from .opening import SCHEMA, opened_file
+from .opening import KINDS, RUN, kind_of, opened_file, sealed
 from .scales import LARGE, Scales
 from .slopes import add_slopes, check_slopes, slopes_of
 from .untrusted import check_chunks, check_dataset, check_links, number, parsed, reported_as, shown
@@ -64,13 +63,7 @@ _OVER_TOLERANCE = {"double": 1e-12, "single": 1e-6}
 largest.
 """
 
-_KIND = "the file of a run"
 _TABLES = (".csv", ".tsv", ".txt", ".xls", ".xlsx", ".json", ".mat", ".parquet")
-_OTHERS = {
-    SCHEMA: _KIND,
-    f"{SCHEMA}-sweep": "the file of a sweep",
-    f"{SCHEMA}-optimum": "the file of a search",
-}
 
 
 @public
@@ -107,24 +100,20 @@ def save(
     with reported_as("cannot be written", target):
         attributes = attributes_to_write(solution, figures, links)
     _require_space(solution, target, len(links))
-    with replacing(target, hdf5=True) as draft:
-        with (
-            uninterrupted() as breathe,
-            PatientFile(draft, "x+") as bytes_,
-            h5py.File(bytes_, "w", track_order=True) as file,
-        ):
-            try:
-                _write(file, solution, links, breathe)
-                file.attrs.update(attributes)
-            except RuntimeError as error:  # of HDF5
-                raise StoreError(f"cannot write {target}: {one_line(error)}") from error
-            file.flush()
-            file.attrs["complete"] = True
-        seal(draft, SCHEMA)
+    with (
+        writing(target, hdf5=True) as bytes_,
+        uninterrupted() as breathe,
+        sealed(bytes_, RUN) as file,
+    ):
+        try:
+            _write(file, solution, links, breathe)
+            file.attrs.update(attributes)
+        except RuntimeError as error:  # of HDF5
+            raise StoreError(f"cannot write {target}: {one_line(error)}") from error
 
 
-def check_target(target: Path, schema: str = SCHEMA) -> None:
-    """Raise :class:`PathError` where no file of a schema can be put: it replaces another one, and
+def check_target(target: Path, kind: str = RUN) -> None:
+    """Raise :class:`PathError` where no file of a kind can be put: it replaces another one, and
     nothing else that holds anything.
 
     Nor may its name end as that of a table, which it is not.
@@ -142,14 +131,13 @@ def check_target(target: Path, schema: str = SCHEMA) -> None:
     if not place.exists() or not place.stat().st_size:
         return
     found = kind_of(place)
-    if found != schema:
-        unsealed = (
-            "an HDF5 file of something else, or without its seal"
-            if is_hdf5(place)
-            else "no file of HDF5"
-        )
-        kind = (_OTHERS | {None: unsealed}).get(found, "an HDF5 file of something else")
-        raise PathError(f"cannot write {target}: it is {kind}; choose another name")
+    if found != kind:
+        what = "no file of HDF5"
+        if found or is_hdf5(place):
+            what = "an HDF5 file of something else" + ("" if found else ", or without its seal")
+        if found in KINDS:
+            what = KINDS[found][0]
+        raise PathError(f"cannot write {target}: it is {what}; choose another name")
 
 
 def _with_grids(solution: Solution, asked: bool | Sequence[str] | None) -> list[str]:
@@ -206,7 +194,7 @@ def load(path: str | os.PathLike[str]) -> Solution:
     StoreError
         If the file is damaged, incomplete, or of another schema.
     """
-    with opened_file(path, SCHEMA, SCHEMA_VERSION, _KIND) as file:
+    with opened_file(path, RUN) as file:
         return _read(file)
 
 
@@ -215,7 +203,7 @@ def figure_specs(path: str | os.PathLike[str]) -> tuple[object, ...]:
 
     Raises what :func:`load` does.
     """
-    with opened_file(path, SCHEMA, SCHEMA_VERSION, _KIND) as file:
+    with opened_file(path, RUN) as file:
         return figures_of(file.attrs)
 
 
@@ -242,7 +230,7 @@ def check(path: str | os.PathLike[str]) -> list[str]:
     PathError, StoreError
         As :func:`load`.
     """
-    with opened_file(path, SCHEMA, SCHEMA_VERSION, _KIND) as file:
+    with opened_file(path, RUN) as file:
         solution = _read(file)
         certificate = (Output("certificate", "", name) for name in solution.certificate)
         grids = parsed(file.attrs["grids"], [str], "grids") if "grids" in file.attrs else None

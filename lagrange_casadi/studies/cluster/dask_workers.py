@@ -21,13 +21,14 @@ from typing import TYPE_CHECKING, Any
 
 from ...base.arrays import Array, Json
 from ...errors import ClusterError, DeclarationError, LagrangeCasadiError, one_line, warn
+from ..checkpoint import difference
 from ..designs.engine import DesignEngine
 from ..optimise.search_run import STOPPED, SearchRun
 from ..optimise.searching import Progress
 from ..optimise.solver import SearchTask, Solver
 from ..sweep.blocks import Queue
 from ..sweep.columns import Harvest, Task
-from ..sweep.plan import Plan, difference
+from ..sweep.plan import Plan
 from ..sweep.workers import PATIENCE, PULSE, Blocks, ThreadPool
 
 if TYPE_CHECKING:

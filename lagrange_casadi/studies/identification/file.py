@@ -9,7 +9,7 @@ import h5py
 import numpy as np
 
 from ...base.arguments import public
-from ...results.store.opening import IDENTIFICATION, IDENTIFICATION_VERSION, sealed_file
+from ...results.store.opening import IDENTIFICATION, sealed_file
 from .fit import Comparison
 from .identification import Identification
 
@@ -34,9 +34,10 @@ def save_identification(
     PathError
         If no file can be put there.
     """
-    with sealed_file(path, IDENTIFICATION, IDENTIFICATION_VERSION, found.name) as file:
+    with sealed_file(path, IDENTIFICATION) as file:
         file.attrs.update(
             {
+                "case": found.name,
                 "measurements": found.measurements,
                 "condition": found.condition,
                 "rounds": found.rounds,

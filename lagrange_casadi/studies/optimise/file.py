@@ -9,14 +9,12 @@ import h5py
 import numpy as np
 import numpy.typing as npt
 
-from ...base.seal import kind_of
-from ...results.store.opening import opened_file, read_all, sealed_file
+from ...results.store.opening import SEARCH, kind_of, opened_file, read_all, sealed_file
 from ...results.store.untrusted import check_dataset, shown
 from .front import Front
 from .optimum import Optimum
 from .search_run import CONVERGED
 
-SCHEMA, VERSION = "lagrange-casadi-optimum", 1
 _COLUMNS = ("start", "objective", "excess", "result")
 """Columns of a history, before the parameters that were chosen."""
 
@@ -28,7 +26,8 @@ def save(found: Optimum | Front, path: str | os.PathLike[str]) -> None:
     Raises :class:`.PathError` where no file can be put there, :class:`.StoreError` where it cannot
     be written.
     """
-    with sealed_file(path, SCHEMA, VERSION, found.case) as file:
+    with sealed_file(path, SEARCH) as file:
+        file.attrs["case"] = found.case
         if isinstance(found, Optimum):
             _write_optimum(file, found)
         else:
@@ -37,7 +36,7 @@ def save(found: Optimum | Front, path: str | os.PathLike[str]) -> None:
 
 def is_optimum(path: str | os.PathLike[str]) -> bool:
     """Return whether a path is that of a search's file, whole or not."""
-    return kind_of(path) == SCHEMA
+    return kind_of(path) == SEARCH
 
 
 def check_optimum(path: str | os.PathLike[str]) -> list[str]:
@@ -48,7 +47,7 @@ def check_optimum(path: str | os.PathLike[str]) -> list[str]:
     none.
     """
     found: list[str] = []
-    with opened_file(path, SCHEMA, VERSION, "the file of a search") as file:
+    with opened_file(path, SEARCH) as file:
         read_all(file)
         for group in file["points"].values() if "points" in file else [file]:
             found += _contradictions(group)

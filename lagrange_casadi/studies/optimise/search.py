@@ -4,22 +4,24 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Annotated, Any, overload
 
 from ...base.arguments import public
+from ...base.interrupts import uninterrupted
 from ...base.methods import method
-from ...base.publish import uninterrupted
 from ...base.units import Within
 from ...base.vocabulary import POINTS, Compiled
 from ...errors import DeclarationError
 from ...model.scene import Scene
 from ...model.times import Times
+from ...results.store.opening import SEARCH
 from ...results.store.runs import check_target
 from ..case import Case, scene_of
-from .file import SCHEMA, save
+from ..checkpoint import Checkpoint, check_resuming
+from .file import save
 from .front import Front, front_of
-from .journal import kept
 from .optimum import Optimum
 from .problem import Problem, Question
 from .searching import Executor, Progress, Search, one_by_one
@@ -133,11 +135,11 @@ def optimise(
     dask
         Address of a Dask scheduler whose workers run the starts.
     out
-        The file to write. A journal beside it keeps finished steps until the search ends.
+        The file to write. A folder beside it keeps finished runs until the search ends.
     resume
-        Continue a search that was stopped or killed, from its journal.
+        Continue a search that was stopped or killed.
     force
-        Start anew, replacing the file and its journal.
+        Start anew, replacing the file and the runs that are kept.
     progress
         Function that is called after each step with the number of the start, the objective and the
         largest violation of a limit.
@@ -154,7 +156,7 @@ def optimise(
     NoDesignError
         If no design has a result.
     PathError, StoreError, BusyError
-        If the file or its journal belongs to another search, or cannot be written.
+        If the file or the folder belongs to another search, or cannot be written.
     ClusterError
         If a cluster is not available.
     """
@@ -169,37 +171,34 @@ def optimise(
         parameters=parameters,
         backend=backend,
     )
-    if resume and force:
-        raise DeclarationError(
-            "resume and force exclude each other: continue with what is there, or start anew"
-        )
+    check_resuming(resume, force)
     if resume and out is None:
         raise DeclarationError("resume: expected out, the file of the search that was stopped")
     executor: Executor = one_by_one if dask is None else method("optimise.dask")(dask).go
     solver = Solver.of(question, question.engine(found_scene))
     target = None if out is None else Path(out)
     if target is not None:
-        check_target(target, SCHEMA)
+        check_target(target, SEARCH)
     options = {
         "starts": starts if isinstance(starts, int) else [dict(start) for start in starts],
         "screen": screen,
     }
-    with kept(
-        target, {**question.words(solver.engine), **options}, resume=resume, force=force
-    ) as journal:
-        search = Search(solver, journal, executor, progress or (lambda *_: None), starts, screen)
+    parts = None if target is None else Checkpoint.of(target, "search")
+    identity = {**question.words(solver.engine), **options}
+    with parts.opened(identity, resume=resume, force=force) if parts else nullcontext():
+        search = Search(solver, parts, executor, progress or (lambda *_: None), starts, screen)
         found: Optimum | Front
         if isinstance(minimise, str):
             problem = Problem(question.objectives[0], question.constraints)
             found = search.solve(problem, search.begin(problem))
         else:
             found = front_of(search, points)
-        if target is not None:
+        if parts is not None:
             try:
                 with uninterrupted():
-                    save(found, target)
+                    save(found, parts.target)
                     if not found.stopped:
-                        journal.remove()
+                        parts.clear()
             except KeyboardInterrupt:  # it came when there was nothing left to interrupt
                 pass
     return found

@@ -4,26 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
-
-from ...base.arrays import Json
-
-WORDS = {
-    "start": [float],
-    "end": [float],
-    "objective": float,
-    "excess": float,
-    "scale": float,
-    "ending": str,
-    "history": [[float]],
-    "multipliers": [float],
-    "bounds": [float],
-    "residual": float,
-    "curvature": float,
-    "evaluations": int,
-}
-"""The shape of a trail in JSON."""
 
 HOLDS = 1e-7
 """Violation of a constraint, relative to its limit, that is allowed."""
@@ -58,14 +40,9 @@ class SearchRun:
 
     @classmethod
     def read(cls, words: Mapping[str, Any]) -> SearchRun:
-        """A run from its :attr:`words`."""
+        """A run from its fields, as JSON has them."""
         lists = {name: tuple(words[name]) for name in ("start", "end", "multipliers", "bounds")}
         return cls(**{**words, **lists, "history": tuple(map(tuple, words["history"]))})
-
-    @property
-    def words(self) -> dict[str, Json]:
-        """Form for JSON."""
-        return asdict(self)
 
     @property
     def merit(self) -> tuple[float, float]:

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from functools import partial
 from typing import TypeAlias, TypeVar
 
 import numpy as np
 
-from ...base.publish import uninterrupted
+from ...base.files import digest
+from ...base.interrupts import uninterrupted
 from ...errors import NoDesignError
-from .journal import Journal
+from ..checkpoint import Checkpoint
 from .optimum import Optimum, optimum_of
 from .problem import Problem
 from .sampled_design import EvaluatedDesign
@@ -45,12 +47,12 @@ def one_by_one(
 
 @dataclass(eq=False)
 class Search:
-    """A solver, its known runs, and what executes the others; ``stopped`` says that an
-    interrupt came.
+    """A solver, ``parts`` of a file, which are finished runs, and what executes the others;
+    ``stopped`` says that an interrupt came.
     """
 
     solver: Solver
-    journal: Journal
+    parts: Checkpoint | None
     executor: Executor
     progress: Progress
     starts: Starts
@@ -121,7 +123,7 @@ class Search:
         scales = problem.scales(starts[0])
         tasks = [SearchTask(problem, tuple(start.p.tolist()), scales) for start in starts]
         found: dict[int, SearchRun] = {
-            k: run for k, task in enumerate(tasks) if (run := self.journal.get(task))
+            k: run for k, task in enumerate(tasks) if (run := self._known(task))
         }
         missing = [k for k in range(len(tasks)) if k not in found]
         first, self.gone = self.gone, self.gone + len(tasks)
@@ -135,7 +137,22 @@ class Search:
                 if run.ending == STOPPED:
                     self.stopped = True
                     break
-                self.journal.put(tasks[missing[number]], run)
+                if self.parts is not None:
+                    words = json.dumps(asdict(run)).encode()
+                    self.parts.commit(_name(tasks[missing[number]]), [words])
         except KeyboardInterrupt:
             self.stopped = True
         return [found[k] for k in sorted(found)]
+
+    def _known(self, task: SearchTask) -> SearchRun | None:
+        """The run of a task that was finished before."""
+        words = self.parts and self.parts.read(_name(task))
+        return SearchRun.read(json.loads(words)) if words else None
+
+
+def _name(task: SearchTask) -> str:
+    """Name of the part of a task."""
+    problem = task.problem
+    limits = [limit.words for limit in problem.constraints]
+    words = [str(problem.objective), limits, task.start, task.scales]
+    return digest(json.dumps(words).encode())

@@ -5,6 +5,7 @@ plan alone sets them.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
@@ -12,6 +13,8 @@ import numpy as np
 
 Slab = tuple[int, int, tuple[Any, ...]]
 """Designs from and to before, and the selection of the designs' axes that is them."""
+
+_NAME = re.compile(r"(\d{12})-(\d{12})")
 
 
 def chunk_of(dims: Sequence[int], target: int) -> tuple[int, ...]:
@@ -41,6 +44,22 @@ def slabs(dims: Sequence[int], chunk: Sequence[int]) -> Iterator[Slab]:
                 (before + stop) * inner,
                 (*outer, slice(start, stop), *whole),
             )
+
+
+def name_of(start: int, stop: int) -> str:
+    """Name of the part of a block."""
+    return f"{start:012d}-{stop:012d}"
+
+
+def blocks_in(names: Iterable[str]) -> dict[int, int]:
+    """The ends of blocks by their starts, from the names of their parts."""
+    found = map(_NAME.fullmatch, names)
+    return {int(name[1]): int(name[2]) for name in found if name}
+
+
+def designs_in(names: Iterable[str]) -> int:
+    """Number of designs in parts, by their names."""
+    return sum(stop - start for start, stop in blocks_in(names).items())
 
 
 class Queue:

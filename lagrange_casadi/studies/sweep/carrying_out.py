@@ -4,28 +4,22 @@ half-written whatever happens.
 
 from __future__ import annotations
 
+import json
 import shutil
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, closing
-from itertools import islice
+from itertools import accumulate, islice, pairwise
 from pathlib import Path
 
-from ...base.publish import check_writable, reporting, uninterrupted
-from ...base.seal import VerifiedFile, seal
-from ...errors import (
-    ClusterError,
-    DeclarationError,
-    PathError,
-    SizeError,
-    StoppedError,
-    StoreError,
-    warn,
-)
+from ...base.files import reporting, writing
+from ...base.interrupts import uninterrupted
+from ...errors import ClusterError, PathError, SizeError, StoppedError, StoreError, warn
+from ...results.store.opening import VerifiedFile
+from ..checkpoint import Checkpoint
 from .axes import counted, grouped
-from .blocks import Queue
+from .blocks import Queue, blocks_in, designs_in, name_of
 from .file import check_names, joining
-from .parts import Folder, Part
-from .plan import SCHEMA, Plan, difference
+from .plan import Plan
 from .reading import Sweep
 from .workers import Workers
 
@@ -48,16 +42,17 @@ def carry_out(
     Raises :class:`BusyError`, :class:`PathError` or :class:`StoreError` where the file is another
     sweep's, :class:`StoppedError` after an interrupt.
     """
-    if resume and force:
-        raise DeclarationError(
-            "resume and force exclude each other: continue with what is there, or start anew"
-        )
     check_names(plan.designs, plan.harvest.axis, plan.columns)
-    check_writable(target, hdf5=True)
-    folder = Folder.of(target)
-    with folder.locked():
-        if _settled(folder, plan, resume, force):
-            folder.remove()
+    folder = Checkpoint.of(target, "sweep")
+    with folder.opened(plan.identity, resume=resume, force=force):
+        there = folder.target.exists()
+        if there and not (resume or force):
+            raise PathError(
+                f"{target} exists: force=True replaces it, resume=True continues an unfinished"
+                " sweep"
+            )
+        if there and not force and _is_done(folder, plan):
+            folder.clear()
             return None
         verified = None
         try:
@@ -76,8 +71,23 @@ def carry_out(
         return verified
 
 
-def _kept(folder: Folder, plan: Plan) -> str:
-    kept = folder.done()
+def _is_done(folder: Checkpoint, plan: Plan) -> bool:
+    """Return whether the file that is there is that of the plan.
+
+    Raises :class:`StoreError` where it is another, and the sweep was not to replace it.
+    """
+    try:
+        before = Sweep.open(folder.target).identity
+        folder.refuse_other(folder.target, before, plan.identity)
+    except StoreError:
+        if not folder.plan["forced"]:
+            raise
+        return False
+    return True
+
+
+def _kept(folder: Checkpoint, plan: Plan) -> str:
+    kept = designs_in(folder.parts)
     return (
         f"{grouped(kept)} of {counted(plan.size)} are kept in {folder.path}: continue with"
         " resume=True"
@@ -86,137 +96,103 @@ def _kept(folder: Folder, plan: Plan) -> str:
     )
 
 
-def _settled(folder: Folder, plan: Plan, resume: bool, force: bool) -> bool:
-    """Return whether the file is there already; else the folder is ready to be filled, and that of
-    another sweep was refused.
-    """
-    there = folder.target.exists()
-    if folder.begun and not (resume or force):
-        raise PathError(
-            f"{folder.path} holds an unfinished sweep: continue with resume=True, or start anew"
-            " with force=True"
-        )
-    if there and not (resume or force):
-        raise PathError(
-            f"{folder.target} exists: force=True replaces it, resume=True continues an unfinished"
-            " sweep"
-        )
-    if not (folder.begun or force) and folder.done():
-        raise PathError(
-            f"{folder.path} holds parts, and no plan.json that describes them: force=True"
-            " starts anew"
-        )
-    if force or not (folder.begun or there):
-        folder.begin(plan.identity, forced=force)
-        return False
-    if folder.begun:
-        _refuse_other(folder.path, difference(folder.identity, plan.identity))
-        if there and not folder.forced and not _is_whole(folder.target, plan):
-            raise PathError(
-                f"{folder.target} has appeared since the sweep began: move it, or force=True starts"
-                " anew"
-            )
-        return there and _is_whole(folder.target, plan)
-    _refuse_other(folder.target, difference(Sweep.open(folder.target).identity, plan.identity))
-    return True
-
-
-def _is_whole(target: Path, plan: Plan) -> bool:
-    """Return whether a kill came between the file and the end of its parts."""
-    try:
-        return difference(Sweep.open(target).identity, plan.identity) is None
-    except StoreError:
-        return False
-
-
-def _refuse_other(place: Path, found: str | None) -> None:
-    if found:
-        raise StoreError(
-            f"{place} is of another sweep: {found}; start anew with force=True, or write another"
-            " file"
-        )
-
-
 def _fill(
-    folder: Folder, plan: Plan, workers: Workers, breathe: Callable[[], None], progress: Progress
+    folder: Checkpoint,
+    plan: Plan,
+    workers: Workers,
+    breathe: Callable[[], None],
+    progress: Progress,
 ) -> VerifiedFile:
-    """Commit what is missing, and meanwhile join what is there; then seal and publish it."""
-    parts = {part.start: part for part in _fitting(folder, plan)}
-    done, size = (
-        sum(part.stop - part.start for part in parts.values()),
-        sum(part.size for part in parts.values()),
-    )
-    queue = Queue((start, stop) for start, stop, _ in plan.slabs() if start not in parts)
-    append: Callable[[Sequence[bytes]], None] | None = None
-    joined = 0
+    """Commit what is missing, and meanwhile join what is there into the file."""
+    there = blocks_in(folder.parts)
+    every = plan.slabs() if there else ()
+    stops = {start: stop for start, stop, _ in every if there.get(start) == stop}
+    done = sum(stop - start for start, stop in stops.items())
+    queue = Queue((start, stop) for start, stop, _ in plan.slabs() if start not in stops)
     with (
         reporting(folder.target),
         closing(workers.results(plan, queue)) as blocks,
-        ExitStack() as stack,
+        writing(folder.target, hdf5=True, within=folder.path) as bytes_,
     ):
+        size = sum(folder.path_of(name_of(*block)).stat().st_size for block in stops.items())
         _require_space(folder, plan.axes_size)
         if words := plan.takes(done):
             warn(words)
         progress("designs", done, plan.size)
-        for block in blocks:
-            if block:
-                start, stop, contents = block
-                parts[start] = folder.commit(start, stop, plan.columns, contents)
-                done, size = done + stop - start, size + parts[start].size
-                progress("designs", done, plan.size)
-                _require_space(folder, size / done * (2 * plan.size - done - joined))
-            try:
-                if (block or append) and not queue.stopped:
-                    # While the file is laid out, other blocks are evaluated.
-                    append = append or stack.enter_context(joining(plan, folder.joined, breathe))
-                    if block and start == joined:
-                        append(contents)
-                        joined = stop
-                    for part in islice(_following(parts, joined), _CATCHING_UP):
-                        append(part.read())
-                        joined = part.stop
-                breathe()
-            except KeyboardInterrupt:
-                if not queue.stopped:
-                    progress("stopping", done, plan.size)
-                queue.stop()
-        breathe()
-        append = append or stack.enter_context(joining(plan, folder.joined, breathe))
-        for part in _following(parts, joined):
-            append(part.read())
-            joined = part.stop
+        with ExitStack() as stack:
+            append: Callable[[Sequence[bytes]], None] | None = None
+            joined = 0
+            for block in blocks:
+                if block:
+                    start, stop, contents = block
+                    size += _commit(folder, start, stop, contents)
+                    stops[start] = stop
+                    done += stop - start
+                    progress("designs", done, plan.size)
+                    _require_space(folder, size / done * (2 * plan.size - done - joined))
+                try:
+                    if (block or append) and not queue.stopped:
+                        # While the file is laid out, other blocks are evaluated.
+                        append = append or stack.enter_context(joining(plan, bytes_, breathe))
+                        if block and start == joined:
+                            append(contents)
+                            joined = stop
+                        for here, after in islice(_following(stops, joined), _CATCHING_UP):
+                            append(_read(folder, here, after))
+                            joined = after
+                    breathe()
+                except KeyboardInterrupt:
+                    if not queue.stopped:
+                        progress("stopping", done, plan.size)
+                    queue.stop()
             breathe()
-            progress("file", joined, plan.size)
-        if joined != plan.size:
-            raise StoreError(
-                f"{folder.path}: no part continues after {counted(joined)} of {grouped(plan.size)}"
-            )
-    with reporting(folder.target):
-        verified = seal(folder.joined, SCHEMA)
-    folder.publish()
+            append = append or stack.enter_context(joining(plan, bytes_, breathe))
+            for here, after in _following(stops, joined):
+                append(_read(folder, here, after))
+                joined = after
+                breathe()
+                progress("file", joined, plan.size)
+            if joined != plan.size:
+                raise StoreError(
+                    f"{folder.path}: no part continues after {counted(joined)} of"
+                    f" {grouped(plan.size)}"
+                )
+        verified = VerifiedFile.of(bytes_.fileno())
+    folder.clear()
     return verified
 
 
-def _fitting(folder: Folder, plan: Plan) -> Iterator[Part]:
-    """The parts that are blocks of a plan; others are removed, and done again."""
-    there, columns = list(folder.parts()), tuple(column.name for column in plan.columns)
-    starts = {part.start for part in there}
-    stops = {start: stop for start, stop, _ in plan.slabs() if start in starts} if there else {}
-    for part in there:
-        if part.columns == columns and stops.get(part.start) == part.stop:
-            yield part
-        else:
-            part.path.unlink()
+def _commit(folder: Checkpoint, start: int, stop: int, contents: Sequence[bytes]) -> int:
+    """Make a block a part: a line of its columns' lengths, and the columns; how many bytes these
+    take.
+    """
+    lengths = list(map(len, contents))
+    folder.commit(name_of(start, stop), [f"{json.dumps(lengths)}\n".encode(), *contents])
+    return sum(lengths)
 
 
-def _following(parts: Mapping[int, Part], after: int) -> Iterator[Part]:
-    """The parts that follow one another."""
-    while part := parts.get(after):
-        after = part.stop
-        yield part
+def _read(folder: Checkpoint, start: int, stop: int) -> list[bytes]:
+    """The columns of a block.
+
+    Where its part is not what was committed it is deleted: raises :class:`StoreError`.
+    """
+    path, content = folder.path_of(name_of(start, stop)), folder.read(name_of(start, stop))
+    if content is None:
+        path.unlink(missing_ok=True)
+        raise StoreError(f"{path} was damaged, and is deleted")
+    lengths, _, columns = content.partition(b"\n")
+    ends = accumulate(json.loads(lengths), initial=0)
+    return [columns[first:last] for first, last in pairwise(ends)]
 
 
-def _require_space(folder: Folder, size: float) -> None:
+def _following(stops: Mapping[int, int], after: int) -> Iterator[tuple[int, int]]:
+    """The blocks that follow one another, of those that are done."""
+    while stop := stops.get(after):
+        yield after, stop
+        after = stop
+
+
+def _require_space(folder: Checkpoint, size: float) -> None:
     """Raise :class:`StoreError` where the disk has less room than is still to be written, as parts
     are so far.
     """

@@ -12,13 +12,15 @@ import numpy as np
 from ...base.status import Status
 from ...errors import one_line
 from ...model.even_points import points
-from ...results.store.untrusted import check_chunks, parsed, reported_as
+from ...results.store.attributes import described
+from ...results.store.untrusted import check_chunks, check_shape, parsed, reported_as
 from ...results.store.words import unlike, unlike_conventions
+from ..checkpoint import Checkpoint
 from .axes import are_described, counted, grouped, size_of
-from .blocks import slabs
+from .blocks import designs_in, slabs
 from .contents import KeptColumn
 from .meanings import STATUS
-from .parts import Folder
+from .plan import IDENTITY, Identity
 from .reading import Sweep
 
 
@@ -46,28 +48,47 @@ def check_sweep(path: str | Path) -> list[str]:
     return found
 
 
-def unfinished(path: Path) -> Folder | None:
+def unfinished(path: Path) -> Checkpoint | None:
     """The folder of an unfinished sweep, by its own path, or by that of the file that is not there
     yet; else None.
     """
-    folder = Folder.of(path.with_name(path.name.removesuffix(".parts"))) if path.name else None
-    return (
-        folder if folder and folder.begun and (path == folder.path or not path.exists()) else None
-    )
+    if not path.name:
+        return None
+    folder = Checkpoint.of(path.with_name(path.name.removesuffix(".parts")), "sweep")
+    at_work = folder.begun and (path == folder.path or not path.exists())
+    return folder if at_work and folder.plan["study"] == folder.study else None
 
 
-def progress(folder: Folder) -> str:
+def identity_of(folder: Checkpoint) -> Identity:
+    """The identity of an unfinished sweep. Raises :class:`StoreError` for a damaged one."""
+    identity: Any = folder.plan["identity"]
+    with reported_as("damaged", folder.path):
+        check_shape(identity, IDENTITY, "plan")
+        described(identity["mechanism"])
+    found: Identity = identity
+    return found
+
+
+def progress(folder: Checkpoint) -> str:
     """Progress of an unfinished sweep, and how to continue it; the sweep may be at work meanwhile,
     for nothing is touched.
 
     Raises :class:`StoreError` where its plan cannot be read.
     """
     with reported_as("damaged", folder.path):
-        size = size_of(folder.identity["grid"])
+        size = size_of(identity_of(folder)["grid"])
     return (
-        f"unfinished: {grouped(folder.done())} of {counted(size)} done; run it again with"
-        " resume=True to continue"
+        f"unfinished: {grouped(designs_in(folder.parts))} of {counted(size)} done; run it again"
+        " with resume=True to continue"
     )
+
+
+def flaws(folder: Checkpoint) -> Iterator[str]:
+    """Faults of the parts of an unfinished sweep, a line each; all is read, and nothing touched."""
+    for name in folder.parts:
+        # A sweep at work may come to its end meanwhile.
+        if folder.read(name) is None and folder.path_of(name).exists():
+            yield f"{name}: damaged: it will be done again"
 
 
 def _check_scales(file: h5py.File, sweep: Sweep) -> list[str]:

@@ -34,7 +34,6 @@ _NAMED = (
     "keep",
     "scene",
     "case",
-    "schema_version",
 )
 
 

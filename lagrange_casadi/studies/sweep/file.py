@@ -12,14 +12,14 @@ import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import partial
-from pathlib import Path
+from typing import BinaryIO
 
 import h5py
 import numpy as np
 import numpy.typing as npt
 
-from ...base.publish import PatientFile
 from ...errors import DeclarationError
+from ...results.store.opening import SWEEP, sealed
 from ...results.store.scales import LARGE, Scales
 from ...results.store.words import conventions, say
 from .axes import DESIGN, Designs, Grid
@@ -27,7 +27,7 @@ from .blocks import chunk_of, slabs
 from .chunks import FILTERS
 from .columns import Column
 from .meanings import KINDS, InstantAxis
-from .plan import SCHEMA, Plan
+from .plan import Plan
 
 WORDS = ("versions", "mechanism", "wanted", "t", "xi", "grid")
 """Attributes that are JSON; the others of a plan's identity are as they stand."""
@@ -62,44 +62,32 @@ def check_names(designs: Designs, axis: InstantAxis, columns: Sequence[Column] =
 
 @contextmanager
 def joining(
-    plan: Plan, path: Path, breathe: Callable[[], None]
+    plan: Plan, bytes_: BinaryIO, breathe: Callable[[], None]
 ) -> Iterator[Callable[[Sequence[bytes]], None]]:
-    """The file of a plan at ``path``, not sealed yet, to which its blocks are given in order;
-    removed on any failure.
+    """The file of a plan, sealed at the end, to which its blocks are given in order.
 
-    ``breathe`` lets an interrupt through, while long axes are written. Raises ``OSError`` where the
-    file cannot be written.
+    ``breathe`` lets an interrupt through, while long axes are written.
     """
-    try:
-        with PatientFile(path, "w+") as bytes_, h5py.File(bytes_, "w", track_order=True) as file:
-            scales = Scales(file)
-            _begin(file, plan, scales, breathe)
-            if bytes_.failure:
-                raise bytes_.failure
-            datasets = [
-                (_created(file, plan, column, scales), (0,) * len(column.axes))
-                for column in plan.columns
-            ]
-            scales.finish()
-            slabs = plan.slabs()
+    with sealed(bytes_, SWEEP) as file:
+        scales = Scales(file)
+        _begin(file, plan, scales, breathe)
+        datasets = [
+            (_created(file, plan, column, scales), (0,) * len(column.axes))
+            for column in plan.columns
+        ]
+        scales.finish()
+        slabs = plan.slabs()
 
-            def append(contents: Sequence[bytes]) -> None:
-                _, _, where = next(slabs)
-                corner = tuple(
-                    place.start or 0 if isinstance(place, slice) else place for place in where
-                )
-                for (dataset, rest), content in zip(datasets, contents, strict=True):
-                    dataset.id.write_direct_chunk((*corner, *rest), content)
-                if bytes_.failure:
-                    raise bytes_.failure
-                os.fsync(bytes_.fileno())  # else all of it waits for the disk in the end
+        def append(contents: Sequence[bytes]) -> None:
+            _, _, where = next(slabs)
+            corner = tuple(
+                place.start or 0 if isinstance(place, slice) else place for place in where
+            )
+            for (dataset, rest), content in zip(datasets, contents, strict=True):
+                dataset.id.write_direct_chunk((*corner, *rest), content)
+            os.fsync(bytes_.fileno())  # else all of it waits for the disk in the end
 
-            yield append
-            file.flush()
-            file.attrs["complete"] = True
-    except BaseException:
-        path.unlink(missing_ok=True)
-        raise
+        yield append
 
 
 def _begin(file: h5py.File, plan: Plan, scales: Scales, breathe: Callable[[], None]) -> None:
@@ -141,7 +129,6 @@ def _begin(file: h5py.File, plan: Plan, scales: Scales, breathe: Callable[[], No
             )
             say(scale, *meanings.of_axis(axis))
             scale.make_scale(axis)
-    file.attrs["schema"] = SCHEMA
     for key, value in plan.identity.items():
         file.attrs[key] = json.dumps(value) if key in WORDS else value
     file.attrs.update(conventions(meanings.table))

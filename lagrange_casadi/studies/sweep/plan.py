@@ -28,14 +28,10 @@ from .axes import Designs, check_designs, counted
 from .blocks import Slab, chunk_of, slabs
 from .columns import Column, Harvest, Task, check_keep
 
-SCHEMA = "lagrange-casadi-sweep"
-SCHEMA_VERSION = 1
-
 _BOUND = (float, str)
 """Start and end of instants: a number, or an expression of parameters in words."""
 
 IDENTITY = {
-    "schema_version": int,
     "case": str,
     "versions": {str: str},
     **dict.fromkeys(
@@ -53,7 +49,6 @@ IDENTITY = {
 class Identity(TypedDict):
     """Inputs of every number of a sweep, as its file keeps them."""
 
-    schema_version: int
     case: str
     versions: dict[str, str]
     sources: str
@@ -232,7 +227,6 @@ class Plan:
         is run.
         """
         words = {
-            "schema_version": SCHEMA_VERSION,
             "case": self.harvest.data.name,
             **self.harvest.signature,
             "mechanism": self.description.plain(),
@@ -285,34 +279,3 @@ def _wanted(scene: Scene, wanted: Sequence[str] | None) -> tuple[str, ...]:
     strength = (name for name in names if name.partition(":")[0] in STRENGTH)
     slopes = (f"{SENSITIVITY}:{name}" for name in by_parameters(scene.parameters, names))
     return (*(name for name in user_outputs if name not in ("all", "motion")), *strength, *slopes)
-
-
-def difference(before: object, now: object, where: str = "") -> str | None:
-    """The first place at which two identities differ, in words; None where they do not."""
-    if isinstance(before, dict) and isinstance(now, dict):
-        for key in dict.fromkeys([*before, *now]):
-            place = f"{where} {key}".strip()
-            if key not in before or key not in now:
-                return (
-                    f"{place} was {'not there' if key not in before else 'there'}, and"
-                    f" {'is' if key in now else 'is not'}"
-                )
-            found = difference(before[key], now[key], place)
-            if found:
-                return found
-        if where == "grid" and list(before) != list(now):
-            return f"the axes of the grid were {', '.join(before)} and are {', '.join(now)}"
-        return None
-    if before == now:
-        return None
-    if where in ("sources", "scene"):
-        what = {
-            "sources": "the program's own code",
-            "scene": "an expression, a law of motion or the posture of the scene",
-        }[where]
-        return f"{what} has changed"
-    return f"{where} was {_short(before)} and is {_short(now)}"
-
-
-def _short(value: object) -> str:
-    return value if isinstance(value, str) else json.dumps(value)

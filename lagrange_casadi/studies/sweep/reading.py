@@ -21,7 +21,6 @@ from ...base.arguments import LATER, Count, Index, Outputs, public, texts
 from ...base.arrays import Array
 from ...base.brief import listed
 from ...base.methods import method
-from ...base.seal import VerifiedFile, kind_of, verify
 from ...errors import (
     DeclarationError,
     LagrangeCasadiError,
@@ -33,13 +32,13 @@ from ...errors import (
 )
 from ...model.description import Description
 from ...results.store.attributes import described
-from ...results.store.opening import opened_file
+from ...results.store.opening import SWEEP, VerifiedFile, kind_of, opened_file, verify
+from ..checkpoint import Checkpoint
 from .axes import DESIGN, counted
 from .blocks import chunk_of, slabs
 from .contents import KeptColumn, contents
 from .meanings import CYCLE, OVER, STATUS, Meanings
-from .parts import Folder
-from .plan import SCHEMA, SCHEMA_VERSION, Identity
+from .plan import Identity
 from .selection import Selected, matches
 
 if TYPE_CHECKING:
@@ -652,7 +651,7 @@ class Sweep:
 @public
 def is_sweep(path: str | Path) -> bool:
     """Return whether a path is that of a sweep's file, whole or not."""
-    return kind_of(path) == SCHEMA
+    return kind_of(path) == SWEEP
 
 
 def _taken(dataset: h5py.Dataset, where: int | slice | tuple[int | slice, ...] = ()) -> Values:
@@ -715,12 +714,12 @@ def _along(
 
 
 def _opened(path: str | Path, verified: VerifiedFile | None) -> AbstractContextManager[h5py.File]:
-    return opened_file(path, SCHEMA, SCHEMA_VERSION, "the file of a sweep", " of sweeps", verified)
+    return opened_file(path, SWEEP, verified)
 
 
 def _refuse_unfinished(path: str | Path) -> None:
     """Raise :class:`PathError` where there are parts, and no file yet."""
-    if not os.path.exists(path) and Folder.of(Path(path)).begun:
+    if not os.path.exists(path) and Checkpoint.of(Path(path), "sweep").begun:
         raise PathError(
             f"{path}: its sweep is not finished: `lagrange-casadi info` shows its progress"
         )

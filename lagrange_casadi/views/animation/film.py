@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from ...base.arguments import public
-from ...base.publish import replacing, writing
+from ...base.files import writing
 from ...base.vocabulary import RATE, SECONDS, WIDTH
 from ...errors import DeclarationError
 from ...results.solution import Solution
@@ -175,16 +175,17 @@ def write_animation(
         solid = glb(
             solution, max(2, round(film.rate * film.seconds)), film.seconds, forces=film.forces
         )
-        with writing(target) as (file,):
+        with writing(target) as file:
             file.write(solid)
         return Animation(target)
     picture = picture_of(solution, film)
     if ending == ".mp4":
-        with replacing(target) as draft:
-            mp4(picture, picture.frames / film.seconds, draft)
-        return Animation(target)
-    data = gif(picture, film.seconds) if ending == ".gif" else svg(picture, film.seconds).encode()
-    with writing(target) as (file,):
+        data = mp4(picture, picture.frames / film.seconds)
+    elif ending == ".gif":
+        data = gif(picture, film.seconds)
+    else:
+        data = svg(picture, film.seconds).encode()
+    with writing(target) as file:
         file.write(data)
     return Animation(target)
 

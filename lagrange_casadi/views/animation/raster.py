@@ -109,8 +109,8 @@ def find_ffmpeg() -> str:
     return found
 
 
-def mp4(picture: Picture, rate: float, path: Path) -> None:
-    """Write a film of H.264, with so many frames a second.
+def mp4(picture: Picture, rate: float) -> bytes:
+    """A film of H.264, with so many frames a second.
 
     Raises :class:`.StoreError` where ffmpeg fails.
     """
@@ -147,12 +147,12 @@ def mp4(picture: Picture, rate: float, path: Path) -> None:
         *plain,
         "-f",
         "mp4",
-        str(path.absolute()),
     ]
-    with tempfile.TemporaryFile() as words:
+    with tempfile.TemporaryFile() as words, tempfile.TemporaryDirectory() as work:
+        path = Path(work) / "film.mp4"
         try:
             with subprocess.Popen(
-                command, stdin=subprocess.PIPE, stdout=words, stderr=words
+                [*command, str(path)], stdin=subprocess.PIPE, stdout=words, stderr=words
             ) as running:
                 assert running.stdin is not None
                 with suppress(BrokenPipeError), running.stdin as film:  # what ended early says why
@@ -166,6 +166,7 @@ def mp4(picture: Picture, rate: float, path: Path) -> None:
             raise StoreError(
                 f"ffmpeg failed: {said[-1] if said else f'status {running.returncode}'}"
             )
+        return path.read_bytes()
 
 
 def _artist(axes: Axes, thing: Thing, unit: float, order: int) -> Artist:

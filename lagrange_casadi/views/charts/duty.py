@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ...base.arguments import public
-from ...base.publish import writing
+from ...base.files import writing
 from ...studies.actuators.duty import Duty
 from ...studies.actuators.motor import Motor
 from ..shapes.pictures import check_picture, one_at_a_time, save
@@ -73,5 +73,5 @@ def plot_duty(duty: Duty, path: str | Path, motor: Motor | None = None) -> None:
     axes.set(xlabel=speed, ylabel=pull, xlim=(0, None), ylim=(0, None))
     axes.grid(True, color="0.92")
     figure.legend(loc="outside lower center", ncols=2, frameon=False, fontsize=9)
-    with writing(target) as (file,):
+    with writing(target) as file:
         save(figure, file, target.suffix)

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ...base.arguments import public
-from ...base.publish import writing
+from ...base.files import writing
 from ...results.statistics import shares
 from ...studies.forward.motion import FreeMotion
 from ..shapes.pictures import check_picture, one_at_a_time, save
@@ -65,5 +65,5 @@ def plot_cycle(motion: FreeMotion, path: str | Path) -> None:
     for axes in (upper, lower):
         axes.grid(True, color="0.92")
     target = Path(path)
-    with writing(target) as (file,):
+    with writing(target) as file:
         save(figure, file, target.suffix)

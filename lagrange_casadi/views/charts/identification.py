@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...base.arguments import public
-from ...base.publish import writing
+from ...base.files import writing
 from ...studies.identification.fit import Comparison
 from ..shapes.pictures import check_picture, one_at_a_time, save
 
@@ -57,7 +57,7 @@ def plot_identification(compared: Comparison, path: str | os.PathLike[str]) -> N
         one.set_xlabel("t [s]")
     handles = [line for one in axes[0] for line in one.get_legend_handles_labels()[0]]
     figure.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False, fontsize=9)
-    with writing(target) as (file,):
+    with writing(target) as file:
         save(figure, file, target.suffix)
 
 

@@ -10,7 +10,7 @@ from html import escape
 from pathlib import Path
 
 from ...base.arguments import public
-from ...base.publish import check_writable, writing
+from ...base.files import check_writable, writing
 from ...errors import DeclarationError
 from ...studies.identification.fit import Comparison
 from ...studies.identification.identification import Identification
@@ -59,7 +59,7 @@ def report_identification(
     text = document(
         f"{found.name}: identification", found.name, "".join(_parts(found, validation)), _STYLE
     )
-    with writing(target) as (file,):
+    with writing(target) as file:
         file.write(text.encode())
 
 

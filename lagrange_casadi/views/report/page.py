@@ -19,7 +19,7 @@ from pathlib import Path
 from string import Template
 
 from ...base.arrays import Json
-from ...base.publish import writing
+from ...base.files import writing
 from ...errors import DeclarationError
 from ...interop.portable.wasm import engine
 from ...model.scene import Scene
@@ -120,7 +120,7 @@ def write_page(target: Path, made: Callable[[], str]) -> None:
             f"report {target}: expected a name that ends in {' or '.join(ENDINGS)}"
         )
     text = made().encode()
-    with writing(target) as (file,):
+    with writing(target) as file:
         file.write(text)
 
 

@@ -6,7 +6,7 @@ import html
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from ...base.manifest import Manifest
+from ...base.folders import Manifest
 
 NAME = "index.html"
 MANIFEST = Manifest(

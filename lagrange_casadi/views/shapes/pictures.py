@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
 
-from ...base.publish import check_writable
+from ...base.files import check_writable
 from ...errors import DeclarationError
 
 if TYPE_CHECKING:

@@ -1,5 +1,5 @@
-"""Folders that are written again: a manifest lists the files that this package wrote, with a digest
-of each.
+"""Folders that are filled, and filled again: a manifest lists the files that this package wrote,
+with a digest of each.
 
 The manifest is written before the files. For files that are replaced, it also has the old digests,
 so all files are known if the process is killed between two of them. When the files are complete,
@@ -8,8 +8,8 @@ the manifest lists only these.
 
 from __future__ import annotations
 
-import hashlib
 import json
+import os
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -17,7 +17,32 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import PathError
-from .publish import filling, replacing, reporting
+from .files import beside, check_writable, digest, put, refuse_other, reporting, settled, writing
+
+
+@contextmanager
+def filling(folder: Path, first: str = "") -> Iterator[Path]:
+    """A temporary folder to fill, which on success becomes ``folder``, or whose files move into it;
+    on any failure it is removed.
+
+    Into a folder that is there, the file of the name ``first`` moves before the others.
+    """
+    check_writable(folder, folder=True)
+    place = settled(folder)
+    # What is mounted there takes no file from beside it by a new name.
+    within = place / place.name if os.path.ismount(place) else place
+    with reporting(folder), beside(within) as work:
+        draft = work / place.name
+        draft.mkdir()
+        yield draft
+        if not os.path.lexists(place):
+            os.rename(draft, place)
+            return
+        files = sorted(draft.iterdir(), key=lambda file: (file.name != first, file))
+        for file in files:
+            refuse_other(folder / file.name)
+        for file in files:
+            put(file, folder / file.name)
 
 
 @dataclass(frozen=True)
@@ -74,7 +99,7 @@ class Manifest:
             present -= {apart, *([self.name] if known else [])}
             files_there = [folder / name for name in present & known.keys()]
             found = {
-                path.name: digest(path)
+                path.name: digest(path.read_bytes())
                 for path in files_there
                 if path.is_file() and not path.is_symlink()
             }
@@ -102,24 +127,20 @@ class Manifest:
     def text(
         self,
         files: Mapping[str, str],
-        more: Mapping[str, object] | None = None,
+        more: Mapping[str, object],
         before: Mapping[str, str] | None = None,
-    ) -> str:
+    ) -> bytes:
         """The manifest of files by their digests, with what ``more`` it has, and digests of those
         that go, ``before`` they do.
         """
         content = {
             "schema": self.schema,
             "schema_version": 1,
-            **(more or {}),
+            **more,
             "files": dict(sorted(files.items())),
+            **({"before": dict(sorted(before.items()))} if before else {}),
         }
-        return (
-            json.dumps(
-                content | ({"before": dict(sorted(before.items()))} if before else {}), indent=1
-            )
-            + "\n"
-        )
+        return f"{json.dumps(content, indent=1)}\n".encode()
 
     @contextmanager
     def filling(
@@ -130,32 +151,25 @@ class Manifest:
         alone: bool = False,
         **allowed: Any,
     ) -> Iterator[Path]:
-        """A temporary folder to fill, as that of :func:`.publish.filling`, to whose files the
-        manifest is added.
+        """A temporary folder to fill, as that of :func:`filling`, to whose files the manifest is
+        added.
 
         What is ours in ``folder`` and was not written again stays, and stays known; or goes, where
         what is written is ``alone``. Raises what :meth:`check` does, with what is ``allowed``.
         """
+        more = more or {}
         with filling(folder, self.name) as draft:
             yield draft
-            written = {path.name: digest(path) for path in draft.iterdir() if path.is_file()}
+            written = {
+                path.name: digest(path.read_bytes()) for path in draft.iterdir() if path.is_file()
+            }
             same = self.check(folder, written, **allowed)
             files = written if alone else same | written
             before = {name: known for name, known in same.items() if files.get(name) != known}
-            _write(draft / self.name, self.text(files, more, before))
+            (draft / self.name).write_bytes(self.text(files, more, before))
         with reporting(folder):
             for name in before.keys() - files.keys():
                 (folder / name).unlink()
-        with replacing(
-            folder / self.name
-        ) as draft_folder:  # though nothing went: it removes the draft of one that was killed here
-            _write(draft_folder, self.text(files, more))
-
-
-def _write(path: Path, text: str) -> None:
-    path.write_text(text, encoding="utf-8", newline="\n")
-
-
-def digest(file: Path | bytes) -> str:
-    """The SHA-256 of a file, or of bytes. Raises ``OSError``."""
-    return hashlib.sha256(file if isinstance(file, bytes) else file.read_bytes()).hexdigest()
+        # Though nothing went: it removes the draft of one that was killed here.
+        with writing(folder / self.name) as file:
+            file.write(self.text(files, more))
