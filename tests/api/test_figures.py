@@ -109,8 +109,9 @@ def test_axes_have_units_that_people_read_and_si_where_asked():
     tick = axes.get_yticks()[2]
     assert float(axes.yaxis.get_major_formatter()(tick, 2)) == pytest.approx(1e-3 * tick)
     maps, peak = SectionMaps("maps", "boom"), solution.peak("section:boom:bending").value
-    assert f"peak {peak / 1e3:.4g} kN m" in maps.draw(solution).axes[2].get_title()
-    assert f"peak {peak:.4g} N m" in maps.draw(solution, si=True).axes[2].get_title()
+    for si, words in ((False, f"{peak / 1e3:.4g} kN m"), (True, f"{peak:.4g} N m")):
+        title = maps.draw(solution, si=si).axes[2].get_title().replace("\N{MINUS SIGN}", "-")
+        assert f"peak {words}" in title
 
 
 def test_what_was_wanted_is_what_is_drawn(solution, slider_crank, tmp_path):

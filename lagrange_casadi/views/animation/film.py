@@ -9,29 +9,31 @@ from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 
-import numpy as np
-
 from ...base.arguments import public
 from ...base.files import writing
 from ...base.vocabulary import RATE, SECONDS, WIDTH
 from ...errors import DeclarationError
 from ...results.solution import Solution
-from ..shapes.places import drawn_spots, require_poses
-from ..shapes.shapes import shapes
-from .body_lines import mechanism, rim
-from .drawn import Picture
-from .forces import Forces, arrow_things, forces_of, ribbon_things
+from ..shapes.poses import require_poses
+from ..shapes.primitives import drawing, size_of
+from ..shapes.shapes import named_spots
+from ..shapes.sheet import Picture, picture, view_of
+from ..shapes.vector import svg
+from .forces import drawn_forces
+from .frames import frames_of
 from .gltf import glb
-from .motion import motion_of
-from .raster import find_ffmpeg, gif, mp4
-from .stage import stage_for
-from .vector import svg
+from .pixels import find_ffmpeg, gif, mp4
 
 ENDINGS = (".gif", ".mp4", ".svg", ".glb")
 """Kinds of animations, by the name's ending."""
 
 _KINDS = {".gif": "image/gif", ".svg": "image/svg+xml", ".mp4": "video/mp4"}
 """Kinds that browsers show."""
+
+_WIDE = 640.0
+"""The width of a sheet [points]: widths of lines and sizes of letters are for it, and grow with the
+picture.
+"""
 
 _WIDTHS, _MOST, _SHORTEST = (80, 3840), 3000, 0.1
 
@@ -178,13 +180,13 @@ def write_animation(
         with writing(target) as file:
             file.write(solid)
         return Animation(target)
-    picture = picture_of(solution, film)
+    shown = picture_of(solution, film)
     if ending == ".mp4":
-        data = mp4(picture, picture.frames / film.seconds)
+        data = mp4(shown, shown.frames / film.seconds)
     elif ending == ".gif":
-        data = gif(picture, film.seconds)
+        data = gif(shown, film.seconds)
     else:
-        data = svg(picture, film.seconds).encode()
+        data = svg(shown, film.seconds).encode()
     with writing(target) as file:
         file.write(data)
     return Animation(target)
@@ -196,34 +198,18 @@ def picture_of(solution: Solution, film: Film) -> Picture:
     Raises :class:`.DeclarationError` for motion or forces that the solution lacks.
     """
     require_poses(solution, "an animation")
-    motion = motion_of(solution, max(2, round(film.rate * film.seconds)))
-    rims = [
-        around.reshape(-1, 3)
-        for shape in shapes(solution.description)
-        if (around := rim(motion, shape)) is not None
-    ]
-    cloud = np.concatenate(
-        [*(motion.place(spot) for spot in drawn_spots(solution.description)), *rims]
-    )
-    size = float(np.max(np.ptp(cloud, axis=0))) or 1.0
-    shown = film.forces or film.section
-    forces = (
-        forces_of(motion, size, arrows=film.forces, section=film.section) if shown else Forces()
-    )
-    stage = stage_for(
-        solution.description,
-        np.concatenate([cloud, *forces.cloud()]),
-        film.width,
-        foot=bool(forces.scale),
-    )
-    lines = mechanism(motion, stage, names=film.names)
-    things = (*ribbon_things(forces, stage), *lines, *arrow_things(forces, stage))
-    return Picture(
+    frames = frames_of(solution, max(2, round(film.rate * film.seconds)))
+    description = solution.description
+    named = named_spots(description) if film.names else {}
+    joints = {name: spot for name, spot in named.items() if name in description.joints}
+    lines = drawing(frames.poses, frames.whole, joints)
+    forces, words = drawn_forces(frames, size_of(lines), arrows=film.forces, section=film.section)
+    return picture(
         solution.case,
-        stage.width,
-        stage.height,
-        stage.unit,
-        motion.before.size,
-        motion.closed,
-        things,
+        (*lines, *forces),
+        view_of(description),
+        film.width,
+        unit=film.width / _WIDE,
+        words=words,
+        closed=frames.closed,
     )

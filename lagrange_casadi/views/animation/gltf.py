@@ -17,21 +17,19 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ...base.arrays import Array, Json
+from ...base.arrays import Array
 from ...errors import DeclarationError
-from ...model.description import JointNumbers, Place
+from ...model.description import JointNumbers
 from ...results.solution import Solution
 from ...version import __version__
-from ..shapes.places import drawn_spots, placed
+from ..shapes.poses import Poses, frame_along
+from ..shapes.primitives import colours_of, disc_axis, drawing, size_of
 from ..shapes.shapes import Shape, shapes
-from ..shapes.solid import COLOURS, PATH
+from ..shapes.symbols import PATH
 from ..shapes.views import upright
 from .forces import LONGEST, actions_of, largest_of
-from .motion import Motion
-from .solids import Mesh, arrow, block, cylinder, frame_along, prism, sphere, together
-
-_KEPT = ("nodes", "meshes", "materials", "accessors", "bufferViews")
-"""Lists of a file, in the order in which they stand there."""
+from .frames import Frames
+from .solids import Mesh, arrow, block, cylinder, prism, sphere, together
 
 _GIRTH = 0.013
 """Half the width of a link, over the mechanism's size."""
@@ -52,328 +50,230 @@ def glb(solution: Solution, frames: int, seconds: float, *, forces: bool = False
     With ``forces`` it has arrows of reactions, efforts and loads. Raises :class:`.DeclarationError`
     where there are not two instants, and where none of the forces that are asked for is known.
     """
-    if solution.t.size < 2:
+    t = solution.t
+    if t.size < 2:
         raise DeclarationError(
             f"{solution.case}: an animation shows a motion, and there is 1 instant; ask for more"
         )
-    chosen = np.unique(
-        np.linspace(0, solution.t.size - 1, min(solution.t.size, frames + 1)).round().astype(int)
-    )
-    return _Scene(solution, chosen, seconds, forces).made()
+    chosen = np.unique(np.linspace(0, t.size - 1, min(t.size, frames + 1)).round().astype(int))
+    before = np.minimum(chosen, t.size - 2)
+    whole = Poses.of(solution)
+    poses, share = whole.during(chosen.tolist()), (chosen - before).astype(float)
+    keyed = Frames(solution, whole, poses, before, share, closed=False)
+    size = size_of(drawing(whole))
+    keys = (t[chosen] - t[0]) / (t[chosen[-1]] - t[0]) * seconds
+    file = _File()
+    file.keys = file.array(keys)
+    parts = [*_bodies(file, keyed.poses, _GIRTH * size), *_still(file, keyed.poses, _GIRTH * size)]
+    if forces:
+        parts += _actions(file, keyed, size)
+    turned: dict[str, Any] = {}
+    if solution.description.space:
+        right, away, up = upright(solution.description.gravity)
+        # Up is y there, and what is near z.
+        turned["rotation"] = _quaternions(np.stack([right, up, -away])[None])[0].tolist()
+    file.node(solution.case, children=parts, **turned)
+    return file.made(solution.case)
 
 
 @dataclass(eq=False)
-class _Scene:
-    """Contents of a file as they are added: nodes, meshes, and the arrays of these."""
+class _File:
+    """Contents of a file as they are added: lists by their names, and the bytes of the arrays."""
 
-    solution: Solution
-    chosen: npt.NDArray[np.intp]
-    seconds: float
-    forces: bool
-    content: dict[str, list[Any]] = field(default_factory=lambda: {key: [] for key in _KEPT})
+    content: dict[str, list[Any]] = field(default_factory=dict)
     channels: list[Any] = field(default_factory=list)
     samplers: list[Any] = field(default_factory=list)
     data: bytearray = field(default_factory=bytearray)
+    keys: int = 0
 
-    def made(self) -> bytes:
-        """The bytes of the file."""
-        t = self.solution.t[self.chosen]
-        self.keys = self._array((t - t[0]) / (t[-1] - t[0]) * self.seconds, ends=True)
-        cloud = np.concatenate(
-            [placed(self.solution, spot) for spot in drawn_spots(self.solution.description)]
-        )
-        self.size = float(np.max(np.ptp(cloud, axis=0))) or 1.0
-        self.girth = _GIRTH * self.size
-        parts = [
-            *self._bodies(),
-            *self._springs(),
-            *self._still(),
-            *(self._actions() if self.forces else ()),
-        ]
-        root: dict[str, Any] = {"name": self.solution.case, "children": parts}
-        if self.solution.description.space:
-            right, away, up = upright(self.solution.description.gravity)
-            # Up is y there, and what is near z.
-            root["rotation"] = _quaternions(np.stack([right, up, -away])[None])[0].tolist()
-        top = self._node(root)
+    def add(self, kind: str, entry: dict[str, Any]) -> int:
+        """The number of an entry in the list of a kind."""
+        entries = self.content.setdefault(kind, [])
+        entries.append(entry)
+        return len(entries) - 1
+
+    def array(self, values: npt.NDArray[np.generic], target: int | None = None) -> int:
+        """An array, (n,) or (n, 3 or 4): of whole numbers, or in single precision."""
+        whole = values.dtype.kind in "iu"
+        values = values.astype("<u4") if whole else values.astype("<f4") + np.float32(0.0)
+        view = {"buffer": 0, "byteOffset": len(self.data), "byteLength": values.nbytes}
+        self.data += values.tobytes()
+        rows = values.reshape(len(values), -1)
+        accessor = {
+            "bufferView": self.add("bufferViews", view | ({"target": target} if target else {})),
+            "componentType": _WHOLE if whole else _FLOAT,
+            "count": len(values),
+            "type": "SCALAR" if values.ndim == 1 else f"VEC{values.shape[1]}",
+            "min": rows.min(axis=0).tolist(),
+            "max": rows.max(axis=0).tolist(),
+        }
+        return self.add("accessors", accessor)
+
+    def material(self, colour: str) -> int:
+        """A surface of a colour, once."""
+        known = [material["name"] for material in self.content.get("materials", ())]
+        if colour in known:
+            return known.index(colour)
+        share = np.array([int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5)])
+        linear = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
+        surface = {
+            "baseColorFactor": [*linear.round(6).tolist(), 1.0],
+            "metallicFactor": 0.2,
+            "roughnessFactor": 0.6,
+        }
+        return self.add("materials", {"name": colour, "pbrMetallicRoughness": surface})
+
+    def mesh(self, name: str, mesh: Mesh, colour: str) -> int:
+        """A solid of a colour."""
+        places, normals = self.array(mesh.places, _POINTS), self.array(mesh.normals, _POINTS)
+        primitive = {
+            "attributes": {"POSITION": places, "NORMAL": normals},
+            "indices": self.array(mesh.corners.ravel(), _CORNERS),
+            "mode": _TRIANGLES,
+            "material": self.material(colour),
+        }
+        return self.add("meshes", {"name": name, "primitives": [primitive]})
+
+    def node(self, name: str, moves: dict[str, Array] | None = None, **more: Any) -> int:
+        """A node, and what ``moves`` it at the keys: translations, rotations and scales."""
+        filled = {key: value for key, value in more.items() if value not in (None, [])}
+        number = self.add("nodes", {"name": name} | filled)
+        for path, values in (moves or {}).items():
+            output = self.array(values)
+            self.samplers.append({"input": self.keys, "output": output, "interpolation": "LINEAR"})
+            target = {"node": number, "path": path}
+            self.channels.append({"sampler": len(self.samplers) - 1, "target": target})
+        return number
+
+    def made(self, name: str) -> bytes:
+        """The bytes of the file; its top is the last node."""
         content = {
             "asset": {"version": "2.0", "generator": f"lagrange_casadi {__version__}"},
             "scene": 0,
-            "scenes": [{"name": self.solution.case, "nodes": [top]}],
+            "scenes": [{"name": name, "nodes": [len(self.content["nodes"]) - 1]}],
             **self.content,
             "animations": [{"name": "cycle", "channels": self.channels, "samplers": self.samplers}],
             "buffers": [{"byteLength": len(self.data)}],
         }
-        text = json.dumps(
-            {key: value for key, value in content.items() if value}, separators=(",", ":")
-        ).encode()
+        text = json.dumps(content, separators=(",", ":")).encode()
         text += b" " * (-len(text) % 4)
         body = bytes(self.data) + b"\0" * (-len(self.data) % 4)
-        chunks = (
-            struct.pack("<II", len(text), 0x4E4F534A)
-            + text
-            + struct.pack("<II", len(body), 0x004E4942)
-            + body
-        )
-        return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
+        head = struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(body))
+        heads = struct.pack("<II", len(text), 0x4E4F534A), struct.pack("<II", len(body), 0x004E4942)
+        return b"".join([head, heads[0], text, heads[1], body])
 
-    def _bodies(self) -> Iterator[int]:
-        """The bodies, each with its joints' pins."""
-        description = self.solution.description
-        joints = list(description.joints.values())
-        for k, shape in enumerate(shapes(description)):
-            child_joints = [joint for joint in joints if joint.child.body == shape.name]
-            solids = list(_solids(shape, self.girth))
-            pins = [
-                (joint.name, _pin(joint, self._axis(joint), self.girth)) for joint in child_joints
-            ]
-            children = [
-                self._node({"name": name, "mesh": self._mesh(name, mesh, _METAL)})
-                for name, mesh in pins
-            ]
-            node: dict[str, Any] = {"name": shape.name}
-            if solids:
-                node["mesh"] = self._mesh(shape.name, together(solids), COLOURS[k % len(COLOURS)])
-            if children:
-                node["children"] = children
-            number = self._node(node)
-            self._moves(
-                number,
-                "translation",
-                placed(self.solution, Place(shape.name, (0.0, 0.0, 0.0)))[self.chosen],
-            )
-            if shape.kind != "point":
-                self._moves(number, "rotation", _quaternions(self._axes(shape.name)))
-            yield number
 
-    def _springs(self) -> Iterator[int]:
-        """Springs as rods of length 1, which are placed, turned and stretched."""
-        for name, ends in self.solution.description.springs.items():
-            start, stop = (placed(self.solution, end)[self.chosen] for end in ends)
-            lengths = np.linalg.norm(stop - start, axis=1)
-            axes = np.stack(
-                [
-                    frame_along(direction if direction.any() else np.eye(3)[0])
-                    for direction in stop - start
-                ]
-            )
-            rod = cylinder(np.zeros(3), np.eye(3)[0], 0.4 * self.girth)
-            number = self._node({"name": name, "mesh": self._mesh(name, rod, _SPRING)})
-            self._moves(number, "translation", start)
-            self._moves(number, "rotation", _quaternions(axes.transpose(0, 2, 1)))
-            self._moves(
-                number,
-                "scale",
-                np.stack([lengths, np.ones_like(lengths), np.ones_like(lengths)], 1),
-            )
-            yield number
+def _bodies(file: _File, poses: Poses, girth: float) -> Iterator[int]:
+    """The bodies, each with its joints' pins."""
+    description = poses.description
+    colours = colours_of(description.bodies)
+    for shape in shapes(description):
+        pins = [
+            file.node(name, mesh=file.mesh(name, _pin(joint, poses, girth), _METAL))
+            for name, joint in description.joints.items()
+            if joint.child.body == shape.name
+        ]
+        solid = together(list(_solids(shape, poses, girth)))
+        mesh = file.mesh(shape.name, solid, colours[shape.name])
+        moves = {"translation": poses.bases[shape.name]}
+        if shape.kind != "point":
+            moves["rotation"] = _quaternions(poses.axes[shape.name].transpose(0, 2, 1))
+        yield file.node(shape.name, moves, mesh=mesh, children=pins)
 
-    def _actions(self) -> Iterator[int]:
-        """Reactions, efforts and loads as arrows of length 1, which are placed, turned and made as
-        long as they are large.
-        """
-        before = np.minimum(self.chosen, self.solution.t.size - 2)
-        pushes, moments = actions_of(
-            Motion(self.solution, before, (self.chosen - before).astype(float), closed=False)
-        )
-        for actions, unit, heads in ((pushes, "N", 1), (moments, "N m", 2)):
-            largest = largest_of(actions)
-            if not largest:
-                continue
-            scale = LONGEST * self.size / largest
-            meshes = {
-                colour: self._mesh("arrow", arrow(heads), colour)
-                for colour in dict.fromkeys(one.colour for one in actions)
-            }
-            for one in actions:
-                sizes = np.linalg.norm(one.vector, axis=1)
-                # What is nothing has no direction; it keeps the one before.
-                known = np.maximum.accumulate(
-                    np.where(sizes > _NOTHING * largest, np.arange(sizes.size), 0)
-                )
-                directions = np.where(sizes[known, None] > 0.0, one.vector[known], np.eye(3)[0])
-                axes = np.stack([frame_along(direction) for direction in directions])
-                extras: Json = {
-                    "unit": unit,
-                    "metres_per_unit": scale,
-                    "largest": float(sizes.max()),
-                }
-                number = self._node(
-                    {"name": f"{one.kind} {one.of}", "mesh": meshes[one.colour], "extras": extras}
-                )
-                self._moves(
-                    number, "translation", one.place if one.tail else one.place - scale * one.vector
-                )
-                self._moves(number, "rotation", _quaternions(axes.transpose(0, 2, 1)))
-                self._moves(
-                    number,
-                    "scale",
-                    np.tile(np.maximum(scale * sizes, _LEAST * self.size)[:, None], 3),
-                )
-                yield number
 
-    def _still(self) -> Iterator[int]:
-        """Draw fixed parts: blocks under joints on the ground, and the paths of declared points."""
-        for joint in self.solution.description.joints.values():
-            if joint.parent.body != "ground" or joint.kind == "free":
-                continue
-            down = -upright([*self.solution.description.gravity, 0.0][:3])[2]
-            axes = frame_along(down)
-            foot = block(
-                np.array(joint.parent.at) + 2.2 * self.girth * down,
-                axes,
-                [self.girth, 5 * self.girth, 5 * self.girth],
-            )
-            yield self._node(
-                {"name": f"{joint.name}, ground", "mesh": self._mesh(joint.name, foot, _STILL)}
-            )
-        for name, spot in self.solution.description.paths.items():
-            direction = placed(self.solution, spot)[self.chosen]
-            line = {
-                "attributes": {"POSITION": self._array(direction, ends=True, target=_POINTS)},
-                "mode": _LINE,
-                "material": self._material(PATH),
-            }
-            self.content["meshes"].append({"name": name, "primitives": [line]})
-            yield self._node({"name": f"way of {name}", "mesh": len(self.content["meshes"]) - 1})
-
-    def _axis(self, joint: JointNumbers) -> Array:
-        """The first axis of a joint, on its child's axes, at the first instant."""
-        direction = np.array(joint.axes[0].direction if joint.axes else (0.0, 0.0, 1.0))
-        ground = (
-            direction
-            if joint.parent.body == "ground"
-            else self._axes(joint.parent.body)[0] @ direction
-        )
-        return np.asarray(
-            ground if joint.child.body == "ground" else self._axes(joint.child.body)[0].T @ ground
-        )
-
-    def _axes(self, body: str) -> Array:
-        """The axes of a body as columns (keys, 3, 3); those that it has not go with the others."""
-        pose, count = self.solution.pose(body), self.chosen.size
-        if pose.z is None and pose.angle is not None:
-            c, s = np.cos(pose.angle[self.chosen]), np.sin(pose.angle[self.chosen])
-            turned = np.array([[c, -s, 0 * c], [s, c, 0 * c], [0 * c, 0 * c, 0 * c + 1.0]])
-            return np.asarray(turned.transpose(2, 0, 1))
-        if pose.axes is None:
-            return np.tile(np.eye(3), (count, 1, 1))
-        axes = pose.axes[self.chosen]
-        if np.isnan(axes).any():
-            axes = np.stack([frame_along(direction) for direction in axes[:, 0]])
-        return np.asarray(axes.transpose(0, 2, 1))
-
-    def _node(self, node: dict[str, Json]) -> int:
-        self.content["nodes"].append(node)
-        return len(self.content["nodes"]) - 1
-
-    def _mesh(self, name: str, mesh: Mesh, colour: str) -> int:
-        attributes = {
-            "POSITION": self._array(mesh.places, ends=True, target=_POINTS),
-            "NORMAL": self._array(mesh.normals, target=_POINTS),
+def _still(file: _File, poses: Poses, girth: float) -> Iterator[int]:
+    """Springs as rods, blocks under joints on the ground, and the ways of declared points."""
+    description = poses.description
+    rod = cylinder(np.zeros(3), np.eye(3)[0], 0.4 * girth)
+    for name, (start, stop) in description.springs.items():
+        base = poses.place(start)
+        ways = poses.place(stop) - base
+        scales = np.linalg.norm(ways, axis=1)[:, None] * [1.0, 0.0, 0.0] + [0.0, 1.0, 1.0]
+        moves = {"translation": base, "rotation": _along(ways), "scale": scales}
+        yield file.node(name, moves, mesh=file.mesh(name, rod, _SPRING))
+    down = -upright(description.gravity)[2]
+    for name, joint in description.joints.items():
+        if joint.parent.body == "ground" and joint.kind != "free":
+            place = np.array(joint.parent.at) + 2.2 * girth * down
+            foot = block(place, frame_along(down), [girth, 5 * girth, 5 * girth])
+            yield file.node(f"{name}, ground", mesh=file.mesh(name, foot, _STILL))
+    for name, spot in description.paths.items():
+        line = {
+            "attributes": {"POSITION": file.array(poses.place(spot), _POINTS)},
+            "mode": _LINE,
+            "material": file.material(PATH),
         }
-        corners = self._array(mesh.corners.ravel().astype("<u4"), target=_CORNERS)
-        primitive = {
-            "attributes": attributes,
-            "indices": corners,
-            "mode": _TRIANGLES,
-            "material": self._material(colour),
-        }
-        self.content["meshes"].append({"name": name, "primitives": [primitive]})
-        return len(self.content["meshes"]) - 1
+        mesh = file.add("meshes", {"name": name, "primitives": [line]})
+        yield file.node(f"way of {name}", mesh=mesh)
 
-    def _material(self, colour: str) -> int:
-        known = [material["name"] for material in self.content["materials"]]
-        if colour not in known:
-            share = np.array([int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5)])
-            linear = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
-            surface = {
-                "baseColorFactor": [*linear.round(6).tolist(), 1.0],
-                "metallicFactor": 0.2,
-                "roughnessFactor": 0.6,
+
+def _actions(file: _File, frames: Frames, size: float) -> Iterator[int]:
+    """Reactions, efforts and loads as arrows of length 1, which are placed, turned and made as long
+    as they are large.
+    """
+    pushes, moments = actions_of(frames)
+    for actions, unit, heads in ((pushes, "N", 1), (moments, "N m", 2)):
+        largest = largest_of(actions)
+        if not largest:
+            continue
+        scale = LONGEST * size / largest
+        colours = dict.fromkeys(one.colour for one in actions)
+        meshes = {colour: file.mesh("arrow", arrow(heads), colour) for colour in colours}
+        for one in actions:
+            sizes = np.linalg.norm(one.vector, axis=1)
+            # What is nothing has no direction; it keeps the one before.
+            there = np.where(sizes > _NOTHING * largest, np.arange(sizes.size), 0)
+            moves = {
+                "translation": one.place if one.tail else one.place - scale * one.vector,
+                "rotation": _along(one.vector[np.maximum.accumulate(there)]),
+                "scale": np.tile(np.maximum(scale * sizes, _LEAST * size)[:, None], 3),
             }
-            self.content["materials"].append({"name": colour, "pbrMetallicRoughness": surface})
-            known.append(colour)
-        return known.index(colour)
-
-    def _moves(self, node: int, path: str, values: Array) -> None:
-        self.samplers.append(
-            {"input": self.keys, "output": self._array(values), "interpolation": "LINEAR"}
-        )
-        self.channels.append(
-            {"sampler": len(self.samplers) - 1, "target": {"node": node, "path": path}}
-        )
-
-    def _array(
-        self, values: npt.NDArray[np.generic], *, ends: bool = False, target: int | None = None
-    ) -> int:
-        """Add an array, (n,) or (n, 3 or 4): of whole numbers, or in single precision; ``ends``
-        states its least and largest.
-        """
-        values = values if values.dtype.kind == "u" else values.astype("<f4") + np.float32(0.0)
-        view = {"buffer": 0, "byteOffset": len(self.data), "byteLength": values.nbytes} | (
-            {"target": target} if target else {}
-        )
-        self.data += values.tobytes()
-        self.content["bufferViews"].append(view)
-        kind = "SCALAR" if values.ndim == 1 else f"VEC{values.shape[1]}"
-        component = _WHOLE if values.dtype.kind == "u" else _FLOAT
-        accessor = {
-            "bufferView": len(self.content["bufferViews"]) - 1,
-            "componentType": component,
-            "count": len(values),
-            "type": kind,
-        }
-        if ends:
-            rows = values.reshape(len(values), -1)
-            accessor |= {"min": rows.min(axis=0).tolist(), "max": rows.max(axis=0).tolist()}
-        self.content["accessors"].append(accessor)
-        return len(self.content["accessors"]) - 1
+            extras = {"unit": unit, "metres_per_unit": scale, "largest": float(sizes.max())}
+            yield file.node(f"{one.kind} {one.of}", moves, mesh=meshes[one.colour], extras=extras)
 
 
-def _solids(shape: Shape, girth: float) -> Iterator[Mesh]:
-    """A body: its axis and arms as rods, its plates, its disc; a point mass as a block."""
-    if shape.kind == "point":
-        yield block(np.zeros(3), np.eye(3), [5 * girth, 4 * girth, 4 * girth])
+def _solids(shape: Shape, poses: Poses, girth: float) -> Iterator[Mesh]:
+    """A body: its axis and arms as rods, its plates, its disc; one that has none as a block."""
     for start, stop in [shape.axis] * bool(shape.axis) + list(shape.arms):
         if start != stop:
             yield cylinder(np.array(start), np.array(stop), girth)
     for corners in shape.plates:
         yield prism(np.array(corners), 1.2 * girth)
-    if shape.disc and shape.centre:
-        centre, half = np.array(shape.centre), 0.6 * girth * np.eye(3)[2]
-        yield cylinder(centre - half, centre + half, shape.disc)
+    axis = disc_axis(poses, shape)
+    if axis is not None:
+        centre = np.array(shape.centre)
+        yield cylinder(centre - 0.6 * girth * axis, centre + 0.6 * girth * axis, shape.disc)
+    elif not (shape.axis or shape.arms or shape.plates):
+        place = np.array(shape.centre or (0.0, 0.0, 0.0))
+        yield block(place, np.eye(3), [5 * girth, 4 * girth, 4 * girth])
 
 
-def _pin(joint: JointNumbers, axis: Array, girth: float) -> Mesh:
+def _pin(joint: JointNumbers, poses: Poses, girth: float) -> Mesh:
     """A joint on its child: a ball, a block that slides along an axis, or a pin along it."""
     at = np.array(joint.child.at)
     if joint.kind in ("spherical", "free"):
         return sphere(at, 1.5 * girth)
+    ground = poses.direction(joint.parent.body, joint.triad[0])[0]
+    axis = ground if joint.child.body == "ground" else poses.axes[joint.child.body][0] @ ground
     if joint.kind in ("prismatic", "planar"):
         return block(at, frame_along(axis), [4.4 * girth, 2.6 * girth, 2.6 * girth])
     # The pin of a planar slot is across the plane, and not along the slot.
-    direction = np.eye(3)[2] if joint.kind == "slot" else axis / np.linalg.norm(axis)
-    return cylinder(at - 1.6 * girth * direction, at + 1.6 * girth * direction, 1.1 * girth)
+    half = 1.6 * girth * (np.eye(3)[2] if joint.kind == "slot" else axis)
+    return cylinder(at - half, at + half, 1.1 * girth)
+
+
+def _along(ways: Array) -> Array:
+    """Quaternions (n, 4) that turn x to directions (n, 3); of nothing, to x."""
+    frames = frame_along(np.where(ways.any(axis=1, keepdims=True), ways, np.eye(3)[0]))
+    return _quaternions(frames.transpose(0, 2, 1))
 
 
 def _quaternions(axes: Array) -> Array:
     """Rotations (n, 3, 3), whose columns are turned axes, as x, y, z, w (n, 4), each on the side of
     the one before.
-
-    By the largest of four squares, so that nothing cancels: Shepperd, *Quaternion from rotation
-    matrix*, Journal of Guidance and Control 1 (1978).
     """
-    m = np.asarray(axes, float)
-    trace = m[:, 0, 0] + m[:, 1, 1] + m[:, 2, 2]
-    squares = np.stack([1.0 + 2.0 * m[:, k, k] - trace for k in range(3)] + [1.0 + trace], 1)
-    products = np.empty((len(m), 4, 4))
-    for i in range(3):
-        j, k = (i + 1) % 3, (i + 2) % 3
-        products[:, i, j] = products[:, j, i] = m[:, i, j] + m[:, j, i]
-        products[:, k, 3] = products[:, 3, k] = m[:, j, i] - m[:, i, j]
-    products[:, range(4), range(4)] = squares
-    best = products[np.arange(len(m)), np.argmax(squares, axis=1)]
-    found = best / np.linalg.norm(best, axis=1)[:, None]
+    from scipy.spatial.transform import Rotation
+
+    found = Rotation.from_matrix(axes).as_quat()
     signs = np.cumprod(np.where(np.sum(found[1:] * found[:-1], axis=1) < 0.0, -1.0, 1.0))
     return np.asarray(found * np.concatenate([[1.0], signs])[:, None])

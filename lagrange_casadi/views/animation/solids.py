@@ -1,6 +1,4 @@
-"""Solid shapes as triangles: cylinders, balls, blocks and plates, each with its corners and their
-normals.
-"""
+"""Solids as triangles: bodies of revolution, prisms and plates, with normals at their corners."""
 
 from __future__ import annotations
 
@@ -12,14 +10,15 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.arrays import Array
+from ..shapes.poses import frame_along
 
-_ROUND, _RINGS = 24, 12
+_ROUND = 20
 
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
     """Triangles between ``places`` (n, 3) [m] with ``normals`` (n, 3) of length 1; ``corners`` (m,
-    3) are counter-clockwise.
+    3) are counter-clockwise, seen from outside.
     """
 
     places: Array
@@ -38,131 +37,80 @@ def together(meshes: Sequence[Mesh]) -> Mesh:
     )
 
 
-def frame_along(inward: Array) -> Array:
-    """Three axes at right angles (3, 3), rows, of which the first has a direction."""
-    x = inward / np.linalg.norm(inward)
-    y = np.cross(np.eye(3)[np.argmin(np.abs(x))], x)
-    y /= np.linalg.norm(y)
-    return np.stack([x, y, np.cross(x, y)])
+def revolved(start: Array, axis: Array, profile: Sequence[tuple[float, float]]) -> Mesh:
+    """The body of revolution about an ``axis`` from ``start``, whose profile has these distances
+    along the axis and radii [m].
+    """
+    frame = frame_along(np.asarray(axis, float))
+    k, on = np.arange(_ROUND), (np.arange(_ROUND) + 1) % _ROUND
+    angles = 2.0 * np.pi * k / _ROUND
+    first = np.stack([k, on, on + _ROUND], 1)
+    second = np.stack([k, on + _ROUND, k + _ROUND], 1)
+
+    def around(along: float, radius: float) -> Array:
+        ring = np.stack([along + 0.0 * k, radius * np.cos(angles), radius * np.sin(angles)], 1)
+        found: Array = ring @ frame
+        return found
+
+    bands = []
+    for (x, r), (x2, r2) in itertools.pairwise(profile):
+        normals = np.tile(around(r - r2, x2 - x) / np.hypot(x2 - x, r2 - r), (2, 1))
+        places = np.asarray(start, float) + np.concatenate([around(x, r), around(x2, r2)])
+        corners = [first] * (r > 0.0) + [second] * (r2 > 0.0)
+        bands.append(Mesh(places, normals, np.concatenate(corners)))
+    return together(bands)
 
 
 def cylinder(start: Array, stop: Array, radius: float) -> Mesh:
-    """A cylinder between two places that are apart, with flat ends."""
-    start, stop = np.asarray(start, float), np.asarray(stop, float)
-    x, y, z = frame_along(stop - start)
-    angles = 2.0 * np.pi * np.arange(_ROUND) / _ROUND
-    around = np.cos(angles)[:, None] * y + np.sin(angles)[:, None] * z
-    rims = [end + radius * around for end in (start, stop)]
-    k, on = np.arange(_ROUND), (np.arange(_ROUND) + 1) % _ROUND
-    side = Mesh(
-        np.concatenate(rims), np.concatenate([around, around]),
-        np.concatenate([np.stack([k, on, on + _ROUND], 1), np.stack([k, on + _ROUND, k + _ROUND],
-            1)]),
-    )  # fmt: skip
-    return together([_outward(side), plate(rims[0][::-1], -x), plate(rims[1], x)])
-
-
-def cone(start: Array, tip: Array, radius: float) -> Mesh:
-    """A cone from the middle of its base to its tip."""
-    start, tip = np.asarray(start, float), np.asarray(tip, float)
-    x, y, z = frame_along(tip - start)
-    height = float(np.linalg.norm(tip - start))
-
-    k = np.arange(_ROUND)
-    angles = 2.0 * np.pi * np.concatenate([k, k + 0.5])[:, None] / _ROUND
-    rim, between = np.split(np.cos(angles) * y + np.sin(angles) * z, 2)
-    # The tip is there once for each side, for each has a direction of its own.
-    normals = np.concatenate([height * rim + radius * x, height * between + radius * x]) / np.hypot(
-        height, radius
-    )
-    places = np.concatenate([start + radius * rim, np.tile(tip, (_ROUND, 1))])
-    side = Mesh(places, normals, np.stack([k, (k + 1) % _ROUND, k + _ROUND], 1))
-    return together([_outward(side), plate((start + radius * rim)[::-1], -x)])
+    """A cylinder between two places that are apart."""
+    way = np.subtract(stop, start)
+    length = float(np.linalg.norm(way))
+    return revolved(start, way, [(0.0, 0.0), (0.0, radius), (length, radius), (length, 0.0)])
 
 
 def arrow(heads: int) -> Mesh:
     """An arrow along x from 0 to 1: of a force with one head, of a moment with two."""
-    ahead = np.eye(3)[0]
-    ends = [1.0 - 0.16 * k for k in range(heads)]
-    shaft = cylinder(np.zeros(3), (ends[-1] - 0.16) * ahead, 0.018)
-    return together([shaft, *(cone((end - 0.16) * ahead, end * ahead, 0.05) for end in ends)])
+    tips = [1.0 - 0.16 * k for k in reversed(range(heads))]
+    cones = [ring for tip in tips for ring in ((tip - 0.16, 0.05), (tip, 0.0))]
+    return revolved(np.zeros(3), np.eye(3)[0], [(0.0, 0.0), (0.0, 0.018),
+        (tips[0] - 0.16, 0.018), *cones])  # fmt: skip
 
 
 def sphere(centre: Array, radius: float) -> Mesh:
     """A ball."""
-    up, around = np.meshgrid(
-        np.linspace(0.0, np.pi, _RINGS + 1), 2.0 * np.pi * np.arange(_ROUND) / _ROUND, indexing="ij"
-    )
-    normals = np.stack(
-        [np.sin(up) * np.cos(around), np.sin(up) * np.sin(around), np.cos(up)], -1
-    ).reshape(-1, 3)
-    ring, k = (
-        part.ravel() for part in np.meshgrid(np.arange(_RINGS), np.arange(_ROUND), indexing="ij")
-    )
-    a, b = ring * _ROUND + k, ring * _ROUND + (k + 1) % _ROUND
-    lower, upper = (
-        np.stack([a, a + _ROUND, b + _ROUND], 1)[ring < _RINGS - 1],
-        np.stack([a, b + _ROUND, b], 1)[ring > 0],
-    )
-    return _outward(
-        Mesh(np.asarray(centre, float) + radius * normals, normals, np.concatenate([lower, upper]))
-    )
+    turns = np.linspace(np.pi, 0.0, 10)[1:-1]
+    between = [(radius * float(np.cos(one)), radius * float(np.sin(one))) for one in turns]
+    rings = [(-radius, 0.0), *between, (radius, 0.0)]
+    found = revolved(centre, np.eye(3)[0], rings)
+    return Mesh(found.places, (found.places - centre) / radius, found.corners)
 
 
 def block(centre: Array, axes: Array, sides: Sequence[float]) -> Mesh:
     """A block with so long sides along its axes (3, 3), rows."""
-    faces = []
-    for i in range(3):
-        j, k = (i + 1) % 3, (i + 2) % 3
-        for sign in (1.0, -1.0):
-            out, a, b = (
-                sign * axes[i] * sides[i] / 2,
-                axes[j] * sides[j] / 2,
-                sign * axes[k] * sides[k] / 2,
-            )
-            faces.append(
-                plate(
-                    np.asarray(centre, float) + out + np.array([-a - b, a - b, a + b, -a + b]),
-                    sign * axes[i],
-                )
-            )
-    return together(faces)
+    a, b = axes[1] * sides[1] / 2, axes[2] * sides[2] / 2
+    return prism(centre + np.array([-a - b, a - b, a + b, b - a]), sides[0])
 
 
 def prism(corners: Array, thickness: float) -> Mesh:
     """A polygon (n, 3) that lies in a plane, all of its edge seen from its middle, made as thick as
     that.
     """
-    corners = np.asarray(corners, float)
     normal = sum(
         np.cross(a - corners[0], b - corners[0]) for a, b in itertools.pairwise(corners[1:])
     )
     normal = np.asarray(normal) / np.linalg.norm(normal)
     top, bottom = corners + normal * thickness / 2, corners - normal * thickness / 2
-    sides = []
-    for k in range(len(corners)):
-        on = (k + 1) % len(corners)
-        inward = np.cross(corners[on] - corners[k], normal)
-        sides.append(
-            plate(
-                np.array([bottom[k], bottom[on], top[on], top[k]]), inward / np.linalg.norm(inward)
-            )
-        )
-    return together([plate(top, normal), plate(bottom[::-1], -normal), *sides])
+    sides = [np.array([bottom[k - 1], bottom[k], top[k], top[k - 1]]) for k in range(len(corners))]
+    outward = [np.cross(side[1] - side[0], normal) for side in sides]
+    faces = [
+        _plate(side, way / np.linalg.norm(way)) for side, way in zip(sides, outward, strict=True)
+    ]
+    return together([_plate(top, normal), _plate(bottom[::-1], -normal), *faces])
 
 
-def plate(corners: Array, normal: Array) -> Mesh:
-    """A flat polygon, all of its edge seen from its middle, and from where its normal points to."""
+def _plate(corners: Array, normal: Array) -> Mesh:
+    """A flat polygon, counter-clockwise about its normal, all of its edge seen from its middle."""
     places = np.vstack([np.mean(corners, axis=0), corners])
     k = np.arange(1, len(places))
     fan = np.stack([np.zeros_like(k), k, np.roll(k, -1)], 1)
-    return _outward(Mesh(places, np.tile(np.asarray(normal, float), (len(places), 1)), fan))
-
-
-def _outward(mesh: Mesh) -> Mesh:
-    """Turn every triangle counter-clockwise, seen from outside."""
-    a, b, c = (mesh.places[mesh.corners[:, k]] for k in range(3))
-    inward = np.sum(np.cross(b - a, c - a) * mesh.normals[mesh.corners].sum(axis=1), axis=1) < 0.0
-    return Mesh(
-        mesh.places, mesh.normals, np.where(inward[:, None], mesh.corners[:, ::-1], mesh.corners)
-    )
+    return Mesh(places, np.tile(normal, (len(places), 1)), fan)

@@ -20,7 +20,7 @@ from ...results.histories import Peak
 from ...results.laws import SectionLaw
 from ...results.ordering import vanishes
 from ...results.solution import Solution
-from ..shapes.readable import scale_for
+from ..shapes.readable import instant, number, scale_for
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -110,11 +110,8 @@ def draw_section_diagrams(solution: Solution, links: Sequence[str], si: bool = F
         peak = governing(solution, link)
         i = int(np.argmin(np.abs(solution.t - peak.t)))
         law = solution.section(link).law.during(slice(i, i + 1))
-        at = f"t = {solution.t[i]:.4g} s"
-        if solution.over:
-            at = f"{solution.over.shown(solution.over.values[i])}, {at}"
         what = Output.of(peak.name).meant(solution.table).long_name
-        words = f"{link}, {law.length:.4g} m, at {at}: largest {what}"
+        words = f"{link}, {law.length:.4g} m, at {instant(solution, i)}: largest {what}"
         axes.text(0.2, top, words, fontsize=10, fontweight="bold", va="top")
         top -= 0.3
         for k, force in enumerate(forces):
@@ -165,16 +162,12 @@ def _panel(
         axes.text(
             place + {"left": 0.03, "right": -0.03, "center": 0.0}[_aligned(mark, found)],
             height + (0.04 if up else -0.04),
-            _written(scale.factor * mark.value),
+            number(scale.factor * mark.value),
             fontsize=8,
             ha=_aligned(mark, found),
             va="bottom" if up else "top",
             path_effects=[withStroke(linewidth=2.0, foreground="white")],
         )
-
-
-def _written(value: float, digits: int = 4) -> str:
-    return f"{value + 0.0:.{digits}g}".replace("-", "\N{MINUS SIGN}")
 
 
 def _aligned(mark: Mark, found: Sequence[Mark]) -> str:
@@ -274,7 +267,7 @@ def _polar(
     )
     axes.plot(x0 + points[0, i], y0 + points[1, i], "o", color=_LARGEST, markersize=4)
     angle = math.degrees(math.atan2(points[1, i], points[0, i]))
-    words = f"{scale.said(most)} at {_written(angle, 3)}°" if most else "0"
+    words = f"{scale.said(most)} at {number(angle, 3)}°" if most else "0"
     axes.text(x0, y0 - _RADIUS - 0.14, words, fontsize=8, ha="center", va="top")
 
 

@@ -24,7 +24,7 @@ from ...results.ordering import vanishes
 from ...results.solution import Solution
 from ...results.strength.parts import NEEDED, bending_of, fitted_in, strong_of
 from ..shapes.pictures import ending_of, one_at_a_time, save
-from ..shapes.readable import scale_for
+from ..shapes.readable import instant, number, scale_for
 from ..shapes.specs import (
     DeflectionPlot,
     MechanismDrawing,
@@ -39,8 +39,7 @@ from ..shapes.specs import (
 )
 from .deflection_plot import draw_deflection
 from .diagrams import draw_polar, draw_section_diagrams, polar_members
-from .drawing import draw_mechanism
-from .space_drawing import draw_in_space
+from .mechanism import draw_mechanism
 from .strength_plot import draw_strength, draw_utilisation
 
 if TYPE_CHECKING:
@@ -260,9 +259,7 @@ def _span(spec: SpanPlot, solution: Solution, si: bool) -> Figure:
         .on_grid(output.member, solution.xi)
     )
     axes.plot(solution.xi, (0.0 if vanishes(solution, output) else spec.factor) * values[0])
-    at = f"t = {solution.t[i]:.4g} s" + (
-        f", {solution.over.shown(solution.over.values[i])}" if solution.over else ""
-    )
+    at = instant(solution, i)
     title = f"{spec.title}, {at}" if spec.title else at
     _finish(figure, axes, solution, [spec.quantity], title, spec.note, r"$\xi/l$", si)
     return figure
@@ -325,19 +322,13 @@ def _maps(spec: SectionMaps, solution: Solution, si: bool) -> Figure:
     return figure
 
 
-def _mechanism(spec: MechanismDrawing, solution: Solution, si: bool) -> Figure:
-    if solution.table is SPACE:
-        return draw_in_space(solution, spec.count, spec.azimuth, spec.elevation, si)
-    return draw_mechanism(solution, spec.count, spec.overlay, si)
-
-
 _FIGURES: dict[type[Spec], Callable[[Any, Solution, bool], Figure]] = {
     TimePlot: _time,
     SpanPlot: _span,
     SectionMaps: _maps,
     SectionDiagrams: lambda spec, drawn, si: draw_section_diagrams(drawn, spec.links, si),
     PolarPlots: lambda spec, drawn, si: draw_polar(drawn, spec.joints, si),
-    MechanismDrawing: _mechanism,
+    MechanismDrawing: lambda spec, drawn, si: draw_mechanism(drawn, spec, si),
     StrengthPlot: lambda spec, drawn, si: draw_strength(drawn, spec.link, *_along(drawn), si),
     UtilisationPlot: lambda spec, drawn, _: draw_utilisation(drawn, (*spec.links, *spec.joints)),
     DeflectionPlot: lambda spec, drawn, si: draw_deflection(drawn, spec.link, *_along(drawn), si),
@@ -356,7 +347,7 @@ def _along(solution: Solution) -> tuple[Array, str]:
 def _place_of(peak: Peak, solution: Solution) -> tuple[float, str]:
     """Abscissa of a peak, and its description."""
     if solution.over is None or peak.over is None:
-        return peak.t, f"t = {peak.t:.4g} s"
+        return peak.t, f"t = {number(peak.t)} s"
     return float(solution.over.drawn(peak.over)), solution.over.shown(peak.over)
 
 

@@ -13,7 +13,7 @@ from ...studies.evaluate import evaluate
 from ...studies.optimise.front import Front
 from ...studies.optimise.optimum import Optimum
 from ..shapes.pictures import one_at_a_time, save
-from .into import draw_into
+from .mechanism import draw_into
 
 _TEXT = 40
 

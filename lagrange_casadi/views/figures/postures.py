@@ -20,10 +20,11 @@ from ...model.scene_arguments import posture_entry
 from ...results.solution import Solution
 from ...studies.evaluate import evaluate
 from ..shapes.pictures import one_at_a_time, save
-from ..shapes.places import drawn_spots, placed
+from ..shapes.poses import Poses
+from ..shapes.primitives import cloud, drawing
 from ..shapes.shapes import named_spots
-from .into import draw_into
 from .labels import NAMES_IN_ROW
+from .mechanism import draw_into
 
 _ALL, _SOME, _LARGE = 16, 8, 40
 """Largest numbers of ways that are all drawn, of those drawn of more, and of bodies of a mechanism:
@@ -155,13 +156,12 @@ def _negative(solution: Solution) -> int:
 
 def _apart(found: Sequence[Solution]) -> list[list[int]]:
     """Numbers of the ways, those together that look the same."""
-    spots = list(drawn_spots(found[0].description))
-    clouds = [np.concatenate([placed(solution, spot) for spot in spots]) for solution in found]
+    clouds = [cloud(drawing(Poses.of(solution))) for solution in found]
     near = 1e-6 * float(np.ptp(clouds[0], axis=0).max())
     pictures: list[list[int]] = []
-    for number, cloud in enumerate(clouds):
+    for number, points in enumerate(clouds):
         for picture in pictures:
-            if np.abs(cloud - clouds[picture[0]]).max() <= near:
+            if np.abs(points - clouds[picture[0]]).max() <= near:
                 picture.append(number)
                 break
         else:

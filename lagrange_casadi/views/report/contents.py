@@ -20,9 +20,9 @@ from ...results.solution import Solution
 from ...results.statistics import Extreme
 from ...results.strength.parts import looked
 from ...results.verification.certificate import failure, summary
-from ..shapes.places import require_poses
+from ..shapes.poses import Poses, require_poses
+from ..shapes.primitives import colours_of, disc_axis
 from ..shapes.shapes import named_spots, shapes
-from ..shapes.solid import COLOURS
 from ..shapes.views import upright
 from .arrays import Arrays, finite
 from .instants import Mark, drive_entry, mark, shown_instants
@@ -132,34 +132,22 @@ def _instants(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) 
 def _bodies(
     solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays
 ) -> Iterator[dict[str, Json]]:
-    """The bodies' shapes, colours, and poses: in the plane x, y and the angle; in space a place,
-    and three axes one by one.
+    """The bodies' shapes, colours, axes of discs, and poses: in the plane x, y and the angle; in
+    space a place, and three axes one by one.
     """
-    for k, shape in enumerate(shapes(solution.description)):
-        pose = solution.pose(shape.name)
-        if pose.z is None:
-            angle = np.zeros_like(pose.x) if pose.angle is None else pose.angle
-            values = [pose.x, pose.y, angle]
-        else:
-            axes = _whole_axes(pose.axes, solution.t.size)
-            values = [pose.x, pose.y, pose.z, *(axes[:, i, j] for i in range(3) for j in range(3))]
+    poses = Poses.of(solution)
+    colours = colours_of(solution.description.bodies)
+    for shape in shapes(solution.description):
+        values = np.hstack([poses.bases[shape.name], poses.axes[shape.name].reshape(-1, 9)]).T
+        if not solution.description.space:
+            angle = solution.pose(shape.name).angle
+            values = np.stack([*values[:2], 0.0 * values[0] if angle is None else angle])
+        axis = disc_axis(poses, shape)
         yield asdict(shape) | {
-            "colour": COLOURS[k % len(COLOURS)],
-            "pose": [arrays.add(values[chosen]) for values in values],
+            "colour": colours[shape.name],
+            "around": None if axis is None else axis.tolist(),
+            "pose": [arrays.add(column[chosen]) for column in values],
         }
-
-
-def _whole_axes(axes: Array | None, count: int) -> Array:
-    """Three axes at right angles: those that a body has, and whatever goes with them."""
-    if axes is None:
-        return np.tile(np.eye(3), (count, 1, 1))
-    if not np.isnan(axes).any():
-        return axes
-    x = axes[:, 0]
-    least = np.eye(3)[np.argmin(np.abs(x), axis=1)]
-    y = np.cross(least, x)
-    y /= np.linalg.norm(y, axis=1)[:, None]
-    return np.stack([x, y, np.cross(x, y)], axis=1)
 
 
 def series_of(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) -> Iterator[Series]:

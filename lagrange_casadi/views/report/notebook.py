@@ -15,7 +15,7 @@ from ...results.ordering import ordered
 from ...results.solution import Solution
 from ...studies.evaluate import evaluate
 from ..shapes.index import html_table
-from ..shapes.places import require_poses
+from ..shapes.poses import require_poses
 from .page import page
 from .still import still
 from .words import what

@@ -1,1 +1,3 @@
-"""Places and shapes of a mechanism's picture; and the parts that all pictures share."""
+"""The one list of what a picture of a mechanism shows (``primitives.py``), and its symbols, views
+and SVG; the parts that all figures share.
+"""

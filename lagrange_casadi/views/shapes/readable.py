@@ -8,6 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ...results.solution import Solution
+
 if TYPE_CHECKING:
     from matplotlib.axis import Axis
 
@@ -31,7 +33,7 @@ class Scale:
 
     def said(self, value: float, digits: int = 4) -> str:
         """A value with its unit."""
-        return f"{self.factor * value:.{digits}g} {self.unit}"
+        return f"{number(self.factor * value, digits)} {self.unit}"
 
     def put(self, axis: Axis) -> None:
         """Have the numbers of an axis, or of a colour bar, be in this unit; what is drawn stays as
@@ -42,7 +44,18 @@ class Scale:
 
     def label(self, value: float, _: object = None) -> str:
         """The number at a tick."""
-        return f"{self.factor * value + 0.0:.10g}".replace("-", "\N{MINUS SIGN}")
+        return number(self.factor * value, 10)
+
+
+def number(value: float, digits: int = 4) -> str:
+    """A number to so many digits that count, with a sign that is as wide as a plus."""
+    return f"{value + 0.0:.{digits}g}".replace("-", "\N{MINUS SIGN}")
+
+
+def instant(solution: Solution, i: int) -> str:
+    """An instant, with the drive's coordinate if instants are defined by one."""
+    over = f", {solution.over.shown(solution.over.values[i])}" if solution.over else ""
+    return f"t = {number(solution.t[i])} s{over}"
 
 
 def scale_for(unit: str, size: float, si: bool = False) -> Scale:

@@ -40,13 +40,6 @@ class Shape:
     centre: Triple | None
     disc: float
 
-    @property
-    def spoke(self) -> Triple | None:
-        """The end of the spoke of a disc; nothing where there is none."""
-        if not self.disc or self.centre is None:
-            return None
-        return self.centre[0] + self.disc, *self.centre[1:]
-
 
 def shapes(description: Description) -> Iterator[Shape]:
     """The bodies, in the order in which they are declared."""

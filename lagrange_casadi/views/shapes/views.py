@@ -1,6 +1,4 @@
-"""Views of a mechanism in space: orthographic ones by azimuth and elevation, and four of them on a
-page.
-"""
+"""Orthographic views of a mechanism by azimuth and elevation, and pages of several pictures."""
 
 from __future__ import annotations
 
@@ -15,11 +13,11 @@ from ...base.arrays import Array
 AZIMUTH, ELEVATION = -60.0, 25.0
 """The view that shows most of most mechanisms [deg]."""
 
-_WIDE, _HIGH = 9.6, 7.6
-"""The most that the two columns and the two rows of views take [inch]."""
+_WIDE, _HIGH, _LARGE = 9.6, 7.6, 6.4
+"""The most that all columns, all rows and one picture take [inch]."""
 
-_LEFT, _BETWEEN, _RIGHT = 0.75, 0.8, 0.25
-_BELOW, _ABOVE = 0.6, 0.35
+_LEFT, _BETWEEN, _RIGHT, _BELOW = 0.75, 0.8, 0.25, 0.6
+"""Room for the scales of pictures and around all of them [inch]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,8 +88,8 @@ def views(
 
 @dataclass(frozen=True)
 class Page:
-    """A page of four views, in two rows: its size [inch], their one scale [inch/m], and of each its
-    place on it and what it shows.
+    """A page of pictures in rows: its size [inch], their one scale [inch/m], and of each its place
+    on the page and what it shows.
 
     ``places`` are left, bottom, width and height [inch], ``boxes`` are left, right, bottom and top
     [m].
@@ -104,32 +102,38 @@ class Page:
 
 
 def page(
-    four: Sequence[View], points: Array, margins: Sequence[float], head: float, foot: float
+    ends: Sequence[tuple[Array, Array]],
+    across: int,
+    *,
+    head: float,
+    title: float,
+    foot: float,
+    least: float = 0.0,
 ) -> Page:
-    """A page on which points (n, 3) fit, with a margin [m] around those of each view, a ``head``
-    and a ``foot`` [inch].
+    """A page of pictures that show the ranges between their ``ends``, lower left and upper right
+    [m], so many ``across``.
+
+    ``head``, ``title`` above each picture and ``foot`` are heights, ``least`` the width of each
+    picture at least [inch].
     """
-    flat = [one.on_page(points) for one in four]
-    ends = [
-        (p.min(axis=0) - margin, p.max(axis=0) + margin)
-        for p, margin in zip(flat, margins, strict=True)
-    ]
-    spans = [high - low for low, high in ends]
-    columns = [max(spans[0][0], spans[2][0]), max(spans[1][0], spans[3][0])]
-    rows = [max(spans[0][1], spans[1][1]), max(spans[2][1], spans[3][1])]
-    scale = min(_WIDE / sum(columns), _HIGH / sum(rows))
-    lefts = (_LEFT, _LEFT + scale * columns[0] + _BETWEEN)
-    bottoms = (foot + _BELOW + scale * rows[1] + _BETWEEN, foot + _BELOW)
+    spans = np.array([high - low for low, high in ends])
+    columns = np.array([spans[k::across, 0].max() for k in range(across)])
+    rows = np.array([spans[k : k + across, 1].max() for k in range(0, len(ends), across)])
+    scale = min(
+        _WIDE / columns.sum(), _HIGH / rows.sum(), _LARGE / columns.max(), _LARGE / rows.max()
+    )
+    columns = np.maximum(columns, least / scale)
+    lefts = _LEFT + np.cumsum([0.0, *(scale * columns[:-1] + _BETWEEN)])
+    step = _BELOW + title
+    bottoms = foot + _BELOW + np.cumsum([0.0, *(scale * rows[:0:-1] + step)])[::-1]
     places, boxes = [], []
     for k, (low, high) in enumerate(ends):
-        row, column = divmod(k, 2)
-        half = np.array([columns[column], rows[row]]) / 2
-        middle = (low + high) / 2
-        boxes.append(
-            (*(middle[0] + half[0] * np.array([-1, 1])), *(middle[1] + half[1] * np.array([-1, 1])))
-        )
+        row, column = divmod(k, across)
+        half, middle = np.array([columns[column], rows[row]]) / 2, (low + high) / 2
+        (left, bottom), (right, top) = middle - half, middle + half
+        boxes.append((left, right, bottom, top))
         places.append((lefts[column], bottoms[row], scale * columns[column], scale * rows[row]))
-    size = (lefts[1] + scale * columns[1] + _RIGHT, bottoms[0] + scale * rows[0] + _ABOVE + head)
+    size = (lefts[-1] + scale * columns[-1] + _RIGHT, bottoms[0] + scale * rows[0] + title + head)
     return Page(size, scale, tuple(places), tuple(boxes))
 
 

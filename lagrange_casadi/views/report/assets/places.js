@@ -76,7 +76,7 @@ function cloud() {
     for (const body of bodies.values()) {
       const own = [...body.axis, ...body.arms.flat(), ...body.plates.flat()];
       if (!own.length) own.push(body.centre ?? [0, 0, 0]);
-      if (body.disc) for (const [x, y] of [[1, 0], [-1, 0], [0, 1], [0, -1]]) own.push(plus(body.centre, [x, y, 0], body.disc));
+      if (body.around) for (const d of acrossOf(body.around)) own.push(plus(body.centre, d, body.disc), plus(body.centre, d, -body.disc));
       for (const at of own) found.push(placeOf(body.name, at, i));
     }
     for (const joint of contents.joints) found.push(spotOf(joint.parent, i), spotOf(joint.child, i));

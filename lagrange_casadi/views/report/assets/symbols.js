@@ -200,14 +200,14 @@ function drawBody(paper, body, instant) {
   const thin = inner.has(body.name) ? 0.55 : body.plates.length ? 0.7 : 1;
   if (body.axis.length && body.length) bar(paper, at(body.axis[0]), at(body.axis[1]), thin * girth, colour, inner.has(body.name));
   for (const [start, stop] of body.arms) bar(paper, at(start), at(stop), (body.kind === "rigid" ? 0.9 : 0.6) * girth, colour);
-  if (body.disc) disc(paper, body, instant, colour);
+  if (body.around) disc(paper, body, instant, colour);
   if (body.kind === "point") block(paper, at([0, 0, 0]), colour);
-  else if (body.centre && !body.disc) centreMark(paper, at(body.centre));
+  else if (body.centre && !body.around) centreMark(paper, at(body.centre));
 }
 
 /** A rotor: a wheel with a spoke by which one sees it turn. */
 function disc(paper, body, instant, colour) {
-  const [origin, x, y] = [placeOf(body.name, body.centre, instant), ...[[1, 0, 0], [0, 1, 0]].map((d) => directionOf(body.name, d, instant))];
+  const [origin, x, y] = [placeOf(body.name, body.centre, instant), ...acrossOf(body.around).map((d) => directionOf(body.name, d, instant))];
   const around = Array.from({ length: 48 }, (_, k) => {
     const angle = (2 * Math.PI * k) / 48;
     return plus(plus(origin, x, body.disc * Math.cos(angle)), y, body.disc * Math.sin(angle));

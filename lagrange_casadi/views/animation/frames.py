@@ -9,9 +9,9 @@ import numpy.typing as npt
 
 from ...base.arrays import Array
 from ...errors import DeclarationError
-from ...model.description import Place, Triple
 from ...results.solution import Solution
-from ..shapes.places import drawn_spots, placed
+from ..shapes.poses import Poses, blended
+from ..shapes.primitives import drawing, size_of
 
 _SAME = 1e-3
 """Over the mechanism's size: a motion whose ends are no farther apart is a cycle, and its last
@@ -20,36 +20,27 @@ instant is the first again.
 
 
 @dataclass(frozen=True, eq=False)
-class Motion:
+class Frames:
     """The frames lie between instants ``before`` and those that follow, at a ``share`` (frames,) of
     the way.
 
-    ``closed`` says that the first frame follows the last one. Between two instants everything goes
-    straight.
+    ``whole`` are the poses at all instants, ``poses`` those at the frames. ``closed`` says that the
+    first frame follows the last one.
     """
 
     solution: Solution
+    whole: Poses
+    poses: Poses
     before: npt.NDArray[np.intp]
     share: Array
     closed: bool
 
     def at(self, values: Array) -> Array:
         """Values over the instants (t, ...) at the frames (frames, ...)."""
-        share = self.share.reshape(-1, *[1] * (values.ndim - 1))
-        found: Array = values[self.before] * (1.0 - share) + values[self.before + 1] * share
-        return found
-
-    def place(self, spot: Place) -> Array:
-        """Return the coordinates of a place, (frames, 3) in ground axes [m]."""
-        return self.at(placed(self.solution, spot))
-
-    def direction(self, body: str, direction: Triple, at: Triple = (0.0, 0.0, 0.0)) -> Array:
-        """A direction that a body carries, (frames, 3) in ground axes."""
-        x, y, z = np.add(at, direction).tolist()
-        return self.place(Place(body, (x, y, z))) - self.place(Place(body, at))
+        return blended(values, self.before, self.share)
 
 
-def motion_of(solution: Solution, count: int) -> Motion:
+def frames_of(solution: Solution, count: int) -> Frames:
     """The motion at ``count`` frames; at no more than there are instants.
 
     Raises :class:`.DeclarationError` where there are not two instants.
@@ -59,12 +50,16 @@ def motion_of(solution: Solution, count: int) -> Motion:
         raise DeclarationError(
             f"{solution.case}: an animation shows a motion, and there is 1 instant; ask for more"
         )
-    ends = np.array([placed(solution, spot)[[0, -1]] for spot in drawn_spots(solution.description)])
-    whole = np.array([placed(solution, spot) for spot in drawn_spots(solution.description)])
-    size = float(np.max(np.ptp(whole.reshape(-1, 3), axis=0)))
-    closed = t.size > 2 and float(np.max(np.abs(ends[:, 1] - ends[:, 0]))) <= _SAME * size
+    whole = Poses.of(solution)
+    ends = [
+        one.points
+        for one in drawing(whole.during([0, -1]), whole)
+        if len(one.points) == 2  # of what moves
+    ]
+    gap = max((float(np.max(np.abs(points[1] - points[0]))) for points in ends), default=0.0)
+    closed = t.size > 2 and gap <= _SAME * size_of(drawing(whole))
     frames = max(2, min(count, t.size - 1 if closed else t.size))
     at = np.linspace(t[0], t[-1], frames + 1)[:-1] if closed else np.linspace(t[0], t[-1], frames)
     before = np.clip(np.searchsorted(t, at, side="right") - 1, 0, t.size - 2)
     share = np.clip((at - t[before]) / (t[before + 1] - t[before]), 0.0, 1.0)
-    return Motion(solution, before, share, closed)
+    return Frames(solution, whole, whole.between(before, share), before, share, closed)

@@ -1,0 +1,190 @@
+"""Frames as pixels, painted by Pillow, and the GIF and the MP4 that they make."""
+
+from __future__ import annotations
+
+import io
+import itertools
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...base.arrays import Array
+from ...base.space import require
+from ...errors import LagrangeCasadiError, StoreError, one_line
+from ..shapes.primitives import Line, frame
+from ..shapes.sheet import LETTER, Picture, Words, filling, outline
+from ..shapes.symbols import INK, PAPER, SYMBOLS
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+    from PIL.ImageDraw import ImageDraw
+
+_FINE = 2
+"""Pixels of the painting for each pixel of the frame, along each side: edges are smooth."""
+
+_COLOURS = 128
+"""Number of colours of a GIF: more are not visible, and take space."""
+
+_SAMPLES = 6
+"""Frames from which the colours of a GIF are taken."""
+
+_WHITE = 248
+"""Least brightness that counts as white: a mean of light colours is not white."""
+
+_DASH = 9.0
+"""The length of a dash and of the space behind [points]."""
+
+
+def frames(picture: Picture, chosen: Iterable[int] | None = None) -> Iterator[Image]:
+    """The frames, all or those that are ``chosen`` by number."""
+    import matplotlib
+    from PIL import Image, ImageDraw, ImageFont
+
+    unit = _FINE * picture.unit
+    letters = Path(matplotlib.get_data_path(), "fonts/ttf/DejaVuSans.ttf")
+    font = ImageFont.truetype(str(letters), round(LETTER * unit))
+    size = picture.width, picture.height
+    for k in range(picture.frames) if chosen is None else chosen:
+        sheet = Image.new("RGB", (_FINE * size[0], _FINE * size[1]), PAPER)
+        brush = ImageDraw.Draw(sheet, "RGBA")
+        for thing in picture.things:
+            if isinstance(thing, Line):
+                points = _FINE * frame(thing.points, k)
+                if thing.opacity:
+                    fill = f"{thing.colour}{round(255 * thing.opacity):02x}"
+                    brush.polygon([*points.ravel()], fill)
+                points = np.vstack([points, points[:1]]) if thing.closed else points
+                for part in _dashes(points, _DASH * unit) if thing.dashed else [points]:
+                    _stroke(brush, part, thing.colour, thing.width * unit)
+            elif isinstance(thing, Words):
+                place = _FINE * frame(thing.points, k)
+                anchor, halo = "rs" if thing.before else "ls", round(1.5 * unit)
+                edge: dict[str, Any] = {"stroke_width": halo, "stroke_fill": PAPER}
+                brush.text((place[0], place[1]), thing.text, INK, font, anchor, **edge)
+            else:
+                for one in SYMBOLS[thing.kind]:
+                    points = _FINE * outline(thing, one, picture.unit, k)
+                    if fill := filling(thing, one):
+                        brush.polygon([*points.ravel()], fill)
+                    points = np.vstack([points, points[:1]]) if one.closed else points
+                    _stroke(brush, points, one.colour, one.width * unit)
+        yield sheet.resize(size, Image.Resampling.BOX)
+
+
+def _stroke(brush: ImageDraw, points: Array, colour: str, width: float) -> None:
+    """A polyline with round ends and corners."""
+    wide = max(1, round(width))
+    brush.line([*points.ravel()], colour, wide, "curve")
+    for end in points[[0, -1]]:
+        brush.ellipse([*(end - wide / 2), *(end + wide / 2)], colour)
+
+
+def _dashes(points: Array, length: float) -> Iterator[Array]:
+    """Dashes of a straight line (2, 2)."""
+    start, way = points[0], points[1] - points[0]
+    total = float(np.hypot(*way))
+    for at in np.arange(0.0, total, 2.0 * length):
+        yield start + np.outer([at, min(at + length, total)], way / total)
+
+
+def gif(picture: Picture, seconds: float) -> bytes:
+    """An animation that repeats for ever.
+
+    Raises :class:`.SizeError` where memory does not hold it.
+    """
+    from PIL import Image
+
+    require("a GIF", (picture.frames, picture.height, picture.width // 8))
+    chosen = np.unique(np.linspace(0, picture.frames - 1, _SAMPLES).astype(int)).tolist()
+    sample = Image.fromarray(np.concatenate([np.asarray(one) for one in frames(picture, chosen)]))
+    palette = sample.quantize(_COLOURS, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+    colours = np.array(palette.getpalette())
+    light = np.min(colours.reshape(-1, 3), axis=1) >= _WHITE
+    palette.putpalette(np.where(np.repeat(light, 3), 255, colours).tolist())
+    flat = (one.quantize(palette=palette, dither=Image.Dither.NONE) for one in frames(picture))
+    # A GIF counts hundredths of a second; those of all frames are together those of the cycle.
+    ends = np.round(100.0 * seconds * np.arange(picture.frames + 1) / picture.frames).astype(int)
+    times = [max(20, 10 * int(stop - start)) for start, stop in itertools.pairwise(ends)]
+    file = io.BytesIO()
+    first = next(flat)
+    first.save(file, "GIF", save_all=True, append_images=flat, duration=times, loop=0)
+    return file.getvalue()
+
+
+def find_ffmpeg() -> str:
+    """Find the program that makes an MP4.
+
+    Raises :class:`.LagrangeCasadiError` where it is not found.
+    """
+    found = shutil.which("ffmpeg")
+    if found is None:
+        raise LagrangeCasadiError(
+            "an MP4 is made by ffmpeg, which is not found; install it, or write a .gif or an .svg"
+        )
+    return found
+
+
+def mp4(picture: Picture, rate: float) -> bytes:
+    """A film of H.264, with so many frames a second.
+
+    Raises :class:`.StoreError` where ffmpeg fails.
+    """
+    size = f"{picture.width}x{picture.height}"
+    taken = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", size, "-r", f"{rate:.17g}", "-i", "-"]
+    made = [
+        "-an",
+        "-c:v",
+        "libx264",
+        "-crf",
+        "18",
+        "-pix_fmt",
+        "yuv420p",
+        "-movflags",
+        "+faststart",
+    ]
+    plain = [
+        "-threads",
+        "1",
+        "-map_metadata",
+        "-1",
+        "-fflags",
+        "+bitexact",
+        "-flags:v",
+        "+bitexact",
+    ]  # the same bytes
+    command = [
+        find_ffmpeg(),
+        "-v",
+        "error",
+        "-y",
+        *taken,
+        *made,
+        *plain,
+        "-f",
+        "mp4",
+    ]
+    with tempfile.TemporaryFile() as words, tempfile.TemporaryDirectory() as work:
+        path = Path(work) / "film.mp4"
+        try:
+            with subprocess.Popen(
+                [*command, str(path)], stdin=subprocess.PIPE, stdout=words, stderr=words
+            ) as running:
+                assert running.stdin is not None
+                with suppress(BrokenPipeError), running.stdin as film:  # what ended early says why
+                    for one in frames(picture):
+                        film.write(one.tobytes())
+        except OSError as error:
+            raise StoreError(f"ffmpeg cannot be run: {one_line(error)}") from None
+        if running.returncode:
+            words.seek(0)
+            said = words.read().decode(errors="replace").strip().splitlines()
+            raise StoreError(
+                f"ffmpeg failed: {said[-1] if said else f'status {running.returncode}'}"
+            )
+        return path.read_bytes()

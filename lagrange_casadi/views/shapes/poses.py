@@ -1,0 +1,120 @@
+"""Poses of a mechanism's bodies at instants: all that a picture needs beside the description."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from ...base.arrays import Array
+from ...base.quantities import Output
+from ...errors import DeclarationError
+from ...model.description import Description, Place, Triple
+from ...results.solution import Solution
+from ...results.views import Pose
+
+
+@dataclass(frozen=True, eq=False)
+class Poses:
+    """The places of the bodies' bases (t, 3) [m] and the bodies' axes (t, 3, 3), by body, in ground
+    axes.
+
+    The rows of the axes are x, y and z of the body.
+    """
+
+    description: Description
+    bases: Mapping[str, Array]
+    axes: Mapping[str, Array]
+
+    @classmethod
+    def of(cls, solution: Solution) -> Poses:
+        """The poses at the instants of a solution, which must have its motion."""
+        poses = {body: solution.pose(body) for body in solution.description.bodies}
+        bases = {
+            body: np.column_stack([pose.x, pose.y, 0.0 * pose.x if pose.z is None else pose.z])
+            for body, pose in poses.items()
+        }
+        return cls(solution.description, bases, {body: _axes(pose) for body, pose in poses.items()})
+
+    @property
+    def count(self) -> int:
+        """The number of instants."""
+        return max(map(len, self.bases.values()), default=1)
+
+    def between(self, before: npt.NDArray[np.intp], share: Array) -> Poses:
+        """The poses at a ``share`` (frames,) of the way from instants ``before`` to the next ones,
+        where everything goes straight.
+        """
+
+        def at(values: Array) -> Array:
+            return blended(values, before, share)
+
+        bases = {body: at(base) for body, base in self.bases.items()}
+        return replace(self, bases=bases, axes={body: at(one) for body, one in self.axes.items()})
+
+    def during(self, chosen: slice | list[int]) -> Poses:
+        """The poses at some of the instants."""
+        bases = {body: base[chosen] for body, base in self.bases.items()}
+        return replace(self, bases=bases, axes={body: a[chosen] for body, a in self.axes.items()})
+
+    def place(self, spot: Place) -> Array:
+        """A place on a body or on the ground, (t, 3) in ground axes [m]."""
+        if spot.body == "ground":
+            return np.tile(np.array(spot.at, float), (self.count, 1))
+        return self.bases[spot.body] + self.direction(spot.body, spot.at)
+
+    def direction(self, body: str, local: Triple) -> Array:
+        """A direction that a body carries, (t, 3) in ground axes."""
+        if body == "ground":
+            return np.tile(np.array(local, float), (self.count, 1))
+        return np.asarray(np.array(local, float) @ self.axes[body])
+
+
+def blended(values: Array, before: npt.NDArray[np.intp], share: Array) -> Array:
+    """Values (t, ...) at a ``share`` of the way from instants ``before`` to the next ones."""
+    part = share.reshape(-1, *[1] * (values.ndim - 1))
+    return np.asarray(values[before] * (1.0 - part) + values[before + 1] * part)
+
+
+def frame_along(direction: Array) -> Array:
+    """Three axes at right angles (..., 3, 3), rows, the first of which has a direction (..., 3)."""
+    x = direction / np.linalg.norm(direction, axis=-1, keepdims=True)
+    # In the plane the second axis lies in the plane.
+    y = np.cross(np.eye(3)[np.argmin(np.abs(x) - [0.0, 0.0, 1e-9], axis=-1)], x)
+    y /= np.linalg.norm(y, axis=-1, keepdims=True)
+    return np.stack([x, y, np.cross(x, y)], axis=-2)
+
+
+def require_poses(solution: Solution, what: str = "a report") -> None:
+    """Raise :class:`.DeclarationError` where a body has no pose among the outputs; ``what`` would
+    show it.
+    """
+    lacking = [
+        body
+        for body in solution.description.bodies
+        if Output("pose", body, "x") not in solution.outputs
+    ]
+    if lacking:
+        bodies = ", ".join(f"'{body}'" for body in lacking[:3]) + (
+            f" and {len(lacking) - 3} more" if len(lacking) > 3 else ""
+        )
+        raise DeclarationError(
+            f"{solution.case}: {what} shows the mechanism in motion, and there is no motion of"
+            f" {bodies}; want motion too"
+        )
+
+
+def _axes(pose: Pose) -> Array:
+    """The axes (t, 3, 3) of a pose; those that a body does not have complete the others."""
+    found = np.tile(np.eye(3), (pose.x.size, 1, 1))
+    if pose.angle is not None:
+        found[:, 0, 0] = found[:, 1, 1] = np.cos(pose.angle)
+        found[:, 0, 1] = np.sin(pose.angle)
+        found[:, 1, 0] = -found[:, 0, 1]
+    elif pose.axes is not None:
+        found = pose.axes
+        if np.isnan(found).any():
+            found = frame_along(found[:, 0])
+    return found

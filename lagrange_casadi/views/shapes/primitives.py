@@ -1,0 +1,311 @@
+"""The one list of what a picture of a mechanism shows, in ground axes, and the list seen from one
+direction.
+
+The list is made of a description and poses, so that a mechanism at one posture has a list as well
+as a solution at all instants. The arrays have a frame for each instant, or one frame if nothing
+moves.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TypeAlias
+
+import numpy as np
+
+from ...base.arrays import Array
+from ...model.description import JointNumbers, Place, Triple
+from .poses import Poses, frame_along
+from .shapes import Shape, named_spots, shapes
+from .symbols import PATH
+from .views import View
+
+COLOURS = (
+    *("#1f4e79", "#b3541e", "#2e7d4f", "#7a3b8f", "#8a6d1a", "#3c6e71", "#9c2f4a", "#555555"),
+    *("#6fa3d8", "#eba277", "#7cc79a", "#b98acb", "#d4b95c", "#86bcc0", "#dd8aa0", "#a9a9a9"),
+)
+
+LOW, WAYS, GROUND, SPRINGS, BODIES, AXES, BLOCKS, PINS, POINTS, FORCES = range(10)
+"""Levels: what has a lower one lies behind."""
+
+_SLIDES = ("prismatic", "cylindrical", "screw", "slot")
+_UNSUPPORTED = ("free", "prismatic", "slot", "cylindrical", "screw", "planar")
+"""Joints below which the ground has no symbol."""
+
+_PAD, _AXIS, _COIL = 0.06, 0.045, 0.018
+"""Over the mechanism's size: a guide beyond its use, half a joint's axis, the radius of a spring.
+"""
+
+_ROUND = np.exp(2j * np.pi * np.arange(40) / 40)
+_TURN = np.exp(0.5j * np.pi * np.arange(33))
+"""The eight coils of a spring."""
+
+
+@dataclass(frozen=True, eq=False)
+class Line:
+    """A polyline through ``points`` (frames, n, 3) [m], or a polygon where it is ``closed``.
+
+    ``width`` is in points of paper; 0 is no line. ``opacity`` is that of a polygon's filling, which
+    has the line's colour. ``body`` is the body of which the line is a part.
+    """
+
+    points: Array
+    colour: str
+    width: float
+    closed: bool = False
+    opacity: float = 0.0
+    dashed: bool = False
+    level: int = BODIES
+    body: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Symbol:
+    """A symbol of :data:`.SYMBOLS` at ``points`` (frames, 1, 3) [m].
+
+    The symbol's x axis has the direction ``along`` (frames, 3), by default that to the right;
+    ``colour`` is that of the body.
+    """
+
+    kind: str
+    points: Array
+    along: Array | None = None
+    colour: str = ""
+    level: int = PINS
+
+
+@dataclass(frozen=True, eq=False)
+class Arrow:
+    """An arrow along ``points`` (frames, n, 3) [m], with its head at the last of them, whose length
+    is at most ``head`` [m].
+    """
+
+    points: Array
+    colour: str
+    head: float
+    level: int = FORCES
+
+
+@dataclass(frozen=True, eq=False)
+class Name:
+    """A name beside ``points`` (frames, 1, 3) [m]."""
+
+    points: Array
+    text: str
+    level: int = FORCES
+
+
+Primitive: TypeAlias = Line | Symbol | Arrow | Name
+
+
+def drawing(
+    poses: Poses, whole: Poses | None = None, named: Mapping[str, Place] | None = None
+) -> tuple[Primitive, ...]:
+    """All that a picture of a mechanism shows at some poses, without forces.
+
+    ``whole`` are the poses over all time, by which guides and the ways of declared points are as
+    long as they are; ``named`` are the places whose names are written, by default all.
+    """
+    whole = whole or poses
+    description = poses.description
+    joints = list(description.joints.values())
+    colours = colours_of(description.bodies)
+    bodies = [one for shape in shapes(description) for one in _body(poses, shape, colours)]
+    held = [*(joint.ends for joint in joints), *description.springs.values()]
+    spots = [*(end for ends in held for end in ends), *description.paths.values()]
+    size = size_of([*bodies, *(Line(whole.place(spot), PATH, 0.0) for spot in spots)])
+
+    def symbol(kind: str, spot: Place, level: int) -> Symbol:
+        return Symbol(kind, poses.place(spot)[:, None], level=level)
+
+    found: list[Primitive] = [*bodies]
+    for spot in description.paths.values():
+        found.append(Line(whole.place(spot)[None], PATH, 1.4, level=WAYS))
+        found.append(symbol("point", spot, POINTS))
+    for start, stop in description.springs.values():
+        found.append(_spring(poses.place(start), poses.place(stop), _COIL * size))
+    masses = {shape.name for shape in shapes(description) if shape.kind == "point"}
+    for joint in joints:
+        ground = [end for end in joint.ends if end.body == "ground"]
+        if ground and joint.kind not in _UNSUPPORTED:
+            found.append(symbol("stand", ground[0], GROUND))
+        if joint.kind in _SLIDES:
+            found += [_guide(poses, whole, joint, size), _block(poses, joint, masses, colours)]
+        else:
+            found.append(symbol(joint.kind, joint.child, PINS))
+            if description.space:
+                found += _axes(poses, joint, size)
+    named = named_spots(description) if named is None else named
+    found += [Name(poses.place(spot)[:, None], name) for name, spot in named.items()]
+    return tuple(found)
+
+
+def colours_of(bodies: Iterable[str]) -> dict[str, str]:
+    """The colours of bodies, by their order."""
+    return {body: COLOURS[k % len(COLOURS)] for k, body in enumerate(bodies)}
+
+
+def cloud(primitives: Iterable[Primitive]) -> Array:
+    """All points (n, 3) of primitives over all frames: their extent is that of the picture."""
+    return np.concatenate([one.points.reshape(-1, one.points.shape[-1]) for one in primitives])
+
+
+def size_of(primitives: Iterable[Primitive]) -> float:
+    """The largest extent along an axis of the ground [m]; 1 where there is none."""
+    return float(np.ptp(cloud(primitives), axis=0).max()) or 1.0
+
+
+def seen(primitives: Iterable[Primitive], view: View) -> list[Line | Symbol | Name]:
+    """The primitives on a page: the last axis of their arrays has two components, to the right and
+    up, and what is behind comes first. Arrows are lines and their heads.
+    """
+    toward = np.cross(view.right, view.up)
+
+    def behind(one: Primitive) -> tuple[int, float]:
+        return one.level, float(np.mean(one.points @ toward)) if one.level == BODIES else 0.0
+
+    found: list[Line | Symbol | Name] = []
+    for one in sorted(primitives, key=behind):
+        points = view.on_page(one.points)
+        if isinstance(one, Arrow):
+            found += _arrow(one, points)
+        elif isinstance(one, Symbol):
+            along = None if one.along is None else view.on_page(one.along)
+            found.append(replace(one, points=points, along=along))
+        else:
+            found.append(replace(one, points=points))
+    return found
+
+
+def turn(symbol: Symbol, k: int) -> float:
+    """The angle of a symbol on a page at a frame, counter-clockwise [rad]."""
+    if symbol.along is None:
+        return 0.0
+    x, y = frame(symbol.along, k)
+    return math.atan2(y, x)
+
+
+def frame(values: Array, k: int) -> Array:
+    """The values at a frame; the only ones of what stands still."""
+    found: Array = values[min(k, len(values) - 1)]
+    return found
+
+
+def _body(poses: Poses, shape: Shape, colours: Mapping[str, str]) -> Iterator[Primitive]:
+    """A body: its plates, disc with a spoke by which one sees it turn, axis and arms."""
+    colour, name = colours[shape.name], shape.name
+
+    def along(points: Sequence[Triple]) -> Array:
+        return np.stack([poses.place(Place(name, at)) for at in points], axis=1)
+
+    for plate in shape.plates:
+        yield Line(along(plate), colour, 2.0, closed=True, opacity=0.25, body=name)
+    rim = _rim(poses, shape)
+    if rim is not None:
+        yield Line(rim, colour, 2.4, closed=True, opacity=0.2, body=name)
+        yield Line(np.stack([np.mean(rim, axis=1), rim[:, 0]], axis=1), colour, 2.4, body=name)
+    if shape.axis:
+        yield Line(along(shape.axis), colour, 8.0, body=name)
+    for arm in shape.arms:
+        yield Line(along(arm), colour, 5.0, body=name)
+    joints = poses.description.joints.values()
+    slides = any(
+        joint.kind in _SLIDES and name in (joint.parent.body, joint.child.body) for joint in joints
+    )
+    if not slides and rim is None and not (shape.plates or shape.axis or shape.arms):
+        middle = poses.place(Place(name, shape.centre or (0.0, 0.0, 0.0)))[:, None]
+        yield Symbol("mass", middle, None, colour, BODIES)
+
+
+def disc_axis(poses: Poses, shape: Shape) -> Array | None:
+    """The axis (3,) of a body that is a disc, on the body's axes: the one about which all joints
+    let the body turn; None of any other body.
+    """
+    joints = [
+        joint
+        for joint in poses.description.joints.values()
+        if shape.name in (joint.parent.body, joint.child.body) and joint.kind != "weld"
+    ]
+    if not shape.disc or any(joint.kind != "revolute" for joint in joints):
+        return None
+    if not poses.description.space:
+        return np.array([0.0, 0.0, 1.0])
+    ways = [poses.direction(joint.parent.body, joint.triad[0])[0] for joint in joints]
+    if not ways or any(np.abs(np.cross(ways[0], way)).max() > 1e-6 for way in ways):
+        return None
+    return np.asarray(poses.axes[shape.name][0] @ ways[0])
+
+
+def _rim(poses: Poses, shape: Shape) -> Array | None:
+    """The edge of a body that is a disc (frames, n, 3) [m], about the joint by which the body
+    turns; None of any other body.
+    """
+    axis = disc_axis(poses, shape)
+    if axis is None:
+        return None
+    _, first, second = frame_along(axis)
+    around = shape.disc * (_ROUND.real[:, None] * second - _ROUND.imag[:, None] * first)
+    middle = poses.place(Place(shape.name, shape.centre or (0.0, 0.0, 0.0)))
+    return np.asarray(middle[:, None] + around @ poses.axes[shape.name])
+
+
+def _guide(poses: Poses, whole: Poses, joint: JointNumbers, size: float) -> Line:
+    """The line along which a joint slides, as far as it ever does."""
+    ways = whole.place(joint.child) - whole.place(joint.parent)
+    reach = np.sum(ways * whole.direction(joint.parent.body, joint.triad[0]), axis=1)
+    start = poses.place(joint.parent)
+    along = poses.direction(joint.parent.body, joint.triad[0])
+    ends = [start + (at * along) for at in (reach.min() - _PAD * size, reach.max() + _PAD * size)]
+    return Line(np.stack(ends, axis=1), "#888888", 1.2, dashed=True, level=GROUND)
+
+
+def _block(
+    poses: Poses, joint: JointNumbers, masses: set[str], colours: Mapping[str, str]
+) -> Symbol:
+    """The part that slides: in the colour of its body, larger if the part is a point mass."""
+    body = joint.parent.body if joint.child.body == "ground" else joint.child.body
+    mass = body in masses
+    spot = Place(body, (0.0, 0.0, 0.0)) if mass else joint.child
+    along = poses.direction(joint.parent.body, joint.triad[0])
+    kind = "sliding mass" if mass else joint.kind
+    return Symbol(kind, poses.place(spot)[:, None], along, colours.get(body, "#ffffff"), BLOCKS)
+
+
+def _axes(poses: Poses, joint: JointNumbers, size: float) -> Iterator[Line]:
+    """Short lines along the axes about which a joint in space turns."""
+    if joint.kind not in ("revolute", "universal"):
+        return
+    middle = poses.place(joint.child)
+    carried = [(joint.child.body, joint.carried)] if joint.carried else []
+    for body, axis in [(joint.parent.body, joint.triad[0]), *carried]:
+        half = _AXIS * size * poses.direction(body, axis)
+        yield Line(np.stack([middle - half, middle + half], axis=1), "#222222", 2.0, level=AXES)
+
+
+def _spring(start: Array, stop: Array, radius: float) -> Line:
+    """A coil between two places (frames, 3), straight at its ends."""
+    way = stop - start
+    axes = frame_along(np.where(way.any(axis=1, keepdims=True), way, np.eye(3)[0]))
+    shares = np.concatenate([[0.0], np.linspace(0.15, 0.85, _TURN.size), [1.0]])
+    sides = radius * np.pad(np.stack([_TURN.imag, _TURN.real], axis=1), ((1, 1), (0, 0)))
+    points = start[:, None] + shares[:, None] * way[:, None] + sides @ axes[:, 1:]
+    return Line(points, "#666666", 1.5, level=SPRINGS)
+
+
+def _arrow(arrow: Arrow, points: Array) -> Iterator[Line]:
+    """The shaft of an arrow on a page and its head, which is smaller where the arrow is short."""
+    steps = np.diff(points, axis=1)
+    length = np.sum(np.hypot(steps[..., 0], steps[..., 1]), axis=1)
+    head = np.minimum(arrow.head, length)[:, None]
+    ahead = steps[:, -1]
+    size = np.hypot(ahead[:, 0], ahead[:, 1])[:, None]
+    ahead = ahead / np.where(size > 0.0, size, 1.0)
+    tip, side = points[:, -1], 0.36 * head * np.stack([-ahead[:, 1], ahead[:, 0]], axis=1)
+    shaft, back = points.copy(), tip - head * ahead
+    if points.shape[1] == 2:
+        shaft[:, -1] = tip - 0.8 * head * ahead
+    yield Line(shaft, arrow.colour, 2.6, level=FORCES)
+    corners = np.stack([tip, back + side, back - side], axis=1)
+    yield Line(corners, arrow.colour, 0.8, closed=True, opacity=1.0, level=FORCES)

@@ -1,0 +1,100 @@
+"""SVG of a picture: every thing once, with its places over the cycle (SMIL), which any browser
+plays. The file needs no other file.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from html import escape
+
+import numpy as np
+
+from ...base.arrays import Array
+from .primitives import Line, Symbol, turn
+from .sheet import LETTER, Picture, Words, filling
+from .symbols import INK, PAPER, SYMBOLS
+
+_UNFIT = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+"""Letters that XML cannot hold."""
+
+
+def svg(picture: Picture, seconds: float = 0.0) -> str:
+    """The text of the file; if a cycle takes no ``seconds``, a still without a background, whose
+    words have the colour of the page that shows it.
+    """
+    wide, high = picture.width, picture.height
+    style = (
+        f'font-family="sans-serif" font-size="{LETTER * picture.unit:.4g}" stroke-linecap="round"'
+        ' stroke-linejoin="round"'
+    )
+    head = (
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{wide}" height="{high}" viewBox="0 0'
+        f' {wide} {high}" {style}>'
+    )
+    lines = [head, f"<title>{_text(picture.title)}</title>"]
+    if seconds:
+        lines.append(f'<rect width="{wide}" height="{high}" fill="{PAPER}"/>')
+    for thing in picture.things:
+        lines += _element(thing, picture, seconds)
+    return "\n".join([*lines, "</svg>", ""])
+
+
+def _element(thing: Line | Symbol | Words, picture: Picture, seconds: float) -> Iterator[str]:
+    if isinstance(thing, Line):
+        name = "polygon" if thing.closed else "polyline"
+        width = thing.width * picture.unit
+        dash = f' stroke-dasharray="{4.0 * width:.4g} {4.0 * width:.4g}"' if thing.dashed else ""
+        fill = (
+            f'fill="{thing.colour}" fill-opacity="{thing.opacity:g}"'
+            if thing.opacity
+            else 'fill="none"'
+        )
+        ink = f'{fill} stroke="{thing.colour}" stroke-width="{width:.4g}"{dash}'
+        places = [_pairs(points) for points in thing.points]
+        moved = _animated("points", places, picture, seconds)
+        yield f'<{name} points="{places[0]}" {ink}>{moved}</{name}>'
+        return
+    points = thing.points.reshape(-1, 2)
+    places = [f"{x:.1f} {y:.1f}" for x, y in points]
+    moved = _animated("translate", places, picture, seconds)
+    if isinstance(thing, Words):
+        ink = f'fill="{INK}" stroke="{PAPER}" stroke-width="{3.0 * picture.unit:.4g}"'
+        ink = f'{ink} paint-order="stroke"' if seconds else 'fill="currentColor"'
+        anchor = ' text-anchor="end"' if thing.before else ""
+        start = f'<text transform="translate({places[0]})" {ink}{anchor}>'
+        yield f"{start}{_text(thing.text)}{moved}</text>"
+        return
+    angles = np.unwrap([turn(thing, k) for k in range(len(thing.points))])
+    turns = [f"{-angle:.4g}" for angle in np.degrees(angles)]
+    turned = f' transform="rotate({turns[0]})"' if thing.along is not None else ""
+    rotated = _animated("rotate", turns, picture, seconds)
+    yield f'<g transform="translate({places[0]})">{moved}<g{turned}>{rotated}'
+    for one in SYMBOLS[thing.kind]:
+        fill = filling(thing, one) or "none"
+        ink = f'fill="{fill}" stroke="{one.colour}" stroke-width="{one.width * picture.unit:.4g}"'
+        if one.radius:
+            yield f'<circle r="{one.radius * picture.unit:.4g}" {ink}/>'
+            continue
+        name = "polygon" if one.closed else "polyline"
+        yield f'<{name} points="{_pairs(picture.unit * one.points * [1.0, -1.0])}" {ink}/>'
+    yield "</g></g>"
+
+
+def _pairs(points: Array) -> str:
+    return " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
+
+
+def _animated(name: str, places: list[str], picture: Picture, seconds: float) -> str:
+    """The motion of an attribute, or of a transformation, over the frames."""
+    if all(place == places[0] for place in places):
+        return ""
+    values = ";".join([*places, places[0]] if picture.closed else places)
+    element = f'animateTransform attributeName="transform" type="{name}"'
+    if name == "points":
+        element = 'animate attributeName="points"'
+    return f'<{element} dur="{seconds:.6g}s" repeatCount="indefinite" values="{values}"/>'
+
+
+def _text(text: str) -> str:
+    return escape(_UNFIT.sub("\ufffd", text))
