@@ -115,6 +115,17 @@ def in_words(unit: str) -> str:
     return f"number{'' if unit == '1' else f' [{unit}]'}{text}"
 
 
+def quantity(what: str, value: object, unit: str = "1", *, finite: bool = True) -> float:
+    """A number in a unit, see :func:`number`.
+
+    Raises :class:`DeclarationError`, naming ``what``, for anything else.
+    """
+    try:
+        return number(value, unit, finite=finite)
+    except NumberError as error:
+        raise DeclarationError(f"{what}: {error}") from None
+
+
 def count(what: str, value: object, least: int = 1, most: float = math.inf) -> int:
     """A whole number in a range.
 

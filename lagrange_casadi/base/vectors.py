@@ -5,6 +5,10 @@ What is zero by structure is the number 0, so that graphs hold nothing of it.
 
 from __future__ import annotations
 
+import math
+
+import casadi as ca
+
 from .arrays import Expression as Expression
 from .scalars import added, as_expression, less, product, products_added, products_less
 
@@ -32,6 +36,13 @@ def times(factor: Expression, a: Vector) -> Vector:
 def dot(a: Vector, b: Vector) -> Expression:
     """Return a . b."""
     return added(products_added(a[0], b[0], a[1], b[1]), product(a[2], b[2]))
+
+
+def norm(a: Vector) -> Expression:
+    """Return the length of a vector: a number where all three are."""
+    if all(isinstance(component, float) for component in a):
+        return math.hypot(*a)
+    return ca.sqrt(ca.SX(dot(a, a)))
 
 
 def cross(a: Vector, b: Vector) -> Vector:

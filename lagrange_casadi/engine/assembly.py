@@ -28,7 +28,7 @@ from ..model.mechanism import Mechanism
 from ..model.parts import Constraint, Link, PointMass, RigidMass, Row, Vector
 from .applied import applied_by, held_by, push, work
 from .growing import Grown, coordinates_of
-from .joints import loop_residuals, orientation
+from .joints import loop_residuals
 from .meshes import meshed_by
 from .multibody import Applied, LoopEquations, Multibody, RowGraph, change, released_forces
 from .tree import Tree
@@ -252,7 +252,7 @@ def _energy_on_line(
     along = velocities.number(dot(speed, line), dot(acceleration, line))
     if isinstance(body, PointMass):
         return body.mass * along**2 / 2
-    own, going, parts = orientation(joint).resolve(line), ca.SX.sym("going", 4), Velocities()
+    own, going, parts = joint.turned.resolve(line), ca.SX.sym("going", 4), Velocities()
     u, v, w, turning = ca.vertsplit(going)
     moving = Frame(speed=(u, v, w), rate=times(turning, own), anchor=place)
     energy = kinetic_energy(body, moving, parts, space=True, spun=False, slid=False)
@@ -308,14 +308,18 @@ def _rigid(
         )
     if not space:
         return _flat(
-            [(mass_properties.mass, (mass_properties.centre[0], mass_properties.centre[1], 0.0))],
-            mass_properties.inertia,
+            [(mass_properties.mass, mass_properties.centre)],
+            mass_properties.inertia[2][2],
             frame,
             velocities,
             spun=spun,
         )
-    (x, y, z), frame = mass_properties.centre, frame.shortest
-    energy = mass_properties.mass * ca.sumsqr(velocities.vector(frame.motion_of((x, y, z)))) / 2
+    frame = frame.shortest
+    energy = (
+        mass_properties.mass
+        * ca.sumsqr(velocities.vector(frame.motion_of(mass_properties.centre)))
+        / 2
+    )
     moments = second_moments(mass_properties.inertia)
     axes = {
         i: velocities.vector(_direction(frame, AXES[i]))

@@ -18,7 +18,7 @@ from ..base.vectors import AXES, ZERO, cross, dot, minus, plus, times
 from ..model.joints import Axis, Joint
 from ..model.mechanism import Mechanism
 from ..model.parts import Link, Point, Vector
-from .joints import orientation, turning_axes
+from .joints import turning_axes
 from .multibody import Coordinate, Turned, motion_along, own_coordinate
 from .residuals import reach
 from .spherical import SphericalCoordinates
@@ -204,7 +204,7 @@ class Grown:
             return Rotation(), ZERO, ZERO
         joint, rate, angular = branch.joint, base.rate, base.angular
         rotations = [c for c in coordinates if c.kind == "angle"]
-        if rotations and not rotations[0].relative and not joint.turned:
+        if rotations and not rotations[0].relative:
             (coordinate,) = rotations
             local = Rotation.flat(*ca.vertsplit(coordinate.variables))
             if not coordinate.driven:
@@ -224,7 +224,7 @@ class Grown:
             assert free[0].spherical is not None
             rotation = free[0].spherical.rotation
             return rotation, rotation.apply(_rates(free)), rotation.apply(_accelerations(free))
-        zero = orientation(joint)
+        zero = joint.turned
         rotation = base.rotation.then(zero.inverse) if branch.reverse else base.rotation
         for coordinate in reversed(rotations) if branch.reverse else rotations:
             direction = coordinate.axis.direction
@@ -279,7 +279,10 @@ def coordinates_of(
     for branch in tree.branches:
         joint, near, far = branch.joint, branch.near.body.name, branch.far.body
         if joint.holds_direction and near in turned:
-            turned[far.name] = (turned[near][0] + branch.sign * joint.angle, turned[near][1])
+            turned[far.name] = (
+                turned[near][0] + branch.sign * ca.SX(joint.turned.angle),
+                turned[near][1],
+            )
         local: list[Coordinate] = []
         rotations = [axis.coordinate for axis in joint.axes_of(far) if axis.kind == "angle"]
         spherical = None
@@ -411,7 +414,7 @@ def _own(branch: Branch, coordinates: Sequence[Coordinate], base: Carried) -> Fr
             motion = _slid(motion, direction, coordinate)
         # A point has no axes of its own: the ground's.
         return replace(_seen_from(motion, base.rotation.inverse), rate=ZERO, angular=ZERO)
-    zero, rotations = orientation(branch.joint), [c for c in coordinates if c.kind == "angle"]
+    zero, rotations = branch.joint.turned, [c for c in coordinates if c.kind == "angle"]
     if branch.reverse:
         motion = _seen_from(motion, zero.inverse)
     else:

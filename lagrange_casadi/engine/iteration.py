@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import casadi as ca
@@ -23,6 +24,30 @@ may land on another branch.
 
 NEWTON_LOST = 0.1
 """A last correction, of a fixed number, after which nothing is known."""
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """Start of the motion of the drives: of ``motion(t, p)``, the coordinates of drives first, at
+    the beginning of its ``span`` [s].
+
+    ``parameters`` are the numbers p; ``note`` names them, to end a message with.
+    """
+
+    motion: Any
+    span: tuple[float, float]
+    parameters: Sequence[float]
+    note: str
+
+    @property
+    def t(self) -> float:
+        """Time [s]."""
+        return self.span[0]
+
+    @cached_property
+    def driven(self) -> list[float]:
+        """Values of the driven coordinates [rad or m]."""
+        return [float(x) for x in ca.DM(self.motion(self.t, self.parameters)[0]).full().ravel()]
 
 
 @dataclass(frozen=True, eq=False)

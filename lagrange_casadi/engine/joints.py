@@ -22,11 +22,6 @@ Residual = tuple[Expression, Expression, Expression]
 """Phi, Phi' and Phi''."""
 
 
-def orientation(joint: Joint) -> Rotation:
-    """The child's axes, as the parent sees them where the joint's coordinates are zero."""
-    return Rotation.by(joint.angle) if joint.turned is None else Rotation.of(*joint.turned)
-
-
 def apart(joint: Joint, parent: Frame, child: Frame) -> Vector:
     """Vector from the parent's point to the child's, in the parent's axes."""
     return minus(parent.local(child.place_of(joint.child.place)), joint.parent.place)
@@ -76,10 +71,10 @@ def turned(joint: Joint, number: int, parent: Frame, child: Frame) -> Expression
     """The angle of a joint about the first (0) or the second of its one or two turns; in a plane it
     counts turns.
     """
-    if joint.turned is None:
+    if joint.planar:
         return child.rotation.against(parent.rotation).angle
     misaligned = misalignment(joint, parent, child)
-    first, second, third = (_at_zero(joint, direction) for direction in _triad(joint))
+    first, second, third = (joint.turned.resolve(direction) for direction in _triad(joint))
     if number == 0:
         there = misaligned.apply(second)
         return ca.atan2(dot(there, third), dot(there, second))
@@ -92,7 +87,7 @@ def turning(
 ) -> tuple[Expression, Expression]:
     """Rate and acceleration of :func:`turned`, while nothing turns but about the joint's axes."""
     rate, angular = minus(child.rate, parent.rate), minus(child.angular, parent.angular)
-    axis = AXES[2] if joint.turned is None else turning_axes(joint, parent, child)[number]
+    axis = turning_axes(joint, parent, child)[number]
     carrier = child if number else parent
     return dot(rate, axis), dot(angular, axis) + dot(rate, cross(carrier.rate, axis))
 
@@ -126,7 +121,7 @@ def reaction(
         force = plus(force, times(multipliers[k], direction))
     held = _held(joint)
     if held:
-        base = parent.rotation.then(orientation(joint))
+        base = parent.rotation.then(joint.turned)
         misaligned = misalignment(joint, parent, child)
         for k, (local, across) in enumerate(held, len(places)):
             moment = plus(
@@ -147,7 +142,7 @@ def supported(
     slides = [
         parent.rotation.apply(joint.triad[f.direction]) for f in joint.freedoms if f.move == "slide"
     ]
-    if len(slides) == 1 and joint.turned is None:
+    if len(slides) == 1 and joint.planar:
         normal = cross(AXES[2], slides[0])
         force = times(dot(force, normal), normal)
     else:
@@ -169,7 +164,7 @@ def turning_axes(joint: Joint, parent: Frame, child: Frame) -> list[Vector]:
     rotations = [
         joint.triad[freedom.direction] for freedom in joint.freedoms if freedom.move != "slide"
     ]
-    local = [_at_zero(joint, direction) for direction in rotations[1:]]
+    local = [joint.turned.resolve(direction) for direction in rotations[1:]]
     return [*map(parent.rotation.apply, rotations[:1]), *map(child.rotation.apply, local[:1])]
 
 
@@ -186,30 +181,29 @@ def off(joint: Joint, parent: Frame, child: Frame) -> Expression | None:
             if misaligned.angle is not None
             else 1 - (misaligned.x[0] + misaligned.y[1] + misaligned.z[2] - 1) / 2
         )
-    if len(rotations) > 1 or joint.turned is None:
+    if len(rotations) > 1 or joint.planar:
         return None
-    axis = _at_zero(joint, joint.triad[rotations[0].direction])
+    axis = joint.turned.resolve(joint.triad[rotations[0].direction])
     return 1 - dot(axis, misaligned.apply(axis))
 
 
 def misalignment(joint: Joint, parent: Frame, child: Frame) -> Rotation:
     """Rotation of the child from the position in which the joint's coordinates are zero."""
-    return child.rotation.against(parent.rotation.then(orientation(joint)))
+    return child.rotation.against(parent.rotation.then(joint.turned))
 
 
 def _across(joint: Joint, parent: Frame) -> list[tuple[Vector, Vector]]:
     """The directions along which a joint holds its points together: in the parent's axes, if it
     slides, and in ground axes.
     """
-    plane = joint.directions is None
     slides = sum(freedom.move == "slide" for freedom in joint.freedoms)
     if not slides:
-        return [(axis, axis) for axis in (AXES[:2] if plane else AXES)]
+        return [(axis, axis) for axis in (AXES[:2] if joint.planar else AXES)]
     u, v, w = joint.triad
     if slides == 1:
         axis, beside = parent.rotation.apply(u), parent.rotation.apply(w)
         found = [(v, cross(beside, axis)), (w, beside)]
-        return found[:1] if plane else found
+        return found[:1] if joint.planar else found
     return [(u, parent.rotation.apply(u))] if slides == 2 else []
 
 
@@ -224,10 +218,9 @@ def _held(joint: Joint) -> tuple[tuple[Vector, Vector], ...]:
     """
     if not joint.bears_moment:
         return ()
-    first, second, third = (
-        AXES if not joint.turns else (_at_zero(joint, direction) for direction in _triad(joint))
-    )
-    if joint.directions is None:
+    own = map(joint.turned.resolve, _triad(joint)) if joint.turns else AXES
+    first, second, third = own
+    if joint.planar:
         return ((first, second),)
     return (
         ((first, second), (second, third), (third, first)),
@@ -262,7 +255,7 @@ def _residuals_of_direction(joint: Joint, parent: Frame, child: Frame) -> Iterat
     held = _held(joint)
     if not held:
         return
-    base, misaligned = parent.rotation.then(orientation(joint)), misalignment(joint, parent, child)
+    base, misaligned = parent.rotation.then(joint.turned), misalignment(joint, parent, child)
     rate, angular = minus(child.rate, parent.rate), minus(child.angular, parent.angular)
     turning = Frame(
         rate=base.resolve(rate), angular=base.resolve(minus(angular, cross(parent.rate, rate)))
@@ -278,10 +271,3 @@ def _triad(joint: Joint) -> tuple[Vector, Vector, Vector]:
     first = next((freedom.direction for freedom in joint.freedoms if freedom.move != "slide"), 0)
     u, v, w = (joint.triad[(first + k) % 3] for k in range(3))
     return u, v, w
-
-
-def _at_zero(joint: Joint, direction: Vector) -> Vector:
-    """A direction in the parent's axes, in the child's axes where the
-    joint's coordinates are zero.
-    """
-    return orientation(joint).resolve(direction)

@@ -23,16 +23,16 @@ from ..base.vectors import AXES
 from ..errors import AssemblyError, DeclarationError
 from ..model.directions import most_across
 from .blocks import Block, solving_order
-from .iteration import Iterated, NewtonLoop, place_roughly
+from .iteration import Iterated, NewtonLoop, Start, place_roughly
 from .linear import LinearSystem
 from .loops import ClosedForm
 from .multibody import Coordinate, Multibody
 from .postures import Undecided, directions, is_angle, measured
 from .residuals import lengths, loop_residual, reach, redundancy_residual
+from .revolutions import Guide
 from .screws import signed_volume
 from .spherical import SphericalCoordinates
 from .substitution import Expressions, Numbers
-from .winding import wound_angles
 
 _WAYS = 32
 """Largest number of ways to close open loops that are tried if the first does not close the
@@ -41,19 +41,6 @@ others.
 
 _READ = {"angle": 12, "slide": 15}
 """Decimals of what is said of a coordinate [rad or m]."""
-
-
-@dataclass(frozen=True)
-class Start:
-    """Numbers at the start of the motion: time, driven coordinates, parameters.
-
-    ``note`` names the parameters, to end a message with.
-    """
-
-    t: float
-    driven: Sequence[float]
-    parameters: Sequence[float]
-    note: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -226,14 +213,34 @@ class _Solver:
             closure = self.found.put_into(closure)
         for coordinate, value in zip(form.unknown, variables, strict=True):
             if coordinate.axis.move == "screw" and form.branches:
-                counting = [
-                    c for c in self.known if c.kind == "angle" and c.name not in self.wrapped
-                ]
-                value, deviation = wound_angles(coordinate, value, counting, self.numbers)
-                self.deviations[coordinate.name] = self.found.put_into(deviation)
+                value = self._with_turns(coordinate, value)
             self.numbers.note(coordinate.variables, self.numbers.of(value))
             self._know(coordinate, self.found.put_into(value))
         return closure
+
+    def _with_turns(self, screw: Coordinate, variables: ca.SX) -> ca.SX:
+        """The variables of a screw that a loop sets, with the turns of its angle: by each of them
+        the screw slides.
+        """
+        c, s, _ = ca.vertsplit(variables)
+        counted = column(
+            known.value
+            for known in self.known
+            if known.kind == "angle" and known.name not in self.wrapped
+        )
+        guide = Guide.of(self.multibody, self.d, self.iterated.symbols, self.newton(), self.start)
+        angles = [
+            self.iterated.placed(self.found.put_into(part)) for part in (ca.atan2(s, c), counted)
+        ]
+        (rule,) = guide.rules(*angles)
+        if rule is None:
+            raise DeclarationError(
+                f"joint '{screw.name}': the number of revolutions of the screw cannot be determined"
+                " from the drives"
+            )
+        angle, deviation = rule.angle(c, s, counted)
+        self.deviations[screw.name] = self.found.put_into(deviation)
+        return ca.vertcat(c, s, angle)
 
     def _note_closure(self, block: Block, closure: ca.SX) -> None:
         """Note how far a block is from a dead centre: of blocks that one joint closes, the one that

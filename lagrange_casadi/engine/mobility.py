@@ -43,7 +43,7 @@ from .assembly import line_reaction
 from .distributed_loads import distributed_loads, rotary
 from .drives import solve_efforts
 from .friction import Solved, needed, solve
-from .joints import carried, orientation, reaction, supported
+from .joints import carried, reaction, supported
 from .kinematics import Kinematics
 from .meshes import braking, pressing_apart, transmissions_of
 from .multibody import Multibody, own_coordinate, released_forces
@@ -427,7 +427,7 @@ def _on_parent(multibody: Multibody, joint: Joint, actions: Mapping[str, ca.SX])
         Rotation.about(c.axis.direction, *ca.vertsplit(c.variables))
         for c in rotations
         if c is not None
-    ] + [orientation(joint)]
+    ] + [joint.turned]
     if joint.child.body is multibody.tree.branch_of[joint].far.body:
         for rotation in reversed(turned):
             force, moment = rotation.apply(force), rotation.apply(moment)

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import casadi as ca
@@ -16,6 +16,7 @@ from ..base.quantities import Check, Column, Output, force_members, motions_of
 from ..base.scalars import column
 from ..base.tables import ANGLE
 from ..base.vectors import ZERO, dot
+from ..errors import DeclarationError
 from ..model.ends import beyond_ends
 from ..model.laws import Laws
 from ..model.limits import parameters_note
@@ -25,11 +26,11 @@ from ..model.spatial import reference_posture
 from . import kinematics
 from .assembly import assemble
 from .drives import pushed
-from .kinematics import Start
+from .iteration import Start
 from .mobility import needed_reactions
 from .model_data import template
 from .multibody import Coordinate, Multibody, own_coordinate
-from .revolutions import count_revolutions
+from .revolutions import Guide, depends_on_turns
 from .tree import span
 from .two_force_links import across_link
 
@@ -64,9 +65,7 @@ class Moving:
             want.own,
         )
         laws, start, solved = solved_motion(scene, body)
-        solved, deviations = count_revolutions(
-            body, solved, laws.motion, scene.span, start, _seeing(body, want)
-        )
+        solved, deviations = _with_turns(body, solved, start, _seeing(body, want))
         return cls(scene, want, body, laws, start, solved, deviations)
 
     @property
@@ -79,7 +78,7 @@ class Moving:
         start, newton = self.start, self.solved.newton
         at_start = (
             start.t,
-            *self.laws.motion(start.t, start.parameters),
+            *start.motion(start.t, start.parameters),
             newton.guess if newton else [],
             start.parameters,
         )
@@ -179,11 +178,53 @@ def solved_motion(scene: Scene, body: Multibody) -> tuple[Laws, Start, kinematic
     """The laws of a scene's driven coordinates, where its motion starts, and its loops solved."""
     laws = scene.prescribed.only([c.name for c in body.coordinates if c.driven])
     values = list(scene.mechanism.values(scene.assembly).values())
-    first = [float(x) for x in ca.DM(laws.motion(scene.span[0], values)[0]).full().ravel()]
     note = parameters_note(scene.mechanism, scene.assembly)
-    start = Start(scene.span[0], first, values, note)
+    start = Start(laws.motion, scene.span, values, note)
     posture = reference_posture(scene.mechanism) | dict(scene.posture)
     return laws, start, kinematics.solve(body, posture, start)
+
+
+def _with_turns(
+    body: Multibody, solved: kinematics.Kinematics, start: Start, used: Mapping[str, ca.SX]
+) -> tuple[kinematics.Kinematics, dict[str, Any]]:
+    """The kinematics with the angles that ``used`` expressions of loads and rows see, by their
+    names; and swings, by angle.
+
+    At the start of the motion angles lie in (-pi, pi]. Those that are seen only where whole turns
+    make no difference, as under a sine, are left there. Raises :class:`DeclarationError` for angles
+    whose turns do not follow from those of drives.
+    """
+    angles = [c for c in body.coordinates if c.kind == "angle"]
+    wrapped = column(c.value for c in angles if c.name in solved.wrapped)
+    counted = solved.evaluate(column(c.value for c in angles if c.name not in solved.wrapped))
+    values: dict[str, Any] = {}
+    users: dict[str, list[str]] = {}
+    for turned in body.turned:
+        users[turned.name] = [
+            name for name, expression in used.items() if ca.depends_on(expression, turned.symbol)
+        ]
+        if not ca.depends_on(turned.angle, wrapped):
+            values[turned.name] = turned.angle
+        elif not any(depends_on_turns(used[name], turned.symbol) for name in users[turned.name]):
+            values[turned.name] = turned.within
+    uncounted = [turned for turned in body.turned if turned.name not in values]
+    deviations: dict[str, Any] = {}
+    guide = Guide.of(body, solved.driven, solved.iterated, solved.newton, start)
+    within = solved.evaluate(column(turned.within for turned in uncounted))
+    for turned, rule in zip(uncounted, guide.rules(within, counted), strict=True):
+        if rule is None:
+            raise DeclarationError(
+                f"{', '.join(users[turned.name])}: the angle of '{turned.name}' enters with its"
+                " number of revolutions, which cannot be determined from the drives; use its sine"
+                " and cosine, or the angle of a drive"
+            )
+        c, s = (solved.evaluate(part) for part in (turned.cosine, turned.sine))
+        values[turned.name], deviations[turned.name] = rule.angle(c, s, counted)
+    found = solved.found.and_of(
+        column(turned.symbol for turned in body.turned),
+        solved.evaluate(column(values[turned.name] for turned in body.turned)),
+    )
+    return replace(solved, found=found), deviations
 
 
 def instant_inputs(mechanism: Mechanism, solved: kinematics.Kinematics) -> dict[str, Expression]:

@@ -65,8 +65,8 @@ def directions(
     steps: list[tuple[str, str, float]] = []
     for joint in mechanism.joints.values():
         parent, child = (body.name for body in joint.bodies)
-        if joint.holds_direction:
-            steps.append((parent, child, numbers.of(ca.SX(joint.angle))[0]))
+        if joint.planar and joint.holds_direction:
+            steps.append((parent, child, numbers.of(ca.SX(joint.turned.angle))[0]))
         elif joint.coordinate == "angle" and joint.name in posture:
             steps.append((parent, child, posture[joint.name]))
     going = True

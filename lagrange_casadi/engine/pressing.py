@@ -10,7 +10,7 @@ import casadi as ca
 
 from ..base.arrays import Expression
 from ..base.frames import Frame
-from ..base.vectors import dot, minus, times
+from ..base.vectors import dot, minus, norm, times
 from ..model.joints import Joint
 from ..model.mechanism import Mechanism
 from ..model.meshes import Loss, Transmission
@@ -115,7 +115,7 @@ def joint_friction(
     """
     joint = friction.joint
     if friction.every_way:
-        rate, acceleration = (_size(x) for x in turning(joint, multibody.frames))
+        rate, acceleration = (norm(x) for x in turning(joint, multibody.frames))
     else:
         _, rate, acceleration = multibody.motion_along(joint, friction.axis)
     contacts: tuple[Contact, ...] = ()
@@ -152,13 +152,9 @@ def way_of(joint: Joint, grown: Grown) -> Vector:
     any at rest.
     """
     spin, change = turning(joint, grown.frames)
-    moves = _size(spin) > slowest_of(grown, slides=False)[0]
+    moves = norm(spin) > slowest_of(grown, slides=False)[0]
     x, y, z = (ca.if_else(moves, now, soon) for now, soon in zip(spin, change, strict=True))
-    return times(1 / ca.fmax(_size((x, y, z)), _TINY), (x, y, z))
-
-
-def _size(vector: Vector) -> Expression:
-    return ca.sqrt(ca.SX(dot(vector, vector)))
+    return times(1 / ca.fmax(norm((x, y, z)), _TINY), (x, y, z))
 
 
 def slowest_of(multibody: Multibody | Grown, *, slides: bool) -> tuple[Expression, Expression]:

@@ -165,7 +165,7 @@ def _load(load: Load, *, space: bool) -> str:
     if isinstance(load, Torque):
         if space:
             return f"torque on {first} against {second}, {_components(load, 'N m', space)}"
-        return f"torque on {first} against {second}, {_short(load.value)} N m"
+        return f"torque on {first} against {second}, {_short(load.components[2])} N m"
     words = (
         f"stiffness {_short(load.stiffness)} N/m, free length {_short(load.length)} m, damping"
         f" {_short(load.damping)} N s/m"

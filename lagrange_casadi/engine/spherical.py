@@ -25,7 +25,6 @@ from ..base.arrays import Array, Expression
 from ..base.rotation import Rotation, direction
 from ..base.vectors import Vector
 from ..model.joints import Joint
-from .joints import orientation
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +67,7 @@ class SphericalCoordinates:
         turned = Rotation()
         for axis, turn in zip(self.joint.triad, turns, strict=True):
             turned = turned.then(Rotation.about(axis, *direction(turn), turn))
-        zero = orientation(self.joint)
+        zero = self.joint.turned
         found = (
             base.then(zero.inverse).then(turned.inverse)
             if self.reverse

@@ -18,7 +18,6 @@ import casadi as ca
 from ..base.frames import Frame
 from ..base.vectors import Expression, Vector, cross, dot, minus, times
 from ..model.joints import Joint
-from .joints import orientation
 
 LOCKED = 1e-12
 """Square of the cosine of the second angle below which the others are indeterminate."""
@@ -40,7 +39,7 @@ class ThreeRotations:
         """The joint's directions as the parent carries them, and as the child
         does, in ground axes.
         """
-        zero = orientation(self.joint)
+        zero = self.joint.turned
         carried = tuple(self.parent.rotation.apply(direction) for direction in self.joint.triad)
         return carried, tuple(
             self.child.rotation.apply(zero.resolve(direction)) for direction in self.joint.triad

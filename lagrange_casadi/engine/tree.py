@@ -15,7 +15,6 @@ from functools import cached_property
 from heapq import heappop, heappush
 from typing import NoReturn
 
-from ..base.vectors import AXES
 from ..errors import DeclarationError
 from ..model.joints import Axis, Joint
 from ..model.mechanism import Mechanism
@@ -81,8 +80,8 @@ class Tree:
             for body in (joint.child.body,)
             if isinstance(joint.parent.body, Ground)
             and (
-                joint.turned is None and joint.slides and not body.oriented
-                if joint.directions is None
+                joint.slides and not body.oriented
+                if joint.planar
                 else joint.kind == "cylindrical" and body.oriented
             )
         }
@@ -192,7 +191,10 @@ def _refuse_unused(mechanism: Mechanism, two_force_links: Sequence[TwoForceLink]
     }
     taken |= {one.link for one in two_force_links}
     turned = {
-        body for joint in mechanism.joints.values() if _is_turned(joint) for body in joint.bodies
+        body
+        for joint in mechanism.joints.values()
+        if joint.turned.angle is None
+        for body in joint.bodies
     }
     for link in mechanism.links.values():
         if (
@@ -212,18 +214,6 @@ def _refuse_unused(mechanism: Mechanism, two_force_links: Sequence[TwoForceLink]
             f" position there; give one of them at=, its position, or {way_out} and give turned=,"
             " the orientation of the link"
         )
-
-
-def _is_turned(joint: Joint) -> bool:
-    """Return whether the joint's child is turned against its parent at zero coordinates."""
-    if joint.turned is None:
-        return False
-    pairs = [
-        pair
-        for turned, axis in zip(joint.turned, AXES[:2], strict=True)
-        for pair in zip(turned, axis, strict=True)
-    ]
-    return any(not isinstance(one, float) or one != other for one, other in pairs)
 
 
 def _refuse_driven(
@@ -269,7 +259,7 @@ def _can_carry(joint: Joint, reverse: bool) -> bool:
     """Return whether a joint can place a body: in a plane a point on a line places neither the body
     that carries the line, nor the direction of the one that slides.
     """
-    if joint.directions is not None:
+    if not joint.planar:
         return not reverse or (
             joint.parent.body.oriented and (joint.child.body.oriented or joint.turns == 3)
         )
@@ -285,7 +275,7 @@ def _rank(joint: Joint, driven: Collection[str]) -> int:
         return 3
     if joint.holds_direction:
         return 2
-    if joint.directions is not None:
+    if not joint.planar:
         # What lets more free is rather cut: fewer equations close it.
         return 1 - len(joint.freedoms)
     return 0 if joint.slides else 1

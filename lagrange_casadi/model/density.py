@@ -46,8 +46,21 @@ class Density(Brief):
 
     @property
     def jumps(self) -> tuple[float, ...]:
-        """The breaks at which it may jump, as far as numbers show."""
-        return _jumps(self.breaks, self.cells)
+        """The inner breaks at which neighbouring cells have two values, or values that are not
+        numbers.
+        """
+        found = []
+        for u, before, after in zip(self.breaks[1:], self.cells, self.cells[1:], strict=False):
+            known = not any(isinstance(c, ca.SX) for c in (*before, *after))
+            values = (
+                [sum(c * u**j for j, c in enumerate(cell)) for cell in (before, after)]
+                if known
+                else []
+            )
+            sizes = [sum(np.abs(c) for c in cell) for cell in (before, after)] if known else []
+            if not known or np.any(np.abs(values[1] - values[0]) > _SAME * np.maximum(*sizes)):
+                found.append(u)
+        return tuple(found)
 
     def ends(self, length: Expression) -> tuple[Expression, Expression, Expression]:
         """Return two masses and a moment of inertia that together move just as the link does.
@@ -372,22 +385,6 @@ def along(curve: Curve) -> Density:
         powers = shifted([Fraction(c) for c in cell], -Fraction(start))
         cells.append(tuple(float(power) for power in powers))
     return Density((*curve.starts, 1.0), tuple(cells), per_length=True)
-
-
-def _jumps(breaks: Sequence[float], cells: Sequence[Sequence[Expression]]) -> tuple[float, ...]:
-    """The inner breaks at which neighbouring cells have two values, or values that are not
-    numbers.
-    """
-    found = []
-    for u, before, after in zip(breaks[1:], cells, cells[1:], strict=False):
-        known = not any(isinstance(c, ca.SX) for c in (*before, *after))
-        values = (
-            [sum(c * u**j for j, c in enumerate(cell)) for cell in (before, after)] if known else []
-        )
-        sizes = [sum(np.abs(c) for c in cell) for cell in (before, after)] if known else []
-        if not known or np.any(np.abs(values[1] - values[0]) > _SAME * np.maximum(*sizes)):
-            found.append(u)
-    return tuple(found)
 
 
 _SAME = 1e-9

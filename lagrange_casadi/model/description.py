@@ -19,12 +19,13 @@ import numpy as np
 from ..base.arrays import Expression, Json
 from ..base.brief import Brief
 from ..base.quantities import Kinds
-from ..base.vectors import cross
+from ..base.vectors import ZERO
 from .beams.beam import Beam, Notch
 from .beams.material import Material
 from .beams.shape import Course, Shape
 from .density import Density, NumericDensity
 from .fitted import Fittings, Pin, Plain, Rolling
+from .guiding import kind_of
 from .joints import Joint, JointKind
 from .mass_properties import mass_of
 from .mechanism import Mechanism
@@ -39,9 +40,6 @@ Rows: TypeAlias = tuple[Triple, Triple, Triple]
 Pair: TypeAlias = tuple[float, float]
 
 CoordinateKind: TypeAlias = Literal["angle", "slide"]
-
-_X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
-_ORIGIN = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -77,8 +75,8 @@ class MassNumbers:
     """
 
     mass: float
-    centre: Triple = _ORIGIN
-    inertia: Rows = (_ORIGIN,) * 3
+    centre: Triple = ZERO
+    inertia: Rows = (ZERO,) * 3
 
 
 @dataclass(frozen=True, repr=False)
@@ -123,7 +121,7 @@ class BodyNumbers(Brief):
             return MassNumbers(mass)
         middle = first / mass
         across = (second - first * middle) * self.length**2
-        yy, zz, yz = (one.mass for one in self.slices) if self.slices else _ORIGIN
+        yy, zz, yz = (one.mass for one in self.slices) if self.slices else ZERO
         inertia = (yy + zz, 0.0, 0.0), (0.0, across + zz, -yz), (0.0, -yz, across + yy)
         return MassNumbers(mass, (middle * self.length, 0.0, 0.0), inertia)
 
@@ -204,7 +202,7 @@ class Description(Brief):
     name: str
     space: bool
     parameters: Mapping[str, ParameterNumbers] = field(default_factory=dict)
-    gravity: Triple = _ORIGIN
+    gravity: Triple = ZERO
     bodies: Mapping[str, BodyNumbers] = field(default_factory=dict)
     joints: Mapping[str, JointNumbers] = field(default_factory=dict)
     loads: Mapping[str, LoadNumbers] = field(default_factory=dict)
@@ -251,7 +249,7 @@ class Description(Brief):
             loads={name: _load(load) for name, load in mechanism.loads.items()},
             rows=rows,
             constraints=tuple(mechanism.constraints),
-            driven={name: _kind(mechanism, name) for name in given},
+            driven={name: kind_of(mechanism, name) for name in given},
             drives=tuple(
                 name for name in (drives or usual) if not drives or name in mechanism.coordinates
             ),
@@ -446,43 +444,28 @@ def _body(mechanism: Mechanism, body: Link | PointMass) -> BodyNumbers:
         return BodyNumbers(None, _number(mass_of(body)))
     length, mass = _number(body.length), body.mass
     if isinstance(mass, RigidMass):
-        x, y, z = (*mass.centre, 0.0)[:3]
-        plane = (_ORIGIN, _ORIGIN, (0.0, 0.0, mass.inertia))
-        rows = map(_vector, mass.inertia if mechanism.space else plane)
-        return BodyNumbers(length, _number(mass_of(body)), _vector((x, y, z)), _rows(rows))
+        rows = _rows(map(_vector, mass.inertia))
+        return BodyNumbers(length, _number(mass_of(body)), _vector(mass.centre), rows)
     return BodyNumbers(
         length,
         _number(mass_of(body)),
-        density=_along(body, mass),
-        slices=tuple(_along(body, one) for one in mass.slices.each) if mass.slices else (),
+        density=mass.at(_number, body.length),
+        slices=tuple(
+            one.at(_number, body.length) for one in (mass.slices.each if mass.slices else ())
+        ),
         beam=None if body.beam is None else replace(body.beam, shape=body.beam.course),
     )
 
 
-def _along(link: Link, density: Density) -> NumericDensity:
-    """The density over the ratio xi/l."""
-    scale = link.length if density.per_length else 1.0
-    return NumericDensity(
-        density.breaks, tuple(tuple(_number(c * scale) for c in cell) for cell in density.cells)
-    )
-
-
 def _joint(mechanism: Mechanism, joint: Joint) -> JointNumbers:
-    """A joint; of the plane, one whose child turns about z."""
-    if joint.turned is not None:
-        x, y = joint.turned
-        triad, turned = joint.triad, (x, y, cross(x, y))
-    else:
-        c, s = ca.cos(joint.angle), ca.sin(joint.angle)
-        triad = joint.triad if joint.kind in ("prismatic", "slot") else (_Z, _X, _Y)
-        turned = ((c, s, 0.0), (-s, c, 0.0), _Z)
+    turned = joint.turned
     return JointNumbers(
         joint.name,
         joint.kind,
         _place(joint.parent),
         _place(joint.child),
-        _rows(map(_vector, triad)),
-        _rows(map(_vector, turned)),
+        _rows(map(_vector, joint.triad)),
+        _rows(map(_vector, (turned.x, turned.y, turned.z))),
         tuple(AxisNumbers(a.coordinate, a.kind, _vector(a.direction)) for a in joint.axes),
         _number(joint.pitch),
         mechanism.fitted.get(joint.name),
@@ -510,10 +493,3 @@ def _lies_by_default(joint: Joint) -> bool:
     body = joint.child.body
     slender = isinstance(body, Link) and isinstance(body.mass, Density)
     return slender and joint.kind in ("prismatic", "cylindrical", "screw") and not joint.turn_given
-
-
-def _kind(mechanism: Mechanism, name: str) -> CoordinateKind:
-    """The kind of a coordinate whose motion is given, of a joint or a guide (:mod:`.guiding`)."""
-    if name in mechanism.coordinates:
-        return mechanism.coordinates[name][1].kind
-    return "angle" if name.endswith(".angle") else "slide"

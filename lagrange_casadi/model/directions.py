@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import casadi as ca
 
 from ..base.rotation import Rotation, direction
-from ..base.vectors import AXES, ZERO, Vector, cross, dot, minus, times
+from ..base.vectors import AXES, ZERO, Vector, cross, dot, minus, norm, times
 from ..errors import DeclarationError
 from .joints import Triad
 from .limits import ROUNDED
@@ -124,6 +124,17 @@ def triad_of(
     return u, v, cross(u, v)
 
 
+def in_plane(what: str, axis: object, checked: Checked) -> Vector:
+    """A direction of length 1 in the x-y plane, from two components.
+
+    Raises :class:`DeclarationError` for one of length zero, and for what has not two components.
+    """
+    if not isinstance(axis, (tuple, list)) or len(axis) != 2:
+        raise DeclarationError(f"{what}: axis must be two components, got {axis!r}")
+    x, y = (checked(f"{what}: axis", component) for component in axis)
+    return _unit(f"{what}: axis", (x, y, 0.0))
+
+
 def not_right(what: str, cosine: float) -> str:
     """Reason why two axes are refused, in words."""
     degrees = math.degrees(math.acos(max(-1.0, min(1.0, cosine))))
@@ -184,7 +195,7 @@ def between(
         raise DeclarationError(f"{what}: between must be two places, got {places!r}")
     base, tip = (vector(f"{what}: between", place, checked, "m") for place in places)
     along = minus(tip, base)
-    length = _size(along)
+    length = norm(along)
     if isinstance(length, float) and length == 0.0:
         raise DeclarationError(
             f"{what}: expected two different places in between=, got the same one twice"
@@ -264,7 +275,7 @@ def _is_same(one: Expression, other: Expression, size: Expression) -> bool:
 
 
 def _unit(what: str, value: Vector) -> Vector:
-    size = _size(value)
+    size = norm(value)
     if isinstance(size, float) and size == 0.0:
         raise DeclarationError(f"{what} must not be of length zero")
     if isinstance(size, float):
@@ -282,9 +293,3 @@ def _settled(direction: Vector) -> Vector:
         for component in direction
     )
     return x, y, z
-
-
-def _size(value: Vector) -> Expression:
-    if all(isinstance(component, float) for component in value):
-        return math.hypot(*value)
-    return ca.sqrt(dot(value, value))

@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import casadi as ca
 
-from ..base.arrays import Operand
 from ..base.interpret import written_out
 from ..base.scalars import column
 from ..base.units import number, typed
@@ -151,33 +150,6 @@ def error_text(error: BaseException) -> str:
             " 'max'"
         )
     return f"{type(error).__name__}{text and ': '}{text}"
-
-
-def bound(what: str, value: Operand, unit: str) -> float:
-    """A number in a unit, not always finite. Raises :class:`DeclarationError` for anything else."""
-    try:
-        return number(value, unit, finite=False)
-    except NumberError as error:
-        raise DeclarationError(f"{what}: {error}") from None
-
-
-def unit_vector(
-    what: str, axis: object, component: Callable[[Expression], Expression]
-) -> tuple[Expression, Expression]:
-    """A direction of length one.
-
-    Raises :class:`DeclarationError` for (0, 0), or for what has not two components.
-    """
-    if not isinstance(axis, (tuple, list)) or len(axis) != 2:
-        raise DeclarationError(f"{what}: axis must be two components, got {axis!r}")
-    x, y = (component(a) for a in axis)
-    if isinstance(x, ca.SX) or isinstance(y, ca.SX):
-        norm = ca.sqrt(x * x + y * y)
-        return x / norm, y / norm
-    norm = math.hypot(x, y)
-    if norm == 0.0:
-        raise DeclarationError(f"{what}: axis must not be (0, 0)")
-    return x / norm, y / norm
 
 
 def plain(value: Expression) -> Expression:

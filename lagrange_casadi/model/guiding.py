@@ -10,14 +10,17 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Mapping, Sequence
+from typing import Literal
 
 from ..base.tables import ANGLE, LENGTH
+from ..base.vectors import AXES, ZERO
 from ..errors import DeclarationError, UnknownNameError
 from .joints import Joint
 from .mechanism import Mechanism
 from .motion import Motion
 from .parts import Body, Link, Point, PointMass, RigidMass
 
+_NOTHING = RigidMass(0.0, ZERO, (ZERO, ZERO, ZERO))
 _NAMES = {1: ("",), 2: (".x", ".y"), 3: (".x", ".y", ".angle")}
 
 
@@ -80,15 +83,24 @@ def laws_of(
             )
         found |= {f"{name}{end}": law for end, law in zip(_NAMES[expected], given, strict=True)}
     for name, law in found.items():
-        rotates = (
-            coordinates[name][1].kind == "angle" if name in coordinates else name.endswith(".angle")
-        )
-        unit = ANGLE if rotates else LENGTH
+        unit = ANGLE if kind_of(mechanism, name) == "angle" else LENGTH
         if law.unit not in ("", unit):
             raise DeclarationError(
                 f"motion of '{name}': the law is in {law.unit}, but the coordinate is in {unit}"
             )
     return found
+
+
+def kind_of(mechanism: Mechanism, coordinate: str) -> Literal["angle", "slide"]:
+    """The kind of a coordinate whose motion is given, of a joint or a guide."""
+    known = mechanism.coordinates.get(coordinate)
+    return known[1].kind if known else "angle" if coordinate.endswith(".angle") else "slide"
+
+
+def point_of(mechanism: Mechanism, name: str) -> Point:
+    """The point that guides move: of a path, or the base or origin of a body."""
+    path = mechanism.paths.get(name)
+    return path.point if path else Point(mechanism.bodies[name], 0.0, 0.0)
 
 
 def _along_axes(joint: Joint, given: Sequence[Motion]) -> dict[str, Motion]:
@@ -125,24 +137,17 @@ def guided(mechanism: Mechanism, motion: Mapping[str, Motion | Sequence[Motion]]
     found = copy.copy(mechanism)
     found.bodies, found.joints = dict(mechanism.bodies), dict(mechanism.joints)
     for name in names:
-        body = (
-            mechanism.paths[name].point.body if name in mechanism.paths else mechanism.bodies[name]
-        )
-        point = mechanism.paths[name].point if name in mechanism.paths else Point(body, 0.0, 0.0)
-        rotates = name not in mechanism.paths and body.oriented
-        beside = Link(f"{name}.x", 0.0, RigidMass(0.0, (0.0, 0.0), 0.0))
-        guide: Body = (
-            Link(f"{name}.y", 0.0, RigidMass(0.0, (0.0, 0.0), 0.0))
-            if rotates
-            else PointMass(f"{name}.y", 0.0)
-        )
+        point = point_of(mechanism, name)
+        rotates = name not in mechanism.paths and point.body.oriented
+        beside = Link(f"{name}.x", 0.0, _NOTHING)
+        guide: Body = Link(f"{name}.y", 0.0, _NOTHING) if rotates else PointMass(f"{name}.y", 0.0)
         ground, middle, end = (Point(one, 0.0, 0.0) for one in (mechanism.ground, beside, guide))
-        along = Joint(f"{name}.x", "prismatic", ground, middle, (1.0, 0.0))
-        across = Joint(f"{name}.y", "prismatic", middle, end, (0.0, 1.0))
+        along = Joint.flat(f"{name}.x", "prismatic", ground, middle, AXES[0])
+        across = Joint.flat(f"{name}.y", "prismatic", middle, end, AXES[1])
         if rotates:
-            held = Joint(f"{name}.angle", "revolute", end, point)
+            held = Joint.flat(f"{name}.angle", "revolute", end, point)
         else:
-            held = Joint(name, "revolute", point, end)
+            held = Joint.flat(name, "revolute", point, end)
         found.bodies |= {part.name: part for part in (beside, guide)}
         found.joints |= {joint.name: joint for joint in (along, across, held)}
     return found

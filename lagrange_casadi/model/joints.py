@@ -12,6 +12,8 @@ from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 from ..base.brief import Brief
+from ..base.rotation import Rotation
+from ..base.vectors import AXES, cross
 from ..errors import DeclarationError
 from .parts import Body, Expression, Point, Vector
 
@@ -68,13 +70,8 @@ IN_SPACE: dict[JointKind, tuple[Freedom, ...]] = {
 }
 """The freedoms of the kinds of joints, and their names."""
 
-IN_PLANE: dict[JointKind, tuple[Freedom, ...]] = {
-    "revolute": (Freedom("", "turn", 2),),
-    "prismatic": (Freedom("", "slide", 0),),
-    "slot": (Freedom("", "slide", 0), Freedom(None, "turn", 2)),
-    "weld": (),
-}
-"""Degrees of freedom of joints in a plane, whose normal is the third direction of every triad."""
+_PLANAR_SLOT = (Freedom("", "slide", 0), Freedom(None, "turn", 2))
+"""Freedoms of a slot in a plane, whose normal is the third direction of its triad."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,42 +102,51 @@ class Joint(Brief):
 
     - ``revolute`` holds the two points together; the coordinate is the child's direction less the
       parent's [rad].
-    - ``prismatic`` holds the child's point on the line through the parent's point along ``axis`` (a
-      unit vector in the parent's axes) and the child's direction at ``angle`` [rad] from the
-      parent's; the coordinate is the place on the line [m].
+    - ``prismatic`` holds the child's point on a line of the parent and the child's direction; the
+      coordinate is the place on the line [m].
     - ``slot`` holds the child's point on that line and leaves its direction free.
-    - ``weld`` holds the points together and the child's direction at ``angle`` from the parent's;
-      it has no coordinate.
+    - ``weld`` holds the points and the child's direction; it has no coordinate.
 
     A child that slides on a line loads the parent, which carries the line, at its present position.
 
-    In space ``directions`` are three at right angles, in the parent's axes, and :data:`IN_SPACE`
-    has those along which the joint moves; ``turned`` are the directions of the child's x and y
-    axes, in the parent's axes, where all coordinates are zero. ``pitch`` is that of a screw
-    [m/rad]. ``turn_given`` says whether ``angle`` or ``turned`` was declared, and not taken by
-    default.
+    ``triad`` are three directions of length 1 at right angles that the parent carries, in its axes;
+    :data:`IN_SPACE` has those along which the joint moves. ``turned`` are the child's axes as the
+    parent sees them where all coordinates are zero. A ``planar`` joint holds nothing out of the x-y
+    plane, for a mechanism in a plane. ``pitch`` is that of a screw [m/rad]. ``turn_given`` says
+    whether ``turned`` was declared, and not taken by default.
     """
 
     name: str
     kind: JointKind
     parent: Point
     child: Point
-    axis: tuple[Expression, ...] = (1.0, 0.0)
-    angle: Expression = 0.0
-    directions: Triad | None = None
-    turned: tuple[Vector, Vector] | None = None
+    triad: Triad
+    turned: Rotation
     pitch: Expression = 0.0
     turn_given: bool = True
+    planar: bool = False
 
-    @property
-    def triad(self) -> Triad:
-        """Three directions at right angles that the parent carries; in a plane along the axis,
-        across it, and out of the plane.
+    @classmethod
+    def flat(
+        cls,
+        name: str,
+        kind: JointKind,
+        parent: Point,
+        child: Point,
+        axis: Vector = AXES[0],
+        angle: Expression = 0.0,
+        *,
+        turn_given: bool = True,
+    ) -> Joint:
+        """A joint of a plane, with the direction ``axis`` of its line, if it has one, and the
+        ``angle`` [rad] from the parent to the child.
         """
-        if self.directions is not None:
-            return self.directions
-        x, y = self.axis
-        return (x, y, 0.0), (-y, x, 0.0), (0.0, 0.0, 1.0)
+        across, normal = cross(AXES[2], axis), AXES[2]
+        slides = kind in ("prismatic", "slot")
+        triad = (axis, across, normal) if slides else (normal, axis, across)
+        return cls(
+            name, kind, parent, child, triad, Rotation.by(angle), turn_given=turn_given, planar=True
+        )
 
     @property
     def bodies(self) -> tuple[Body, Body]:
@@ -154,7 +160,7 @@ class Joint(Brief):
     @property
     def freedoms(self) -> tuple[Freedom, ...]:
         """The freedoms of its kind."""
-        return (IN_PLANE if self.turned is None else IN_SPACE)[self.kind]
+        return _PLANAR_SLOT if self.planar and self.kind == "slot" else IN_SPACE[self.kind]
 
     @property
     def axes(self) -> tuple[Axis, ...]:
@@ -200,13 +206,13 @@ class Joint(Brief):
         return (
             self.child.body.oriented
             and self.parent.body.oriented
-            and self.turns < (1 if self.turned is None else 3)
+            and self.turns < (1 if self.planar else 3)
         )
 
     @property
     def aligns(self) -> bool:
         """True if the joint holds a direction that must not be off by half a turn."""
-        return self.bears_moment and self.turns < (1 if self.turned is None else 2)
+        return self.bears_moment and self.turns < (1 if self.planar else 2)
 
     @property
     def coordinate(self) -> Literal["angle", "slide"] | None:

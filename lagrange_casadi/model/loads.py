@@ -211,7 +211,7 @@ def _require(what: str, joint: Joint, axis: Axis, numbers: Mapping[str, Expressi
         if needless:
             raise DeclarationError(f"{what}: {needless[0]} needs mu=, a friction coefficient")
         return
-    space, moment = joint.turned is not None, joint.bears_moment
+    space, moment = not joint.planar, joint.bears_moment
     turns = axis.kind == "angle" or joint.kind == "cylindrical"
     bearings = space and moment and joint.kind in ("revolute", "cylindrical")
     radius, length = "radius" in numbers, "length" in numbers

@@ -4,16 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import TypeAlias
 
 import casadi as ca
 
+from ..base.vectors import ZERO
 from ..errors import DeclarationError
 from .beams.beam import Beam
 from .density import Density, Slices, uniform
-from .parts import Expression, Link, PointMass, RigidMass
+from .parts import Expression, Link, PointMass, RigidMass, Vector
 
-Rigid: TypeAlias = Callable[[Expression, Expression], tuple[tuple[Expression, ...], Expression]]
+Inertia: TypeAlias = tuple[Vector, Vector, Vector]
+"""Moments of inertia [kg m^2], three rows of a matrix."""
+
+Rigid: TypeAlias = Callable[[Expression, Expression], tuple[Vector, Inertia]]
 """Reader of a centre and moments of inertia."""
 
 ALL = "all"
@@ -67,16 +72,19 @@ def mass_properties_of(
         )
         return replace(checked_density, slices=Slices(*moments))
     if centre is not None:
-        if rigid is not None:
-            place, moments = rigid(centre, inertia)
-            return RigidMass(checked(f"{what}: mass", mass, "kg"), place, moments)
-        if not isinstance(centre, (tuple, list)) or len(centre) != 2:
-            raise DeclarationError(f"{what}: centre must be two components (x, y), got {centre!r}")
-        x, y = (checked(f"{what}: centre", c, "m") for c in centre)
-        return RigidMass(
-            checked(f"{what}: mass", mass, "kg"), (x, y), checked(f"{what}: inertia", inertia)
-        )
+        place, about = (rigid or partial(_in_plane, what, checked))(centre, inertia)
+        return RigidMass(checked(f"{what}: mass", mass, "kg"), place, about)
     return uniform(checked(f"{what}: mass", mass, "kg"))
+
+
+def _in_plane(
+    what: str, checked: Callable[..., Expression], centre: Expression, inertia: Expression
+) -> tuple[Vector, Inertia]:
+    """A centre of two places, and one moment of inertia, about z."""
+    if not isinstance(centre, (tuple, list)) or len(centre) != 2:
+        raise DeclarationError(f"{what}: centre must be two components (x, y), got {centre!r}")
+    x, y = (checked(f"{what}: centre", c, "m") for c in centre)
+    return (x, y, 0.0), (ZERO, ZERO, (0.0, 0.0, checked(f"{what}: inertia", inertia)))
 
 
 def beam_of(what: str, beam: Beam | None, checked: Callable[..., Expression]) -> Beam | None:
@@ -106,13 +114,6 @@ def second_moments(inertia: Sequence[Sequence[Expression]]) -> list[list[float]]
         [-ixy, (ixx + izz - iyy) / 2, -iyz],
         [-ixz, -iyz, (ixx + iyy - izz) / 2],
     ]
-
-
-def inertias(mass_properties: RigidMass) -> list[Expression]:
-    """The numbers of its moments of inertia."""
-    if isinstance(mass_properties.inertia, tuple):
-        return [entry for row in mass_properties.inertia for entry in row]
-    return [mass_properties.inertia]
 
 
 def mass_of(body: Link | PointMass) -> ca.SX:

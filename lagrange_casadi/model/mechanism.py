@@ -9,7 +9,7 @@ depends on the parameters' values by :meth:`Mechanism.values`.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, cast
 
@@ -19,11 +19,12 @@ from ..base.arguments import public
 from ..base.brief import listed
 from ..base.scalars import column
 from ..base.symbolic import Graphs, symbolic
-from ..base.units import Number
+from ..base.units import Number, quantity
 from ..errors import DeclarationError
 from .beams.beam import Beam
 from .density import Density
-from .expressions import bound, check_line, check_name, unit_vector, value_of
+from .directions import in_plane
+from .expressions import check_line, check_name, value_of
 from .fitted import Fittings
 from .joints import Axis, Joint, JointKind, check_ends
 from .limits import check_connected, parameter_values
@@ -185,7 +186,9 @@ class Mechanism(Graphs):
         """
         self.ownership.free("parameter", name, self.parameters)
         check_line(f"parameter '{name}': its unit", unit)
-        default, low, high = (bound(f"parameter '{name}'", x, unit) for x in (default, low, high))
+        default, low, high = (
+            quantity(f"parameter '{name}'", x, unit, finite=False) for x in (default, low, high)
+        )
         parameter = Parameter(name, default, unit, low, high, ca.SX.sym(name))
         parameter.check(parameter.default)
         return self.parameters.setdefault(name, parameter).symbol
@@ -546,11 +549,9 @@ class Mechanism(Graphs):
         DeclarationError
             If the point is of the ground, or ``turning`` is asked of a point mass.
         """
-        return self._force(name, point, (x, y), turning)
+        return self._force(name, point, (x, y, 0.0), turning)
 
-    def _force(
-        self, name: str, point: Body | Point, components: Sequence[Expression], turning: bool
-    ) -> Force:
+    def _force(self, name: str, point: Body | Point, components: Vector, turning: bool) -> Force:
         place = self._load_point(name, point)
         if turning and not place.body.oriented:
             raise DeclarationError(
@@ -562,8 +563,8 @@ class Mechanism(Graphs):
                 f"load '{name}': a force on the ground has no effect; expected a point of a link"
                 " or a point mass"
             )
-        x, y, *z = (self._load(name, component) for component in components)
-        self.loads[name] = load = Force(name, place, x, y, turning, *z)
+        x, y, z = (self._load(name, component) for component in components)
+        self.loads[name] = load = Force(name, place, (x, y, z), turning)
         return load
 
     def torque(
@@ -597,15 +598,14 @@ class Mechanism(Graphs):
         DeclarationError
             If one of the bodies is a point mass.
         """
-        return self._torque(name, point, value, against)
+        return self._torque(name, point, (0.0, 0.0, value), against)
 
     def _torque(
         self,
         name: str,
         point: Body | Point,
-        value: Expression,
+        components: Vector,
         against: Body | Point | None,
-        across: Sequence[Expression] = (0.0, 0.0),
         turning: bool = False,
     ) -> Torque:
         first = self._load_point(name, point)
@@ -616,8 +616,8 @@ class Mechanism(Graphs):
                     f"load '{name}': point mass '{end.body.name}' cannot take a torque; expected a"
                     " link"
                 )
-        z, x, y = (self._load(name, component) for component in (value, *across))
-        self.loads[name] = load = Torque(name, first, z, second, (x, y), turning)
+        x, y, z = (self._load(name, component) for component in components)
+        self.loads[name] = load = Torque(name, first, (x, y, z), second, turning)
         return load
 
     def line_load(
@@ -1094,13 +1094,9 @@ class Mechanism(Graphs):
         own.free("joint", name, self.joints)
         start, end = own.point(what, parent), own.point(what, child)
         check_ends(what, kind, start, end)
-        unit = (
-            (1.0, 0.0)
-            if axis is None
-            else unit_vector(what, axis, lambda a: own.expression(f"{what}: axis", a))
-        )
+        along = in_plane(what, (1.0, 0.0) if axis is None else axis, own.expression)
         turn = 0.0 if angle is None else own.expression(f"{what}: angle", angle, "rad")
-        joint = Joint(name, kind, start, end, unit, turn, turn_given=angle is not None)
+        joint = Joint.flat(name, kind, start, end, along, turn, turn_given=angle is not None)
         return self.joints.setdefault(name, joint)
 
     def _load_point(self, name: str, place: Body | Point) -> Point:

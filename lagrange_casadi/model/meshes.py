@@ -101,6 +101,11 @@ class Transmission:
     symbol: Expression = field(default_factory=lambda: ca.SX.sym("apart"))
 
     @property
+    def varying(self) -> list[Fit]:
+        """Fits that depend on parameters."""
+        return [f for f in self.fits if isinstance(f.got, ca.SX) or isinstance(f.meant, ca.SX)]
+
+    @property
     def parts(self) -> tuple[tuple[float, Expression], ...]:
         """The factors and slacks of the sizes that s is the sum of."""
         if isinstance(self.slack, float) and self.slack == 0.0:

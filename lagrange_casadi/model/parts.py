@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from ..base.arguments import Symbolic, public
 from ..base.brief import Brief
@@ -121,16 +121,16 @@ class Ground(Body):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class RigidMass(Brief):
-    """Mass [kg], place of the centre of mass in the link's axes [m], and moment of inertia about it
-    [kg m^2].
+    """Mass [kg], place of the centre of mass in the link's axes [m], and moments of inertia about
+    it [kg m^2]: a matrix, three rows of three, on the link's axes.
 
-    In space the moments of inertia are a matrix, three rows of three, on the link's axes. They are
-    those of some body, unless they are ``accepted`` as they are.
+    In a plane only that about z is known, and the others are zero. In space they are those of some
+    body, unless they are ``accepted`` as they are.
     """
 
     mass: Expression
-    centre: tuple[Expression, ...]
-    inertia: Any
+    centre: Vector
+    inertia: tuple[Vector, Vector, Vector]
     accepted: bool = False
 
 
@@ -191,19 +191,14 @@ class Path(Brief):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Force(Brief):
-    """A force [N] at a point, in ground axes, or where ``turning`` in the body's own."""
+    """A force with three components [N] at a point, in ground axes, or where ``turning`` in the
+    body's own; in a plane the third is zero.
+    """
 
     name: str
     point: Point
-    x: Expression
-    y: Expression
+    components: Vector
     turning: bool
-    z: Expression = 0.0
-
-    @property
-    def components(self) -> Vector:
-        """All three."""
-        return self.x, self.y, self.z
 
     @property
     def points(self) -> tuple[Point, ...]:
@@ -213,23 +208,17 @@ class Force(Brief):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Torque(Brief):
-    """A torque [N m] on a body at a point, and the opposite on another one, or on the ground.
+    """A torque with three components [N m] on a body at a point, and the opposite on another one,
+    or on the ground; in ground axes, or where ``turning`` in the body's own.
 
-    ``value`` is that about z; in space ``across`` are those about x and y, and where ``turning``
-    all are on the body's own axes.
+    In a plane the first two are zero.
     """
 
     name: str
     point: Point
-    value: Expression
+    components: Vector
     against: Point
-    across: tuple[Expression, Expression] = (0.0, 0.0)
-    turning: bool = False
-
-    @property
-    def components(self) -> Vector:
-        """All three."""
-        return *self.across, self.value
+    turning: bool
 
     @property
     def points(self) -> tuple[Point, ...]:

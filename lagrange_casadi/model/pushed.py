@@ -36,10 +36,9 @@ def with_push(scene: Scene, point: Body | Point) -> tuple[Scene, tuple[str, ...]
         for name in (f"{_LOAD} {axis}" for axis in "xyz")
     }
     x, y, z = (parameter.symbol for parameter in pushes.values())
+    force = Force(_LOAD, place, (x, y, z if mechanism.space else 0.0), False)
     found = copy.copy(mechanism)
     found.parameters = dict(mechanism.parameters) | pushes
-    found.loads = dict(mechanism.loads) | {
-        _LOAD: Force(_LOAD, place, x, y, False, z if mechanism.space else 0.0)
-    }
+    found.loads = dict(mechanism.loads) | {_LOAD: force}
     pushed = replace(scene, mechanism=found, assembly=dict(scene.assembly))
     return pushed, tuple(pushes)[: 3 if mechanism.space else 2], place.body.name

@@ -14,8 +14,8 @@ import numpy as np
 from ..base.arguments import public
 from ..base.arrays import Array
 from ..base.csv_table import Table, count_sizes, for_each
-from ..base.units import UNITS, count, number
-from ..errors import DeclarationError, NumberError, PathError, UnknownNameError, one_line
+from ..base.units import UNITS, count, quantity
+from ..errors import DeclarationError, PathError, UnknownNameError, one_line
 from .curves import Curve, curve
 from .expressions import coordinates, scalar, symbols_of
 from .motion import Motion
@@ -53,20 +53,6 @@ class Recording:
     t: Array
     values: Array
     size: float
-
-
-@dataclass(frozen=True, eq=False)
-class _Fit:
-    """Options that make a law of a recording; see :func:`read_samples`."""
-
-    smoothing: float | str
-    points: int | None
-    periodic: bool
-    period: float | None
-    advance: float
-    ratio: Expression
-    offset: Expression
-    stretch: Expression
 
 
 @public
@@ -139,8 +125,16 @@ def read_samples(
     (recording,), second = _recordings(
         _table(path), {"value": value}, time, unit, time_unit, counts_per_turn
     )
-    law = _Fit(smoothing, points, periodic, period, advance, ratio, offset, stretch)
-    return _motion(replace(recording, name=path.name), law, second)
+    return _motion(
+        replace(recording, name=path.name),
+        second,
+        smoothing=smoothing,
+        points=points,
+        periodic=periodic,
+        period=period,
+        advance=advance,
+        scales=(ratio, offset, stretch),
+    )
 
 
 @public
@@ -212,27 +206,28 @@ def read_motion(
     if not named:
         raise DeclarationError(f"{path.name}: columns= expected at least one coordinate")
     recordings, second = _recordings(table, named, time, unit, time_unit, counts_per_turn)
-    place = path.name
-    noises: dict[str, float | str] = for_each(
-        place, named, "coordinate of smoothing=", smoothing, 0.0
-    )
-    advances = for_each(place, named, "coordinate of advance=", advance, 0.0)
-    ratios = for_each(place, named, "coordinate of ratio=", ratio, 1.0)
-    offsets = for_each(place, named, "coordinate of offset=", offset, 0.0)
-    found = {}
-    for name, recording in zip(named, recordings, strict=True):
-        law = _Fit(
-            noises[name],
-            points,
-            periodic,
-            period,
-            advances[name],
-            ratios[name],
-            offsets[name],
-            stretch,
+    noises, advances, ratios, offsets = (
+        for_each(path.name, named, f"coordinate of {word}=", value, usual)
+        for word, value, usual in (
+            ("smoothing", smoothing, 0.0),
+            ("advance", advance, 0.0),
+            ("ratio", ratio, 1.0),
+            ("offset", offset, 0.0),
         )
-        found[name] = _motion(recording, law, second)
-    return found
+    )
+    return {
+        name: _motion(
+            recording,
+            second,
+            smoothing=noises[name],
+            points=points,
+            periodic=periodic,
+            period=period,
+            advance=advances[name],
+            scales=(ratios[name], offsets[name], stretch),
+        )
+        for name, recording in zip(named, recordings, strict=True)
+    }
 
 
 def _table(path: Path) -> Table:
@@ -281,27 +276,36 @@ def _known(path: Path, word: str, valid: Mapping[str, float], what: str) -> floa
     return valid[word]
 
 
-def _motion(recording: Recording, law: _Fit, second: float) -> Motion:
-    """The motion through a recording; ``second`` is the unit of the file's time in s."""
-    name, cyclic = recording.name, law.periodic or law.period is not None
-    for what, setting in (("period", law.period), ("advance", law.advance)):
-        try:
-            number(0.0 if setting is None else setting)
-        except NumberError as error:
-            raise DeclarationError(f"{name}: {what}: {error}") from None
-    (ahead,), unit_in = coordinates(f"{name}: offset", [(law.offset, "")])
-    each = zip(("ratio", "offset", "stretch"), (law.ratio, ahead, law.stretch), strict=True)
-    scales = [scalar(f"{name}: {word}", x, symbols_of(x), "parameter") for word, x in each]
+def _motion(
+    recording: Recording,
+    second: float,
+    *,
+    smoothing: float | str,
+    points: int | None,
+    periodic: bool,
+    period: float | None,
+    advance: float,
+    scales: tuple[Expression, Expression, Expression],
+) -> Motion:
+    """The motion through a recording, with options of :func:`read_samples`: ``scales`` are ratio,
+    offset and stretch; ``second`` is the unit of the file's time in s.
+    """
+    ratio, offset, stretch = scales
+    name, cyclic = recording.name, periodic or period is not None
+    for what, setting in (("period", period), ("advance", advance)):
+        quantity(f"{name}: {what}", 0.0 if setting is None else setting)
+    (ahead,), unit_in = coordinates(f"{name}: offset", [(offset, "")])
+    each = zip(("ratio", "offset", "stretch"), (ratio, ahead, stretch), strict=True)
+    found = [scalar(f"{name}: {word}", x, symbols_of(x), "parameter") for word, x in each]
     if cyclic:
-        period = None if law.period is None else law.period * second
-        recording = _closed(recording, period, law.advance)
-    elif law.advance:
+        recording = _closed(recording, None if period is None else period * second, advance)
+    elif advance:
         raise DeclarationError(f"{name}: advance= needs periodic=True")
     # A ratio may make turns of lengths, and radians may be a rule's usual unit.
-    if not unit_in and isinstance(law.ratio, float) and law.ratio == 1.0:
+    if not unit_in and isinstance(ratio, float) and ratio == 1.0:
         unit_in = "m" if recording.unit in UNITS["m"] else "" if recording.unit == "rad" else "rad"
-    noise = _noise(recording, law.smoothing)
-    return _law(recording, noise, law.points, cyclic, law.advance, scales, unit_in)
+    noise = _noise(recording, smoothing)
+    return _law(recording, noise, points, cyclic, advance, found, unit_in)
 
 
 def _header(path: Path) -> tuple[int, dict[str, str]]:

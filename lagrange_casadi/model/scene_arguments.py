@@ -12,8 +12,8 @@ import casadi as ca
 from ..base.arguments import texts
 from ..base.numerals import readable
 from ..base.tables import ANGLE, LENGTH
-from ..base.units import number
-from ..errors import DeclarationError, NumberError, UnknownNameError, shown
+from ..base.units import quantity
+from ..errors import DeclarationError, UnknownNameError, shown
 from .density import Density
 from .mechanism import Mechanism
 from .parts import Expression
@@ -139,10 +139,7 @@ def posture_entry(name: str, slides: bool, value: float, *others: float) -> str:
 
 def _rough(name: str, value: object, is_angle: bool) -> float:
     """Direction [rad] or place [m] of a posture. Raises :class:`DeclarationError`."""
-    try:
-        found = number(value, ANGLE if is_angle else LENGTH)
-    except NumberError as error:
-        raise DeclarationError(f"posture of '{name}': {error}") from None
+    found = quantity(f"posture of '{name}'", value, ANGLE if is_angle else LENGTH)
     if is_angle and abs(found) > TURNS:
         degrees = f"{math.degrees(found):.6g} deg, more than two turns"
         hint = f"; '{value:g} deg' is {value:g} degrees" if isinstance(value, (int, float)) else ""

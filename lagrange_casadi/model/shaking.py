@@ -141,11 +141,11 @@ def _mass_properties(
             moments += [(moment, across[i], across[j]) for moment, i, j in pairs]
         return [(base, body.base), (tip, body.tip)], moments
     mass_properties = body.mass
-    place = [*mass_properties.centre, 0.0][:3]
+    place = mass_properties.centre
     centre = body.at(*place)
     axes = [(centre, body.at(*(x + (k == i) for k, x in enumerate(place)))) for i in range(3)]
     if not mechanism.space:
-        return [(mass_properties.mass, centre)], [(mass_properties.inertia, axes[0], axes[0])]
+        return [(mass_properties.mass, centre)], [(mass_properties.inertia[2][2], axes[0], axes[0])]
     inertias = second_moments(mass_properties.inertia)
     return [(mass_properties.mass, centre)], [
         (inertias[i][j], axes[i], axes[j]) for i in range(3) for j in range(3)

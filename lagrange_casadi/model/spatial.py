@@ -533,11 +533,10 @@ class SpatialMechanism(Mechanism):
         -------
         Torque
         """
-        return self._torque(name, point, z, against, (x, y), turning)
+        return self._torque(name, point, (x, y, z), against, turning)
 
     def _turn_back(self, name: str, joint: Joint, value: Expression) -> Torque:
-        assert joint.turned is not None
-        x, y, z = times(value, Rotation.of(*joint.turned).resolve(joint.triad[0]))
+        x, y, z = times(value, joint.turned.resolve(joint.triad[0]))
         return self.torque(name, joint.child, x=x, y=y, z=z, against=joint.parent, turning=True)
 
     def line_load(
@@ -609,7 +608,7 @@ class SpatialMechanism(Mechanism):
             kind = "spherical" if kind == "revolute" else kind
         given = placed or bool(turned)
         self.joints[name] = joint = Joint(
-            name, kind, start, end, (1.0, 0.0, 0.0), 0.0, directions, zero, pitch, given
+            name, kind, start, end, directions, Rotation.of(*zero), pitch, given
         )
         if placed:
             self.hard.add(name)

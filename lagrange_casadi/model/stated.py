@@ -17,7 +17,9 @@ from ..base.arrays import Array, Expression
 from ..base.scalars import column
 from ..base.symbolic import Graphs, symbolic
 from ..base.templates import Template
+from ..base.vectors import ZERO
 from .description import Triple
+from .guiding import point_of
 from .mechanism import Mechanism
 from .meshes import Transmission, Wrench
 from .motion import Motion
@@ -26,8 +28,6 @@ from .parts import Constraint, Force, Friction, LineLoad, Point, Row, Spring, To
 EntryKind = Literal["coordinate", "x", "y", "z", "direction"]
 
 LoadKind = Literal["force", "torque", "spring", "lineload"]
-
-_ORIGIN = (0.0, 0.0, 0.0)
 
 _COMPONENTS: tuple[EntryKind, ...] = ("x", "y", "z")
 
@@ -40,7 +40,7 @@ class Entry:
 
     kind: EntryKind
     part: str
-    point: Triple = _ORIGIN
+    point: Triple = ZERO
 
 
 @dataclass(frozen=True, eq=False)
@@ -266,11 +266,7 @@ def _moved(mechanism: Mechanism, coordinate: str, *, joint: bool) -> _Measured:
     name, _, what = coordinate.rpartition(".")
     if what == "angle":
         return _Measured(Entry("direction", name))
-    point = (
-        mechanism.paths[name].point
-        if name in mechanism.paths
-        else Point(mechanism.bodies[name], 0.0, 0.0)
-    )
+    point = point_of(mechanism, name)
     return _Measured(Entry("x" if what == "x" else "y", point.body.name, point.place))
 
 
@@ -320,4 +316,4 @@ def _touches(transmission: Transmission | None) -> tuple[Touch, ...]:
 
 
 def _pair(wrench: Wrench | None) -> tuple[Any, Any]:
-    return (_ORIGIN, _ORIGIN) if wrench is None else (wrench.force, wrench.couple)
+    return (ZERO, ZERO) if wrench is None else (wrench.force, wrench.couple)

@@ -10,7 +10,6 @@ import hashlib
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -19,8 +18,8 @@ import numpy.typing as npt
 from ..base.arrays import Array, Operand
 from ..base.brief import Brief
 from ..base.tables import ANGLE, LENGTH
-from ..base.units import number
-from ..errors import DeclarationError, NumberError, UnknownNameError, shown
+from ..base.units import quantity
+from ..errors import DeclarationError, UnknownNameError, shown
 from .even_points import EvenPoints, checked, points
 from .expressions import scalar
 from .laws import Laws
@@ -342,11 +341,10 @@ def _bound(name: str, bound: Expression, unit: str) -> Operand:
     that is a whole number without a unit: what turns so often is rarely whole in rad, and was meant
     in degrees.
     """
-    try:
-        found: Any = bound if isinstance(bound, ca.SX) else number(bound, unit, finite=False)
-    except NumberError as error:
-        raise DeclarationError(f"over: {name}: {error}") from None
-    as_number = unit == ANGLE and isinstance(found, float) and not isinstance(bound, str)
+    if isinstance(bound, ca.SX):
+        return bound
+    found = quantity(f"over: {name}", bound, unit, finite=False)
+    as_number = unit == ANGLE and not isinstance(bound, str)
     if as_number and math.isfinite(found) and abs(found) > TURNS and found == round(found):
         raise DeclarationError(
             f"over: {name}: {found:.6g} rad is {math.degrees(found):.6g} deg, more than two turns;"

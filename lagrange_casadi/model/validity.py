@@ -25,7 +25,7 @@ from .directions import RIGHT, not_right
 from .ends import BEYOND, beyond_ends, words_beyond
 from .joints import Joint
 from .limits import END
-from .mass_properties import inertias, second_moments
+from .mass_properties import second_moments
 from .meshes import FITTING, Fit
 from .parts import (
     POSITIVE,
@@ -137,7 +137,7 @@ def _of(mechanism: Mechanism, precision: Precision) -> ParameterConstraints:
     for what, expressions in _numbers(mechanism):
         found += _of_curves(what, expressions)
     for body in mechanism.moving:
-        mass, constraints = _of_body(body, precision)
+        mass, constraints = _of_body(body, precision, space=mechanism.space)
         masses.append(mass)
         found += constraints
     if not any(_surely_positive(mass) for mass in masses):
@@ -163,7 +163,7 @@ def _of(mechanism: Mechanism, precision: Precision) -> ParameterConstraints:
     for constraint in mechanism.constraints.values():
         if constraint.transmission is not None:
             found += [
-                _of_fit(constraint.name, fit, precision) for fit in constraint.transmission.fits
+                _of_fit(constraint.name, fit, precision) for fit in constraint.transmission.varying
             ]
     return ParameterConstraints(mechanism.symbols, tuple(found))
 
@@ -176,7 +176,7 @@ def _numbers(mechanism: Mechanism) -> Iterator[tuple[str, list[Expression]]]:
             continue
         numbers, mass = [body.length], body.mass
         if isinstance(mass, RigidMass):
-            numbers += [mass.mass, *mass.centre, *inertias(mass)]
+            numbers += [mass.mass, *mass.centre, *(entry for row in mass.inertia for entry in row)]
         else:
             densities = (mass, *(mass.slices.each if mass.slices else ()))
             numbers += [c for density in densities for cell in density.cells for c in cell]
@@ -185,7 +185,9 @@ def _numbers(mechanism: Mechanism) -> Iterator[tuple[str, list[Expression]]]:
         yield f"link '{body.name}'", numbers
     for joint in mechanism.joints.values():
         places = [number for point in (joint.parent, joint.child) for number in point.place]
-        yield f"joint '{joint.name}'", [*places, *joint.axis, joint.angle]
+        directions = (*joint.triad, joint.turned.x, joint.turned.y)
+        numbers = [number for direction in directions for number in direction]
+        yield f"joint '{joint.name}'", [*places, *numbers, joint.pitch]
     for load in mechanism.loads.values():
         if isinstance(load, LineLoad):
             numbers = [*load.between]
@@ -251,7 +253,9 @@ def _of_friction(friction: Friction) -> Iterator[Demand]:
         )
 
 
-def _of_body(body: Link | PointMass, precision: Precision) -> tuple[Expression, list[Demand]]:
+def _of_body(
+    body: Link | PointMass, precision: Precision, *, space: bool
+) -> tuple[Expression, list[Demand]]:
     """The mass of a body, and its demands."""
     what = f"link '{body.name}'" if isinstance(body, Link) else f"point mass '{body.name}'"
     found: list[Demand] = []
@@ -270,10 +274,10 @@ def _of_body(body: Link | PointMass, precision: Precision) -> tuple[Expression, 
     if isinstance(mass_properties, RigidMass):
         if mass_properties.accepted:
             return mass, found
-        if isinstance(mass_properties.inertia, tuple):
+        if space:
             return mass, [*found, *_of_inertia(what, mass_properties)]
         words = f"{what}: inertia must not be negative, got {{got}} kg m^2"
-        found.append(Demand.saying(mass_properties.inertia, False, words))
+        found.append(Demand.saying(mass_properties.inertia[2][2], False, words))
     return mass, found
 
 
@@ -392,12 +396,11 @@ def _of_axes(joint: Joint, precision: Precision) -> list[Demand]:
     """Conditions that directions in space that depend on parameters are not zero, and at right
     angles where two are given.
     """
-    what, found = f"joint '{joint.name}'", []
-    if joint.directions is not None:
-        found += _of_pair(what, *joint.directions[:2], precision)
-    if joint.turned is not None:
-        found += _of_pair(f"{what}: turned", *joint.turned, precision)
-    return found
+    what, (u, v, _) = f"joint '{joint.name}'", joint.triad
+    return [
+        *_of_pair(what, u, v, precision),
+        *_of_pair(f"{what}: turned", joint.turned.x, joint.turned.y, precision),
+    ]
 
 
 def _of_pair(what: str, first: Vector, second: Vector, precision: Precision) -> list[Demand]:

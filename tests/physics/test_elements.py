@@ -78,7 +78,7 @@ def declared(make, space=False):
         "the edges from corners 0 and 2 cross": declared(
             lambda m: plate(m, "p", [(0, 0), (1, 1), (1, 0), (0, 1)], mass=1.0)
         ),
-        r"plate 'p': corner 2: expected \(x, y\), got 3": declared(
+        "plate 'p': corner 2: expected 2 numbers, got 3": declared(
             lambda m: plate(m, "p", [(0, 0), (1, 0), 3], mass=1.0)
         ),
         "plate 'p': expected mass= or per_area=": declared(

@@ -22,7 +22,7 @@ def test_wheels_are_discs():
     disc = wheel(m, "disc", radius=0.1, bore=0.04, width=0.02, teeth=30)
     mass = 7850 * math.pi * (0.1**2 - 0.04**2) * 0.02
     assert disc.mass.mass == pytest.approx(mass)
-    assert disc.mass.inertia == pytest.approx(mass * (0.1**2 + 0.04**2) / 2)
+    assert disc.mass.inertia[2][2] == pytest.approx(mass * (0.1**2 + 0.04**2) / 2)
     assert len(m.outlines["disc"][0]) == 4 * 30 + 48 + 2
     solid = wheel(s, "disc", radius=0.1, mass=2.0, width=None)
     assert [float(solid.mass.inertia[k][k]) for k in range(3)] == pytest.approx(

@@ -37,10 +37,10 @@ def test_a_second_axis_is_made_exact(off):
         second=(off, 1, 0),
         turned=turned,
     )
-    for first, second in (joint.directions[:2], joint.turned):
+    for first, second in (joint.triad[:2], (joint.turned.x, joint.turned.y)):
         assert abs(np.dot(first, second)) < 1e-12
         assert np.linalg.norm(second) == pytest.approx(1.0, abs=1e-15)
-    assert joint.directions[0] == (1.0, 0.0, 0.0)
+    assert joint.triad[0] == (1.0, 0.0, 0.0)
 
 
 def test_a_second_axis_that_is_off_by_more_is_refused():

@@ -16,8 +16,8 @@ import math
 from collections.abc import Sequence
 
 from ...base.arguments import public
-from ...base.units import number
-from ...errors import DeclarationError, NumberError
+from ...base.units import quantity
+from ...errors import DeclarationError
 from .beam import Notch
 
 _Row = tuple[float, float, float]
@@ -305,10 +305,7 @@ def _lengths(what: str, **lengths: float | str) -> list[float]:
     """Positive lengths [m]. Raises :class:`.DeclarationError` for what is none."""
     found = []
     for name, value in lengths.items():
-        try:
-            found.append(number(value, "m"))
-        except NumberError as error:
-            raise DeclarationError(f"{what}: {name}: {error}") from None
+        found.append(quantity(f"{what}: {name}", value, "m"))
         if not found[-1] > 0.0:
             raise DeclarationError(f"{what}: {name} must be positive, got {found[-1]:g} m")
     return found

@@ -15,8 +15,8 @@ from typing import Any
 from ...base.arguments import Symbolic, public
 from ...base.arrays import Expression, Operand
 from ...base.brief import Brief
-from ...base.units import number
-from ...errors import DeclarationError, NumberError
+from ...base.units import quantity
+from ...errors import DeclarationError
 from . import solid, walls
 from .properties import Fibre, Properties
 
@@ -38,7 +38,9 @@ class Shape:
             raise DeclarationError(f"{self.kind!r} is no cross-section with these dimensions")
         if any(isinstance(value, str) for value in self.dimensions.values()):
             read = {
-                name: _length(f"{self.kind}: {name}", value)
+                name: quantity(f"{self.kind}: {name}", value, "m")
+                if isinstance(value, str)
+                else value
                 for name, value in self.dimensions.items()
             }
             object.__setattr__(self, "dimensions", read)
@@ -126,17 +128,6 @@ class Course(Brief):
             The course, with the same breaks.
         """
         return replace(self, shapes=tuple(shape.mapped(change) for shape in self.shapes))
-
-
-def _length(what: str, value: Operand | str) -> Operand:
-    """A text as a length [m], anything else as it is.
-
-    Raises :class:`.DeclarationError` for a text of none.
-    """
-    try:
-        return number(value, "m") if isinstance(value, str) else value
-    except NumberError as error:
-        raise DeclarationError(f"{what}: {error}") from None
 
 
 @public

@@ -151,19 +151,8 @@ def polygon(places: Sequence[_Corner]) -> Properties:
     Fibres are its corners, and the centroid, where shear is V Q / (I b) with the whole width there.
     Torsion is not known.
     """
-    pairs = list(zip(places, [*places[1:], places[0]], strict=True))
-    area, first_y, first_z = _moments(pairs)
-    y0, z0 = first_y / area, first_z / area
-    moved = [(y - y0, z - z0) for y, z in places]
-    pairs = list(zip(moved, [*moved[1:], moved[0]], strict=True))
-    crosses = [a[0] * b[1] - b[0] * a[1] for a, b in pairs]
-
-    def integral(term: Callable[[_Corner, _Corner], Operand]) -> Operand:
-        return sum(w * term(a, b) for w, (a, b) in zip(crosses, pairs, strict=True))
-
-    iz = integral(lambda a, b: a[0] ** 2 + a[0] * b[0] + b[0] ** 2) / 12
-    iy = integral(lambda a, b: a[1] ** 2 + a[1] * b[1] + b[1] ** 2) / 12
-    iyz = integral(lambda a, b: a[0] * b[1] + 2 * a[0] * a[1] + 2 * b[0] * b[1] + b[0] * a[1]) / 24
+    area, centroid, (iy, iz, iyz) = polygon_moments(places)
+    moved = [(y - centroid[0], z - centroid[1]) for y, z in places]
     fibres = [Fibre(f"corner {k + 1}", y, z) for k, (y, z) in enumerate(moved)]
     shear = [
         _shear_at_centroid([(p[k], p[1 - k]) for p in moved], i) for k, i in ((0, iz), (1, iy))
@@ -173,20 +162,41 @@ def polygon(places: Sequence[_Corner]) -> Properties:
     return Properties(area, iy, iz, tuple(fibres), iyz=iyz, shear_y=stiff, shear_z=stiff)
 
 
-def polygon_area(places: Sequence[tuple[float, float]]) -> float:
+def polygon_area(places: Sequence[_Corner]) -> Operand:
     """Area of a polygon, positive if the corners go round counter-clockwise."""
-    return _moments(list(zip(places, [*places[1:], places[0]], strict=True)))[0]
+    y0, z0 = places[0]
+    return _integrals([(y - y0, z - z0) for y, z in places], lambda a, b: 1 / 2)[0]
 
 
-def _moments(
-    pairs: Sequence[tuple[tuple[float, float], tuple[float, float]]],
-) -> tuple[float, float, float]:
-    """Area and first moments of a polygon by its sides."""
-    crosses = [a[0] * b[1] - b[0] * a[1] for a, b in pairs]
-    first = [
-        sum(w * (a[k] + b[k]) for w, (a, b) in zip(crosses, pairs, strict=True)) / 6 for k in (0, 1)
-    ]
-    return sum(crosses) / 2, first[0], first[1]
+def polygon_moments(
+    places: Sequence[_Corner],
+) -> tuple[Operand, _Corner, tuple[Operand, Operand, Operand]]:
+    """Area of a polygon, its centroid, and about that the integrals of z^2, y^2 and y z; all
+    integrals are negative if the corners go round clockwise.
+
+    Seen from the first corner, so that a polygon far from its axes loses no digits.
+    """
+    y0, z0 = places[0]
+    ring = [(y - y0, z - z0) for y, z in places]
+    area, *first = _integrals(
+        ring, lambda a, b: 1 / 2, lambda a, b: (a[0] + b[0]) / 6, lambda a, b: (a[1] + b[1]) / 6
+    )
+    y, z = (part / area for part in first)
+    iy, iz, iyz = _integrals(
+        [(a - y, b - z) for a, b in ring],
+        lambda a, b: (a[1] ** 2 + a[1] * b[1] + b[1] ** 2) / 12,
+        lambda a, b: (a[0] ** 2 + a[0] * b[0] + b[0] ** 2) / 12,
+        lambda a, b: (a[0] * b[1] + 2 * a[0] * a[1] + 2 * b[0] * b[1] + b[0] * a[1]) / 24,
+    )
+    return area, (y0 + y, z0 + z), (iy, iz, iyz)
+
+
+def _integrals(
+    places: Sequence[_Corner], *terms: Callable[[_Corner, _Corner], Operand]
+) -> list[Operand]:
+    """The sum over the sides of a polygon of a x b times a term of both ends a and b."""
+    sides = list(zip(places, [*places[1:], places[0]], strict=True))
+    return [sum((a[0] * b[1] - b[0] * a[1]) * term(a, b) for a, b in sides) for term in terms]
 
 
 def _shear_at_centroid(places: Sequence[tuple[Operand, Operand]], moment: Operand) -> Operand:

@@ -25,13 +25,13 @@ import casadi as ca
 
 from ...base.arguments import public
 from ...base.brief import Brief
-from ...base.vectors import cross, dot, minus, times
+from ...base.vectors import cross, dot, minus, norm, times
 from ...errors import DeclarationError
 from ..mechanism import Mechanism
 from ..meshes import FITTING, Fit, Loss, Mesh, Transmission, Wrench
 from ..parts import Body, Constraint, Expression, Point
-from .courses import along, courses_on, fits_of, length, size
-from .ranges import positive, share
+from .courses import along, courses_on, fits_of, size
+from .ranges import at_least, positive, share
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -107,12 +107,7 @@ def belt(
     r1, r2 = (ownership.expression(f"{what}: radii", radius, "m") for radius in radii)
     fits = [fit for radius in (r1, r2) for fit in positive(what, "radii", radius)]
     tension = ownership.expression(f"{what}: preload", preload)
-    if isinstance(tension, float) and tension < 0.0:
-        raise DeclarationError(f"{what}: preload must not be negative, got {tension:g} N")
-    if isinstance(tension, ca.SX):
-        fits.append(
-            Fit("preload must not be negative, got {got} N", tension, ca.fmax(tension, 0.0), 1.0)
-        )
+    fits += at_least(what, "preload [N] must not be negative", tension, 0.0, tension)
     number = ownership.at_defaults
     u, v, away = one.axis, two.axis, minus(two.place, one.place)
     assert u is not None
@@ -122,7 +117,7 @@ def belt(
         raise DeclarationError(
             f"{what}: expected pulleys in one plane, which turn about parallel axes"
         )
-    distance, reach = length(away), r1 + r2 if crossed else ca.fabs(ca.SX(r1 - r2))
+    distance, reach = norm(away), r1 + r2 if crossed else ca.fabs(ca.SX(r1 - r2))
     if not number(distance) > number(reach):
         which = "the sum" if crossed else "the difference"
         raise DeclarationError(
@@ -150,14 +145,10 @@ def belt(
         sideways = times((r1 - r2 if crossed else r1 + r2) / distance, cross(u, e))
         mesh = replace(mesh, braking=Wrench(sideways, times(r1, u)))
         loss = Loss(f"{name}:loss", (1 - value) / (1 + value), 0.0, one.rotations)
-    constraint = mechanism.constraint(
-        name, r1 * one.displacement(mechanism) + other * two.displacement(mechanism) - ahead
-    )
+    phi = r1 * one.displacement(mechanism) + other * two.displacement(mechanism) - ahead
     fits += [fit for course in (one, two) for fit in fits_of("its centre", course)]
-    varying = [fit for fit in fits if isinstance(fit.got, ca.SX) or isinstance(fit.meant, ca.SX)]
-    constraint = replace(
-        constraint, transmission=Transmission(name, (mesh,), 2 * tension, tuple(varying), loss)
-    )
+    transmission = Transmission(name, (mesh,), 2 * tension, tuple(fits), loss)
+    constraint = replace(mechanism.constraint(name, phi), transmission=transmission)
     mechanism.constraints[name] = constraint
     force = ca.fabs(mechanism.results.multiplier(constraint))
     whole = ca.fmax(2 * tension, force)

@@ -5,7 +5,6 @@ each.
 from __future__ import annotations
 
 import itertools
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -14,6 +13,7 @@ import casadi as ca
 
 from ...base.arguments import public
 from ...base.brief import Brief
+from ...base.vectors import Vector, minus, norm
 from ...errors import DeclarationError
 from ..mechanism import Mechanism
 from ..parts import Expression, Link, Point
@@ -100,12 +100,8 @@ def bent_bar(
     DeclarationError
         For corners that are no places or coincide, and as for links.
     """
-    what, size = f"bent bar '{name}'", 3 if mechanism.space else 2
-    if not isinstance(corners, Sequence) or len(corners) < 3:
-        raise DeclarationError(f"{what}: expected three corners or more; a straight bar is a link")
-    places = [
-        _place(mechanism, f"{what}: corner {k}", corner, size) for k, corner in enumerate(corners)
-    ]
+    what = f"bent bar '{name}'"
+    places = corners_of(mechanism, what, corners)
     if (mass is None) == (per_length is None):
         raise DeclarationError(f"{what}: expected mass= or per_length=")
     mass = None if mass is None else mechanism.ownership.expression(f"{what}: mass", mass, "kg")
@@ -114,10 +110,8 @@ def bent_bar(
         if per_length is None
         else mechanism.ownership.expression(f"{what}: per_length", per_length, "kg/m")
     )
-    directions = [
-        [b - a for a, b in zip(*pair, strict=True)] for pair in itertools.pairwise(places)
-    ]
-    lengths = [_length(direction) for direction in directions]
+    directions = [minus(b, a) for a, b in itertools.pairwise(places)]
+    lengths = [norm(direction) for direction in directions]
     for k, length in enumerate(lengths):
         if isinstance(length, float) and not length > 0.0:
             raise DeclarationError(f"{what}: corners {k} and {k + 1} coincide")
@@ -132,16 +126,23 @@ def bent_bar(
     return Bent(tuple(pieces), (pieces[0].base, *(piece.tip for piece in pieces)))
 
 
-def _place(mechanism: Mechanism, what: str, corner: object, size: int) -> list[Expression]:
-    if not isinstance(corner, Sequence) or isinstance(corner, str) or len(corner) != size:
-        raise DeclarationError(f"{what}: expected {size} numbers, got {corner!r}")
-    return [mechanism.ownership.expression(what, number, "m") for number in corner]
+def corners_of(
+    mechanism: Mechanism, what: str, corners: Sequence[Sequence[Expression]]
+) -> list[Vector]:
+    """Three corners [m] or more; in a plane their third component is zero.
 
-
-def _length(step: Sequence[Expression]) -> Expression:
-    if any(isinstance(x, ca.SX) for x in step):
-        return ca.sqrt(sum(x * x for x in step))
-    return math.hypot(*step)
+    Raises :class:`.DeclarationError`, naming ``what``, for anything else.
+    """
+    if not isinstance(corners, Sequence) or len(corners) < 3:
+        raise DeclarationError(f"{what}: expected three corners or more; a straight bar is a link")
+    found, size = [], 3 if mechanism.space else 2
+    for k, corner in enumerate(corners):
+        where = f"{what}: corner {k}"
+        if not isinstance(corner, Sequence) or isinstance(corner, str) or len(corner) != size:
+            raise DeclarationError(f"{where}: expected {size} numbers, got {corner!r}")
+        x, y, *z = (mechanism.ownership.expression(where, number, "m") for number in corner)
+        found.append((x, y, z[0] if z else 0.0))
+    return found
 
 
 def _weld(
@@ -149,8 +150,8 @@ def _weld(
     name: str,
     first: Link,
     second: Link,
-    direction: Sequence[Expression],
-    onward: Sequence[Expression],
+    direction: Vector,
+    onward: Vector,
 ) -> None:
     """Weld a piece to the tip of the one before, at the angle between their ways."""
     if not isinstance(mechanism, SpatialMechanism):
@@ -162,7 +163,7 @@ def _weld(
         mechanism.weld(name, first.tip, second, angle=angle)
         return
     (bearing, rise), (next_bearing, next_rise) = (
-        (ca.atan2(y, x), ca.atan2(z, _length([x, y]))) for x, y, z in (direction, onward)
+        (ca.atan2(y, x), ca.atan2(z, norm((x, y, 0.0)))) for x, y, z in (direction, onward)
     )
     rotations: Any = [("y", rise), ("z", next_bearing - bearing), ("y", -next_rise)]
     mechanism.weld(name, first.tip, second, turned=rotations)

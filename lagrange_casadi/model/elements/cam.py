@@ -21,14 +21,13 @@ import casadi as ca
 from ...base.arguments import Count, Elastic, public
 from ...base.brief import Brief
 from ...base.rotation import Rotation
-from ...base.vectors import Vector, cross, dot, minus, plus, times
+from ...base.vectors import Vector, cross, dot, minus, norm, plus, times
 from ...errors import DeclarationError
-from ..expressions import sound
 from ..joints import Joint
 from ..mechanism import Mechanism
 from ..parts import Constraint, Expression, Link, Outline, Point, Roller
 from .cam_profile import CamProfile, profile_of
-from .follower import STEEL, held_by, largest_pressure, rise_of, stiffness_of
+from .follower import STEEL, held_by, largest_pressure, positive, rise_of, stiffness_of
 
 _CORNERS = 240
 """Corners by which pictures show a profile."""
@@ -176,8 +175,7 @@ def disc_cam(
     ownership.free("constraint", name, mechanism.constraints)
     stiffness = stiffness_of(what, elastic)
     layout = layout_of(what, mechanism, cam, follower, point, roller, flat, side)
-    base = ownership.expression(f"{what}: base_radius", base_radius, "m")
-    base = _positive(f"{what}: base_radius", base)
+    base = positive(mechanism, f"{what}: base_radius", base_radius)
     x = ca.SX.sym("angle")
     rise = rise_of(what, mechanism, lift, x)
     make = (
@@ -235,10 +233,10 @@ class Layout:
         """Distance of a translating follower's line from the cam's centre, the direction across
         the line in which it is, and the direction of the line.
         """
-        x, y = self.follower.axis
-        aside = y, -x, 0.0
-        seat = plus(self.away, Rotation.by(self.follower.angle).apply(self.arm))
-        return dot(seat, aside), aside, (x, y, 0.0)
+        up, across, _ = self.follower.triad
+        aside = times(-1, across)
+        seat = plus(self.away, self.follower.turned.apply(self.arm))
+        return dot(seat, aside), aside, up
 
 
 def layout_of(
@@ -262,28 +260,15 @@ def layout_of(
         raise DeclarationError(f"{what}: side must be 1 or -1, got {side!r}")
     radius: Expression = 0.0
     if roller is not None:
-        wide = mechanism.ownership.expression(f"{what}: roller", roller, "m")
-        radius = _positive(f"{what}: roller", wide)
+        radius = positive(mechanism, f"{what}: roller", roller)
     return Layout(cam, follower, held, radius, side)
-
-
-def _positive(what: str, radius: Expression) -> Expression:
-    """A radius; none that parameters make zero or less.
-
-    Raises :class:`.DeclarationError` for a number of no radius.
-    """
-    if isinstance(radius, ca.SX):
-        return radius * sound(radius > 0.0)
-    if not radius > 0.0:
-        raise DeclarationError(f"{what} must be positive, got {radius:g} m")
-    return radius
 
 
 def _pitch_normal(x: Expression, place: Vector) -> Vector:
     """The normal outward of the curve that a point makes on the cam."""
     # At right angles to how the point moves on the cam.
     outward = place[0] - ca.jacobian(place[1], x), place[1] + ca.jacobian(place[0], x), 0.0
-    size = ca.sqrt(dot(outward, outward))
+    size = norm(outward)
     return outward[0] / size, outward[1] / size, 0.0
 
 
@@ -302,14 +287,14 @@ def _translating_flat(base: Expression, x: Expression, rise: Expression, layout:
     # It touches beside the line through the cam's centre by the slope of the lift.
     contact = plus(times(ca.jacobian(rise, x), aside), height)
     moment = cross(minus(contact, place), up)[2]
-    turned = Rotation.by(layout.follower.angle).x
+    turned = layout.follower.turned.x
     return Design(x, place, up, moment, contact, up, turned, 0.0)
 
 
 def _swinging(base: Expression, x: Expression, rise: Expression, layout: Layout) -> Design:
     away, arm, roller = layout.away, layout.arm, layout.roller
-    length = ca.sqrt(ca.SX(dot(arm, arm)))
-    distance = ca.sqrt(ca.SX(dot(away, away)))
+    length = norm(arm)
+    distance = norm(away)
     prime = base + roller
     along, across = _swung(
         layout, rise, (length**2 + distance**2 - prime**2) / (2.0 * length * distance), distance
@@ -321,7 +306,7 @@ def _swinging(base: Expression, x: Expression, rise: Expression, layout: Layout)
 
 def _swinging_flat(base: Expression, x: Expression, rise: Expression, layout: Layout) -> Design:
     away = layout.away
-    distance = ca.sqrt(ca.SX(dot(away, away)))
+    distance = norm(away)
     sine = base / distance
     along, normal = _swung(layout, rise, ca.sqrt(1.0 - sine * sine), distance)
     # The normal passes through the point at which both turn alike.

@@ -47,12 +47,6 @@ class Course:
         return sum((sign * mechanism.coordinate(joint) for sign, joint in self.rotations), ca.SX(0))
 
 
-def length(vector: Vector) -> Expression:
-    """The length of a vector: a number where it lies along an axis of numbers."""
-    found = dot(vector, vector)
-    return ca.sqrt(found) if isinstance(found, ca.SX) else float(found) ** 0.5
-
-
 def size(vector: Vector, number: Evaluator) -> float:
     """The length of a vector as a number."""
     return math.hypot(*map(number, vector))
@@ -135,7 +129,7 @@ def _courses(mechanism: Mechanism, point: Point) -> list[Course]:
 
 def _through(mechanism: Mechanism, course: Course, joint: Joint, other: Body) -> Course | None:
     """A course seen from beyond a joint of its carrier; None where it does not stay on one axis."""
-    outward, zero = joint.child.body is other, _zero(joint)
+    outward, zero = joint.child.body is other, joint.turned
     number = mechanism.ownership.at_defaults
     if joint.kind != "weld" and (
         not joint.axes or course.slides or (joint.kind == "prismatic" and course.axis is not None)
@@ -173,10 +167,3 @@ def _through(mechanism: Mechanism, course: Course, joint: Joint, other: Body) ->
     return Course(
         other, seen(place), turn(axis), rotations, joint.kind == "prismatic", joints, shifted, whole
     )
-
-
-def _zero(joint: Joint) -> Rotation:
-    """Rotation of a joint's child in its parent's axes if its coordinates are zero."""
-    if joint.turned is not None:
-        return Rotation.of(*joint.turned)
-    return Rotation.by(joint.angle) if joint.kind != "revolute" else Rotation()

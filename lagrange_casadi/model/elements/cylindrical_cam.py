@@ -28,7 +28,7 @@ from ...base.arguments import Count, Elastic, Symbolic, public
 from ...base.arrays import Array
 from ...base.brief import Brief
 from ...base.rotation import Rotation, direction
-from ...base.vectors import ZERO, Vector, cross, dot, minus, plus, times
+from ...base.vectors import ZERO, Vector, cross, dot, minus, norm, plus, times
 from ...errors import DeclarationError
 from ..joints import Joint
 from ..mechanism import Mechanism
@@ -187,7 +187,7 @@ def cylindrical_cam(
     made = CylindricalCam(name, mechanism, constraint, design, cam)
     turn = mechanism.coordinate(cam)
     beside = cross(design.normal, design.travel)
-    lean = dot(design.normal, design.travel), ca.sqrt(ca.SX(dot(beside, beside)))
+    lean = dot(design.normal, design.travel), norm(beside)
     cosine, across = (ca.substitute(ca.SX(value), x, turn) for value in lean)
     mechanism.output(f"{name}_force", mechanism.results.multiplier(constraint), unit="N")
     mechanism.output(f"{name}_pressure_angle", ca.atan2(across, cosine), unit="rad")
@@ -209,11 +209,9 @@ def cylindrical_cam(
 
 def _carried(joint: Joint, angle: Expression) -> Rotation:
     """Rotation of the child of a joint on the ground, at an angle of the joint."""
-    assert joint.turned is not None
-    resting = Rotation.of(*joint.turned)
     if joint.kind == "prismatic":
-        return resting
-    return Rotation.about(joint.triad[0], *direction(angle), angle).then(resting)
+        return joint.turned
+    return Rotation.about(joint.triad[0], *direction(angle), angle).then(joint.turned)
 
 
 def _groove(
@@ -340,4 +338,4 @@ def _contact(
 
 
 def _unit(vector: Vector) -> Vector:
-    return times(1.0 / ca.sqrt(ca.SX(dot(vector, vector))), vector)
+    return times(1.0 / norm(vector), vector)

@@ -107,9 +107,18 @@ def largest_pressure(
 
     Raises :class:`.DeclarationError` for a width that is not positive.
     """
-    wide = mechanism.ownership.expression(f"{what}: width", width, "m")
-    if isinstance(wide, ca.SX):
-        wide = wide * sound(wide > 0.0)
-    elif wide <= 0.0:
-        raise DeclarationError(f"{what}: width must be positive, got {wide:g} m")
+    wide = positive(mechanism, f"{what}: width", width)
     return ca.sqrt(force * ca.fmax(curvature, 0.0) * stiffness / (math.pi * wide))
+
+
+def positive(mechanism: Mechanism, what: str, size: Expression) -> Expression:
+    """A length [m], which is not a number where parameters make it zero or less.
+
+    Raises :class:`.DeclarationError` for a number that is not positive.
+    """
+    found = mechanism.ownership.expression(what, size, "m")
+    if isinstance(found, ca.SX):
+        return found * sound(found > 0.0)
+    if not found > 0.0:
+        raise DeclarationError(f"{what} must be positive, got {found:g} m")
+    return found

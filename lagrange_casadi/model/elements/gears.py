@@ -28,12 +28,12 @@ import casadi as ca
 
 from ...base.arguments import public
 from ...base.brief import Brief
-from ...base.vectors import cross, dot, minus, plus
+from ...base.vectors import cross, dot, minus, norm, plus
 from ...errors import DeclarationError
 from ..mechanism import Mechanism
 from ..meshes import Fit, Loss, Mesh, Transmission, Wrench
 from ..parts import Body, Constraint, Expression, Point
-from .courses import Course, along, courses_on, fits_of, length
+from .courses import Course, along, courses_on, fits_of
 from .pitch import Pitch, Teeth, pitch_of
 from .ranges import LEAST, at_least, positive, share, whole, within
 
@@ -152,19 +152,15 @@ def gears(
         fits += [*pitch.fits, *(fit for one in pair for fit in fits_of("its centre", one))]
     directions = [course.displacement(mechanism) for course in found[0]]
     ahead = ownership.expression(f"{what}: offset", offset, "m")
-    constraint = mechanism.constraint(
-        name, toothing.radii[0] * directions[0] + pitches[0].other * directions[1] - ahead
-    )
+    phi = toothing.radii[0] * directions[0] + pitches[0].other * directions[1] - ahead
     loss = None
     if lossy:
         loss, more = loss_of(
             what, mechanism, name, found[0][0], pitches[0], toothing, efficiency, mu
         )
         fits += more
-    varying = [fit for fit in fits if isinstance(fit.got, ca.SX) or isinstance(fit.meant, ca.SX)]
-    constraint = replace(
-        constraint, transmission=Transmission(name, tuple(meshes), 0.0, tuple(varying), loss)
-    )
+    transmission = Transmission(name, tuple(meshes), 0.0, tuple(fits), loss)
+    constraint = replace(mechanism.constraint(name, phi), transmission=transmission)
     mechanism.constraints[name] = constraint
     _outputs(mechanism, name, constraint, pitches[0])
     if loss is not None:
@@ -256,7 +252,7 @@ def braking_of(pitch: Pitch) -> Wrench:
     """Action of a unit of friction on the first gear: a couple against its turning on the second,
     or a force against sliding.
     """
-    direction = along(pitch.relative, length(pitch.relative))
+    direction = along(pitch.relative, norm(pitch.relative))
     if pitch.kind == "crossed":
         return Wrench(direction, cross(pitch.arm, direction))
     return Wrench(couple=direction)
@@ -280,11 +276,11 @@ def loss_of(
         value = ownership.expression(f"{what}: mu", mu)
         fits = at_least(what, "mu must not be negative", value, 0.0, value)
         # The force at right angles to the teeth, of that along the pitch circle.
-        arm = value * length(pitch.force) / ca.cos(teeth.pressure)
+        arm = value * norm(pitch.force) / ca.cos(teeth.pressure)
         return Loss(f"{name}:loss", arm, 0.0, first.rotations), fits
     value = ownership.expression(f"{what}: efficiency", efficiency)
     fits = share(what, value)
-    q, radius = length(pitch.relative), teeth.radii[0]
+    q, radius = norm(pitch.relative), teeth.radii[0]
     k = dot(pitch.axis, pitch.relative) / q
     slip = 1 - value
     driving, driven = q - slip * k, value * q + slip * k
@@ -300,4 +296,4 @@ def lost(mechanism: Mechanism, constraint: Constraint, loss: Loss, pitch: Pitch)
     """The power that one mesh takes."""
     rate = sum((sign * mechanism.rate(joint) for sign, joint in loss.rotations), ca.SX(0))
     force = mechanism.results.multiplier(constraint)
-    return length(pitch.relative) * (loss.arm * ca.fabs(force * rate) + loss.lean * force * rate)
+    return norm(pitch.relative) * (loss.arm * ca.fabs(force * rate) + loss.lean * force * rate)

@@ -16,12 +16,12 @@ from dataclasses import dataclass
 
 import casadi as ca
 
-from ...base.vectors import ZERO, cross, dot, minus, plus, times
+from ...base.vectors import ZERO, cross, dot, minus, norm, plus, times
 from ...errors import DeclarationError
 from ..meshes import FITTING, Fit
 from ..parts import Expression, Vector
 from ..validity import Evaluator
-from .courses import Course, along, length, size
+from .courses import Course, along, size
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +85,7 @@ def _parallel(what: str, number: Evaluator, first: Course, second: Course, teeth
     away = minus(second.place, first.place)
     beside, sense = dot(away, u), _sign(number, dot(u, second.axis))
     away = minus(away, times(beside, u))
-    distance = length(away)
+    distance = norm(away)
     between = number(distance)
     sides = {1: r1 + r2, -1: r2 - r1, -2: r1 - r2}
     side = min(sides, key=lambda one: abs(between - number(sides[one])))
@@ -157,7 +157,7 @@ def _crossed(what: str, number: Evaluator, first: Course, second: Course, teeth:
     assert u is not None
     assert v is not None
     away = minus(second.place, first.place)
-    distance = length(away)
+    distance = norm(away)
     fits = []
     for k, axis in ((1, u), (2, v)):
         words = (
@@ -197,7 +197,7 @@ def _rack(what: str, number: Evaluator, first: Course, second: Course, teeth: Te
     across = minus(away, times(dot(away, d), d))
     beside = dot(across, u)
     across = minus(across, times(beside, u))
-    distance = length(across)
+    distance = norm(across)
     words = (
         "the pitch line of its rack is {got} m from the axis of its gear; expected its radius,"
         " {meant} m"

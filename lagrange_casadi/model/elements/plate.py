@@ -13,9 +13,11 @@ import casadi as ca
 from ...base.arguments import public
 from ...base.brief import Brief
 from ...errors import DeclarationError
+from ..beams.solid import polygon_area, polygon_moments
 from ..expressions import plain
 from ..mechanism import Mechanism
 from ..parts import Expression, Link, Point
+from .bent import corners_of
 
 
 @public
@@ -105,20 +107,14 @@ def plate(
             f"{what}: only a mechanism in a plane has plates; in space declare a link with mass,"
             " centre and inertia"
         )
-    if not isinstance(corners, Sequence) or len(corners) < 3:
-        raise DeclarationError(f"{what}: expected three corners or more")
-    places = []
-    for k, corner in enumerate(corners):
-        if not isinstance(corner, Sequence) or isinstance(corner, str) or len(corner) != 2:
-            raise DeclarationError(f"{what}: corner {k}: expected (x, y), got {corner!r}")
-        x, y = (checked(f"{what}: corner {k}", number, "m") for number in corner)
-        places.append((x, y))
+    places = [(x, y) for x, y, _ in corners_of(mechanism, what, corners)]
     if (mass is None) == (per_area is None):
         raise DeclarationError(f"{what}: expected mass= or per_area=")
     _refuse_crossing(what, places)
-    area, x, y, second = area_of(places)
-    if isinstance(area, float) and area == 0.0:
+    enclosed = polygon_area(places)
+    if isinstance(enclosed, float) and enclosed == 0.0:
         raise DeclarationError(f"{what}: its corners lie on a line")
+    area, centre, (about_x, about_y, _) = polygon_moments(places)
     if per_area is None:
         whole = checked(what, mass, "kg")
     else:
@@ -130,31 +126,11 @@ def plate(
         name,
         length=plain(farthest),
         mass=plain(whole),
-        centre=(x, y),
-        inertia=plain(whole * second),
+        centre=centre,
+        inertia=plain(whole * (about_x + about_y) / area),
     )
     mechanism.outlines[name] = [places]
     return Plate(link, tuple(link.at(*corner) for corner in places))
-
-
-def area_of(places: Sequence[Expression]) -> tuple[Expression, Expression, Expression, Expression]:
-    """The area of a polygon, with its sign, the place of its centre, and its second moment about
-    that over its area [m^2].
-
-    Seen from the first corner, so that a plate far from its axes loses no digits.
-    """
-    x0, y0 = places[0]
-    ring = [(x - x0, y - y0) for x, y in places]
-    area, first_x, first_y, second = 0.0, 0.0, 0.0, 0.0
-    for (ax, ay), (bx, by) in zip(ring, [*ring[1:], ring[0]], strict=True):
-        cross = ax * by - bx * ay
-        area = area + cross / 2.0
-        first_x, first_y = first_x + cross * (ax + bx) / 6.0, first_y + cross * (ay + by) / 6.0
-        second = second + cross * (ax * ax + ax * bx + bx * bx + ay * ay + ay * by + by * by) / 12.0
-    if isinstance(area, float) and area == 0.0:
-        return 0.0, x0, y0, 0.0
-    x, y = first_x / area, first_y / area
-    return area, x0 + x, y0 + y, second / area - x * x - y * y
 
 
 def _refuse_crossing(what: str, places: Sequence[Expression]) -> None:

@@ -135,8 +135,8 @@ def profile_lift(
     at, normal = _normals(what, np.asarray(points, float))
     radius = number(layout.roller)
     if follower.kind == "prismatic":
-        up = np.array([number(x) for x in follower.axis[:2]])
-        turned = _turned(arm, number(follower.angle))
+        up = np.array([number(x) for x in follower.triad[0][:2]])
+        turned = np.array([number(x) for x in follower.turned.apply((*arm, 0.0))[:2]])
         offset = float((away + turned) @ np.array([up[1], -up[0]]))
         found = _law(what, *_sliding(at, normal, up, offset, radius, flat), smoothing)
         least = _least(found)
@@ -274,8 +274,3 @@ def _least(found: Curve) -> float:
 
 def _direction(vectors: Array) -> Array:
     return np.arctan2(vectors[:, 1], vectors[:, 0])
-
-
-def _turned(vector: Array, angle: float) -> Array:
-    c, s = math.cos(angle), math.sin(angle)
-    return np.array([c * vector[0] - s * vector[1], s * vector[0] + c * vector[1]])

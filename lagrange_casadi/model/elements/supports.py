@@ -16,10 +16,9 @@ import casadi as ca
 
 from ...base.arguments import public
 from ...base.brief import Brief
-from ...base.vectors import dot, minus, plus, times
+from ...base.vectors import AXES, cross, minus, norm, plus, times
 from ...errors import DeclarationError
-from ..directions import triad_of
-from ..expressions import unit_vector
+from ..directions import in_plane, triad_of
 from ..joints import Joint, Triad
 from ..mechanism import Mechanism
 from ..parts import Body, Expression, Point, Vector
@@ -181,7 +180,7 @@ def two_bushes(
     if turns and not mechanism.space:
         raise DeclarationError(f"{what}: turns= is for space only; a rod in a plane cannot turn")
     between = minus(far.place, near.place)
-    length = ca.sqrt(ca.SX(dot(between, between)))
+    length = ca.SX(norm(between))
     if length.is_constant() and float(length) == 0.0:
         raise DeclarationError(f"{what}: both are at one place of '{near.body.name}'")
     u, v, _ = _triad(mechanism, what, axis)
@@ -214,12 +213,8 @@ def _triad(mechanism: Mechanism, what: str, axis: Vector | None) -> Triad:
     """Directions along an axis, by default x, and across it."""
     if mechanism.space:
         return triad_of(what, (1.0, 0.0, 0.0) if axis is None else axis, None, mechanism.ownership)
-    x, y = unit_vector(
-        what,
-        (1.0, 0.0) if axis is None else axis,
-        lambda component: mechanism.ownership.expression(f"{what}: axis", component),
-    )
-    return (x, y, 0.0), (-y, x, 0.0), (0.0, 0.0, 1.0)
+    u = in_plane(what, (1.0, 0.0) if axis is None else axis, mechanism.ownership.expression)
+    return u, cross(AXES[2], u), AXES[2]
 
 
 def _angle(mechanism: Mechanism, direction: Vector) -> float:
