@@ -1,5 +1,6 @@
 """Animations: the mechanism in motion as a GIF, an MP4, an animated SVG or glTF."""
 
-from .views.animation.film import ENDINGS, Animation, Film, check_ending, write_animation
+from .results.pictures import Animation, Film
+from .views.animation.film import ENDINGS, check_ending, write_animation
 
 __all__ = ["ENDINGS", "Animation", "Film", "check_ending", "write_animation"]

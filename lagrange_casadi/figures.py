@@ -1,7 +1,6 @@
 """Figures: what a case may want drawn, and the drawing of it."""
 
-from .views.figures.figures import default_figures, draw
-from .views.shapes.specs import (
+from .results.store.specs import (
     DeflectionPlot,
     MechanismDrawing,
     PolarPlots,
@@ -13,6 +12,7 @@ from .views.shapes.specs import (
     TimePlot,
     UtilisationPlot,
 )
+from .views.figures.figures import default_figures, draw
 
 __all__ = [
     "DeflectionPlot",

@@ -300,7 +300,8 @@ def _kind(hint: Any) -> _Kind | None:
     if not ours or origin.__name__ in _OWN or getattr(origin, "_is_protocol", False):
         return None
     article = "an" if origin.__name__[0] in "AEIO" else "a"
-    return _if(f"{article} {origin.__name__}", lambda value: isinstance(value, origin))
+    words = getattr(origin, "_known_as", f"{article} {origin.__name__}")
+    return _if(words, lambda value: isinstance(value, origin))
 
 
 def _if(words: str, admits: Callable[[object], bool]) -> _Kind:

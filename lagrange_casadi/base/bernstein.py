@@ -191,7 +191,20 @@ def _between(c: Array, inner: Array) -> Zeros:
 
 
 @functools.cache
-def interpolation(degree: int) -> tuple[Array, Array]:
-    """Nodes from 0 to 1, and weights (ordinates, nodes) that make ordinates of the values there."""
-    nodes = (1.0 + np.polynomial.chebyshev.chebpts1(degree + 1)) / 2.0
-    return nodes, np.asarray(np.linalg.inv(value(np.eye(degree + 1), nodes[:, None])), float)
+def nodes(degree: int) -> Array:
+    """Places from 0 to 1 at which values make polynomials of a degree (:func:`interpolated`)."""
+    return np.asarray((1.0 + np.polynomial.chebyshev.chebpts1(degree + 1)) / 2.0)
+
+
+def interpolated(values: Array) -> Array:
+    """Ordinates (n + 1, ...) of the polynomials that have ``values`` (n + 1, ...) at the nodes."""
+    found = np.zeros(values.shape)
+    for weights, value_at_node in zip(_weights(len(values) - 1), values, strict=True):
+        found += np.multiply.outer(weights, value_at_node)
+    return found
+
+
+@functools.cache
+def _weights(degree: int) -> Array:
+    """Weights (nodes, ordinates) of values at nodes in ordinates."""
+    return np.asarray(np.linalg.inv(value(np.eye(degree + 1), nodes(degree)[:, None])).T, float)

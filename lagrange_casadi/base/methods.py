@@ -30,7 +30,6 @@ METHODS: dict[str, str] = {
     "Sweep.report": "views.report.of_sweep:write_sweep_report",
     "figures.default_figures": "views.figures.figures:default_figures",
     "figures.draw": "views.figures.figures:draw",
-    "figures.parse": "views.shapes.kept:parse_specs",
     "optimise.dask": "studies.cluster.dask_workers:Cluster",
     "sweep.dask": "studies.cluster.dask_workers:Cluster",
 }

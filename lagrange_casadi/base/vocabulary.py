@@ -41,6 +41,9 @@ SAMPLES = 2000
 WIDTH, RATE, SECONDS = 640, 25.0, 4.0
 """Defaults of an animation: width in pixels, frames a second, seconds of a cycle."""
 
+AZIMUTH, ELEVATION = -60.0, 25.0
+"""The view that shows most of most mechanisms [deg]."""
+
 TIME_LIMIT = 60.0
 """Seconds that reading a file of unknown origin may take."""
 

@@ -11,12 +11,13 @@ import click
 
 from ..base.files import check_writable
 from ..model.scene import Scene, kinds
+from ..results.pictures import Film
 from ..results.store.runs import load
 from ..results.store.untrusted import reported_as
 from ..results.verification.certificate import refuse_failed
 from ..studies.case import load_case
 from ..studies.evaluate import evaluate
-from ..views.animation.film import Film, check_ending, write_animation
+from ..views.animation.film import check_ending, write_animation
 from .echo import echo
 from .options import HDF5
 

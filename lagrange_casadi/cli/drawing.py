@@ -14,8 +14,8 @@ from ..base.methods import method
 from ..errors import LagrangeCasadiError, PostureError
 from ..model.scene import Scene
 from ..results.solution import Solution
+from ..results.store.specs import Spec
 from ..views.shapes.index import write_index
-from ..views.shapes.specs import Spec
 from .echo import echo
 from .progress import bar_of
 

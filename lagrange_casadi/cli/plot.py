@@ -12,12 +12,12 @@ from ..base.files import check_writable
 from ..base.units import typed
 from ..errors import NoDesignError
 from ..results.store.runs import figure_specs, load
+from ..results.store.specs import Spec as FigureSpec
 from ..results.store.untrusted import reported_as
 from ..studies.sweep import Sweep, is_sweep
 from ..views.charts.designs import Spec, draw_sweep
 from ..views.charts.usual_designs import default_plots
 from ..views.shapes.index import MANIFEST, NAME, write_index
-from ..views.shapes.specs import Spec as FigureSpec
 from .drawing import draw_with_progress
 from .echo import echo
 from .progress import bar_of

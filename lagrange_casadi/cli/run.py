@@ -30,13 +30,13 @@ from ..results.ordering import ordered
 from ..results.sensitivity.peaks import PeakKind
 from ..results.solution import Solution
 from ..results.store.runs import check_target, save
+from ..results.store.specs import dump_specs
 from ..results.verification.certificate import refuse_failed, summary
 from ..studies.case import load_case
 from ..studies.evaluate import evaluate
 from ..studies.peaks import forces, refine, resultants
 from ..studies.sensitivities import Changes, sensitivities
 from ..views.shapes.index import MANIFEST
-from ..views.shapes.kept import dump_specs
 from .drawing import draw_with_progress
 from .echo import echo
 from .options import HDF5, target

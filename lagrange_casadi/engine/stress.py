@@ -21,6 +21,7 @@ from ..base.symbolic import Graphs, symbolic
 from ..model.beams.beam import Beam, Notch
 from ..model.beams.properties import Properties, smaller
 from ..model.beams.shape import Shape, between
+from ..model.one_sided_limits import called
 
 FORCES = {
     False: ("axial", "shear", "bending"),
@@ -87,7 +88,7 @@ def _fibres(kind: str, dimensions: tuple[str, ...], space: bool) -> Fibres:
         for part in itertools.chain.from_iterable(zip(*every, strict=True))
     ]
     factors = ca.Function(
-        "factors", [symbols], [ca.sparsify(ca.vertcat(*rows))], ["dimensions"], ["factors"]
+        "factors", [symbols], [ca.densify(ca.vertcat(*rows))], ["dimensions"], ["factors"]
     )
     names = tuple(fibre.name for fibre in p.fibres)
     plain = [_plain(row, space) for row in every]
@@ -141,10 +142,9 @@ class CrossSections:
         known, many = self.fibres(cell), len(self.forces)
         _, *dimensions = np.broadcast_arrays(u, *self.shape(cell, u).dimensions.values())
         shape = dimensions[0].shape
-        found = known.factors(np.array([x.ravel() for x in dimensions])).full()
-        found = found.reshape(3, len(known.names), -1, many)
-        found = np.ascontiguousarray(np.moveaxis(found, 2, 3))
-        return found.reshape(3, len(known.names), many, *shape)
+        found = called(known.factors, np.array([x.ravel() for x in dimensions]))
+        found = found.reshape(many, 3, len(known.names), *shape)
+        return np.ascontiguousarray(np.moveaxis(found, 0, 2))
 
     @cached_property
     def thinnest(self) -> Thinnest:

@@ -75,6 +75,9 @@ class Histories:
     indeterminate: tuple[Output, ...] = ()
     over: DriveAxis | None = None
 
+    _known_as: ClassVar[str] = "a Solution"
+    """Words of messages: users have no histories without evidence."""
+
     _over_time: ClassVar[tuple[str, ...]] = ("outputs",)
     """The fields that have a value at every instant, beside ``t`` and ``over``."""
 

@@ -25,6 +25,11 @@ def largest(values: Array, axis: int | None = None) -> Array:
     return np.asarray(np.argmax(np.where(np.isnan(sizes), -1.0, sizes), axis=axis))
 
 
+def most(values: Array) -> float:
+    """The largest size among values, 0 where none is a number."""
+    return float(np.fmax.reduce(np.abs(values), axis=None, initial=0.0))
+
+
 def growth_of_size(components: Sequence[Array], changes: Sequence[Array]) -> Array:
     """Change of the size with the components; nothing of it cancels."""
     before = size_of(components)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, cast
 
 import numpy as np
 
@@ -22,9 +22,8 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
-    from ..views.animation.film import Animation, Film
-    from ..views.report import View
     from .elastic.deflection import Deflection
+    from .pictures import Animation, Film, View
     from .strength.safety import Life, Safety
     from .strength.stress import Stress
 
@@ -82,8 +81,7 @@ class Solution(Histories):
 
     def stress(self, link: str) -> Stress:
         """Return the stresses [Pa] in a link that has a beam: see :func:`.strength.stress`."""
-        found: Stress = method("Solution.stress")(self, link)
-        return found
+        return cast("Stress", method("Solution.stress")(self, link))
 
     def safety(
         self, link: str, *, criterion: str = "goodman", yield_criterion: str = "von_mises"
@@ -91,20 +89,20 @@ class Solution(Histories):
         """Return the factors of safety of a link that has a beam, or of what is fitted to a joint:
         see :func:`.strength.safety`.
         """
-        found: Safety = method("Solution.safety")(
-            self, link, criterion=criterion, yield_criterion=yield_criterion
+        return cast(
+            "Safety",
+            method("Solution.safety")(
+                self, link, criterion=criterion, yield_criterion=yield_criterion
+            ),
         )
-        return found
 
     def life(self, link: str, *, criterion: str = "goodman") -> Life:
         """Return the fatigue life of a link that has a beam: see :func:`.strength.life`."""
-        found: Life = method("Solution.life")(self, link, criterion=criterion)
-        return found
+        return cast("Life", method("Solution.life")(self, link, criterion=criterion))
 
     def deflection(self, link: str, against: Literal["ends", "base"] | None = None) -> Deflection:
         """Return the deflection of a link: see :func:`.elastic.deflection.deflection`."""
-        found: Deflection = method("Solution.deflection")(self, link, against)
-        return found
+        return cast("Deflection", method("Solution.deflection")(self, link, against))
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -162,8 +160,7 @@ class Solution(Histories):
         """Write one cycle in motion, as a GIF, an MP4, an animated SVG or glTF, as the path ends:
         see :func:`.write_animation`.
         """
-        found: Animation = method("Solution.animate")(self, path, film)
-        return found
+        return cast("Animation", method("Solution.animate")(self, path, film))
 
     def view(self, height: int = 760) -> View:
         """Return the report's page for a notebook, which shows it in a frame.
@@ -183,13 +180,11 @@ class Solution(Histories):
         DeclarationError
             If motion was not evaluated.
         """
-        found: View = method("Solution.view")(self, height)
-        return found
+        return cast("View", method("Solution.view")(self, height))
 
     def _repr_html_(self) -> str:
         """Show a drawing and the peaks in a notebook."""
-        found: str = method("Solution._repr_html_")(self)
-        return found
+        return cast("str", method("Solution._repr_html_")(self))
 
     def to_xarray(self) -> xarray.Dataset:
         """Return all quantities as an ``xarray.Dataset`` over t and xi, with units.

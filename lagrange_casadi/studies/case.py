@@ -23,8 +23,7 @@ from ..base.shipped_cases import shipped_cases
 from ..errors import CaseError, LagrangeCasadiError, shown
 from ..model.expressions import error_text
 from ..model.scene import Scene
-from ..views.shapes.kept import dump_specs, parse_specs
-from ..views.shapes.specs import Spec
+from ..results.store.specs import Spec, dump_specs, parse_specs
 
 _Result = TypeVar("_Result")
 

@@ -223,7 +223,7 @@ class Sensitivities:
 
     @cached_property
     def _iterated(self) -> Array:
-        return self.slopes.iterated(self.solution.t, self.p, self.solution.t)
+        return self.slopes.loops.at(self.solution.t, self.p, self.solution.t)
 
     def _named(self, slopes: Array) -> dict[str, float]:
         return dict(zip(self.parameters, slopes.tolist(), strict=True))

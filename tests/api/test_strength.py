@@ -104,6 +104,15 @@ def test_lives_and_masses_of_designs_and_the_lightest_that_is_safe():
     assert chosen.number == np.where(safe, swept["mass:all"], np.inf).argmin()
 
 
+def test_fatigue_along_a_taper_has_the_same_bits_whatever_other_designs():
+    scene, heights = slider(200e6, tip=0.01), [0.012, 0.02, 0.05, 0.09]
+    together, *each = (
+        sweep(scene, {"h": some}, wanted=["safety:rod"])["least:fatigue:rod"]
+        for some in (heights, *([height] for height in heights))
+    )
+    np.testing.assert_array_equal(together, np.concatenate(each))
+
+
 def test_files_keep_what_was_wanted_and_peaks_are_sought_between_instants(tmp_path):
     """A coarse cycle refined, against a fine one."""
     scene, wanted = slider(200e6), ["stress:rod", "safety:rod", "life:rod", "deflection:rod"]

@@ -56,5 +56,5 @@ def test_other_ordinates_have_the_same_values(degree):
     part = bernstein.within(c, start, stop)
     there = bernstein.value(c, start + (stop - start) * x)
     np.testing.assert_allclose(bernstein.value(part, x), there, atol=1e-14)
-    nodes, weights = bernstein.interpolation(degree)
-    np.testing.assert_allclose(weights @ bernstein.value(c, np.tile(nodes[:, None], 20)), c)
+    values = bernstein.value(c, np.tile(bernstein.nodes(degree)[:, None], 20))
+    np.testing.assert_allclose(bernstein.interpolated(values), c)

@@ -55,13 +55,14 @@ def robot(shape, material=STEEL):
     )
 
 
-def slider(endurance=None):
-    """A slider-crank of rectangular bars, whose height may be chosen."""
+def slider(endurance=None, tip=None):
+    """A slider-crank of rectangular bars, whose height may be chosen, with another at the tip."""
     m = Mechanism("slider")
     r = m.parameter("r", 0.1, "m", low=0.0)
     l = m.parameter("l", 0.4, "m", low=0.0)
     h = m.parameter("h", 0.02, "m", low=0.0)
-    bar = beams.Beam(beams.rectangle(h, 0.012), STEEL.but(endurance=endurance))
+    base, end = beams.rectangle(h, 0.012), beams.rectangle(tip or h, 0.012)
+    bar = beams.Beam(beams.tapered(base, end) if tip else base, STEEL.but(endurance=endurance))
     crank = m.link("crank", length=r, beam=bar)
     rod = m.link("rod", length=l, beam=bar)
     ram = m.point_mass("ram", 15.0)

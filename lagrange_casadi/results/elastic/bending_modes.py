@@ -23,21 +23,6 @@ import numpy as np
 from ...base.arrays import Array
 from ...model.end_conditions import Ends
 
-ROOTS: dict[Ends, float] = {
-    ("pinned", "pinned"): np.pi,
-    ("clamped", "free"): 1.8751040687119611,
-    ("clamped", "pinned"): 3.9266023120479185,
-    ("clamped", "clamped"): 4.7300407448627038,
-    ("clamped", "guided"): 2.3650203724313519,
-    ("guided", "pinned"): np.pi / 2,
-    ("free", "pinned"): 3.9266023120479185,
-    ("free", "guided"): 2.3650203724313519,
-    ("free", "free"): 4.7300407448627038,
-    ("guided", "guided"): np.pi,
-}
-"""b of w = b^2 sqrt(EI/(m l^4)), of a uniform beam: the least above zero (Blevins, *Formulas for
-Natural Frequency and Mode Shape*, table 8-1)."""
-
 _PARTS, _POINTS = 32, 5
 
 
@@ -203,9 +188,3 @@ def _moments(
     )
     part = np.clip(np.searchsorted(edges, ratios, side="right") - 1, 0, len(edges) - 2)
     return np.asarray(whole[:, part] + between(edges[part], ratios))
-
-
-def closed(stiffness: float, mass: float, length: float, ends: Ends) -> float:
-    """Angular frequency of a uniform beam in closed form [rad/s]."""
-    root = ROOTS[ends if ends in ROOTS else (ends[1], ends[0])]
-    return float(root**2 * np.sqrt(stiffness / (mass * length**4)))

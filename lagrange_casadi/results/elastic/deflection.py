@@ -12,19 +12,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Literal
 
 import numpy as np
 
 from ...base.arguments import Numeric, public
 from ...base.arrays import Array
-from ...base.bernstein import interpolation, product, raised, value, zeros
+from ...base.bernstein import interpolated, nodes, product, raised, value, zeros
 from ...errors import DeclarationError, UnknownNameError
 from ...model.end_conditions import ends_of
+from ..histories import Histories
 from ..sizes import largest
-from ..solution import Solution
 from ..strength.member import Member
+from ..strength.parts import reason, strong_of
 from .compliance import Compliance
 
 Against = Literal["ends", "base"]
@@ -109,14 +110,12 @@ class Deflection:
         """Displacements of the tip, each (t,): relative to the base those of the ends against each
         other.
         """
-        one = np.ones((self.member.t.size, 1))
-        return {name: self.at(name, one)[:, 0] for name in self.names}
+        return {name: self.at(name, 1.0) for name in self.names}
 
     @property
     def base(self) -> Mapping[str, Array]:
         """Rotation of the base, each (t,), relative to the line through the ends."""
-        nil = np.zeros((self.member.t.size, 1))
-        return {name: self.at(name, nil)[:, 0] for name in self.names}
+        return {name: self.at(name, 0.0) for name in self.names}
 
     def size(self, u: Array) -> Array:
         """The deflection across the link at ratios (t, ...): in the plane with its sign, in space
@@ -157,12 +156,11 @@ class Deflection:
     def _strains(self) -> dict[str, Array]:
         """Ordinates (n + 1, t, parts) of the strains between two edges, by section forces."""
         member = self.member
-        nodes, weights = interpolation(member.strain_degree)
         low, width = member.edges[:, :-1, None], np.diff(member.edges, axis=1)[:, :, None]
-        u = (low + width * nodes).reshape(member.t.size, -1)
+        u = (low + width * nodes(member.strain_degree)).reshape(member.t.size, -1)
         strains = self.compliance.strains(member.at(u), member.index_at(u), u)
         strains = strains.reshape(len(member.forces), *width.shape[:2], -1)
-        ordinates = np.tensordot(weights, strains, (1, 3))
+        ordinates = interpolated(np.moveaxis(strains, 3, 0))
         return {name: ordinates[:, k] for k, name in enumerate(member.forces)}
 
     @cached_property
@@ -209,7 +207,7 @@ class Deflection:
         return np.asarray(value(chosen, x[None])[0].reshape(u.shape))
 
 
-def deflection(solution: Solution, link: str, against: Against | None = None) -> Deflection:
+def deflection(solution: Histories, link: str, against: Against | None = None) -> Deflection:
     """Quasi-static deflection of a link under its section forces: see :class:`Deflection`.
 
     By default deflections count from the line between the ends where joints hold both
@@ -243,3 +241,9 @@ def deflection(solution: Solution, link: str, against: Against | None = None) ->
     return Deflection(
         compliance, against or ("base" if "free" in ends_of(solution.description, link) else "ends")
     )
+
+
+def bending_of(solution: Histories) -> tuple[str, ...]:
+    """The links whose deflections were evaluated."""
+    links = strong_of(solution, "elasticity")
+    return tuple(link for link in links if not reason(partial(deflection, solution), link))

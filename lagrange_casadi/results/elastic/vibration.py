@@ -22,7 +22,7 @@ from ...base.brief import Brief
 from ...errors import DeclarationError
 from ...model.description import BodyNumbers
 from ...model.end_conditions import ENDS, Ends, ends_of
-from ..solution import Solution
+from ..histories import Histories
 from ..strength.member import Member
 from .bending_modes import Mode, first_mode
 from .compliance import Compliance
@@ -85,7 +85,7 @@ class Vibration(Brief):
 
 
 @public
-def vibration(solution: Solution, link: str, ends: Ends | None = None) -> Vibration:
+def vibration(solution: Histories, link: str, ends: Ends | None = None) -> Vibration:
     """Return the first bending frequency of a link, and whether rigid links are enough for it.
 
     Parameters
@@ -141,7 +141,7 @@ def vibration(solution: Solution, link: str, ends: Ends | None = None) -> Vibrat
     return replace(found, cycle=cycle, harmonic=harmonic, excess=excess, harmonics=shares)
 
 
-def swinging(solution: Solution) -> Iterator[str]:
+def swinging(solution: Histories) -> Iterator[str]:
     """Names of the links whose deflections are series in a solution, and for which rigid links are
     not enough.
     """

@@ -11,6 +11,7 @@ iterated coordinates going along, is exact too.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -137,7 +138,7 @@ def total(program: Program, rows: Sequence[int], by: Sequence[int]) -> ca.Functi
         adjoint = ca.jtimes(out, ca.vertcat(*inputs), ca.SX.eye(len(rows)), True)
         slopes = _backwards(program, inputs, adjoint)[2][list(by), :]
     else:
-        seeds = _seeds(p.numel(), by)
+        seeds = ca.SX.eye(p.numel())[:, list(by)]
         moved = [ca.jtimes(part, p, seeds) for part in program.motion(t, p)]
         loops = ca.SX(0, len(by))
         if program.newton is not None:
@@ -162,7 +163,7 @@ def section_slopes(
     xi = ca.SX.sym("xi")
     section = data.section(link, dict(zip(columns, ca.vertsplit(values), strict=True)), p)
     values_here = {force: section.at(force, Place(xi), END["double"]) for force in table.sections}
-    seeds = ca.vertcat(slopes.T, _seeds(p.numel(), by))
+    seeds = ca.vertcat(slopes.T, ca.SX.eye(p.numel())[:, list(by)])
     found = ca.jtimes(ca.vertcat(*values_here.values()), ca.vertcat(values, p), seeds)
     changes = dict(zip(values_here, ca.vertsplit(found), strict=True))
     rows = []
@@ -207,17 +208,9 @@ def _backwards(
     return by_t, by_drives, by_p + ca.jtimes(driven, p, by_drives, True)
 
 
-def _seeds(count: int, by: Sequence[int]) -> ca.SX:
-    """Derivatives of all parameters by some of them."""
-    return ca.SX.eye(count)[:, list(by)]
-
-
 def _ends(parts: Sequence[ca.SX]) -> list[int]:
     """First row of each of some parts that stand below each other, and the end of the last one."""
-    ends = [0]
-    for part in parts:
-        ends.append(ends[-1] + part.numel())
-    return ends
+    return [0, *itertools.accumulate(part.numel() for part in parts)]
 
 
 def _rows(

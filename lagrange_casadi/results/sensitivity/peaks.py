@@ -207,7 +207,7 @@ class MovingPeaks:
         times[q : ends[1]] += later
         places[ends[1] : ends[2]] += _NUDGE
         places[ends[2] :] -= _NUDGE
-        z = self.slopes.iterated(self.instants, self.p, times)
+        z = self.slopes.loops.at(self.instants, self.p, times)
         found = self.slopes.at(times, z, self.p, chosen[of], places, value[of])
         here, after, further, nearer = (
             found.gradient[a:b] for a, b in itertools.pairwise([0, *ends])
@@ -272,7 +272,7 @@ class MovingPeaks:
                 self.instants[-1],
             ).ravel()
             twice = np.concatenate([remaining, remaining])
-            z = self.slopes.iterated(self.instants, self.p, beside)
+            z = self.slopes.loops.at(self.instants, self.p, beside)
             there = self.slopes.at(beside, z, self.p, chosen[twice], xi[twice], value[twice])
             gaps = np.abs(there.value - value[twice]).reshape(2, -1)
             side = np.argmin(np.where(np.isnan(gaps), np.inf, gaps), axis=0)
@@ -371,7 +371,7 @@ class MovingPeaks:
 
     def _bends(self, chosen: Numbers, t: Array, xi: Array, value: Array | None) -> Bends:
         """The second derivatives by time, xi/l and all parameters of what is ``chosen``."""
-        z = self.slopes.iterated(self.instants, self.p, t)
+        z = self.slopes.loops.at(self.instants, self.p, t)
         directions = unit_ways(range(self.p.size), self.p.size)
         return self.slopes.bends(t, z, self.p, chosen, xi, value, directions)
 
@@ -431,7 +431,7 @@ class MovingPeaks:
         instants, (first, last) = self.instants, self.ends.slopes
         share = np.linspace(0.0, 1.0, instants.size)[:, None]
         moved = (1.0 - share) * first + share * last
-        z = self.slopes.iterated(instants, self.p, instants)
+        z = self.slopes.loops.at(instants, self.p, instants)
         nowhere = np.full_like(instants, np.nan)
         found = []
         for number in chosen:

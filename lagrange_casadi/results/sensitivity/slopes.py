@@ -214,12 +214,6 @@ class Slopes(Brief):
         found = found.reshape(n, w, 2, 2 + p.size)
         return Bends(found[:, 0, 0], found[:, :, 1])
 
-    def iterated(self, t: Array, p: Array, places: Array) -> Array:
-        """The iterated coordinates (n, z) at ``places`` (n,) between the rising instants ``t``,
-        from which they are followed.
-        """
-        return self.loops.at(t, p, places)
-
     @symbolic_property
     def _second(self) -> Batch:
         return Batch.of(self.points.further(), self.method)

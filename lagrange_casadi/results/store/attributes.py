@@ -7,12 +7,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, TypeAlias
 
 from ...base.arrays import Json
-from ...base.methods import method
 from ...base.quantities import Output
 from ...engine.instants.beyond_equilibrium import Elasticity
 from ...engine.instants.evaluation_method import Provenance
 from ...model.description import Description
 from ..solution import Solution
+from .specs import Spec, parse_specs
 from .untrusted import check_shape, number, parsed, read_json, shown, structured
 from .words import conventions
 
@@ -118,7 +118,6 @@ def check_attributes(attributes: Attributes, description: Description) -> Iterat
         yield "case or parameters: differ from those of the mechanism"
 
 
-def figures_of(attributes: Attributes) -> tuple[object, ...]:
-    """Specifications of figures in a file. Raises ``ValueError`` if there are others."""
-    found: tuple[object, ...] = method("figures.parse")(shown(attributes.get("figures", "")))
-    return found
+def figures_of(attributes: Attributes) -> tuple[Spec, ...]:
+    """Specs of figures in a file. Raises ``ValueError`` if there are others."""
+    return parse_specs(shown(attributes.get("figures", "")))

@@ -22,8 +22,8 @@ from ...base.arrays import Array
 from ...base.quantities import Output
 from ...errors import DeclarationError, UnknownNameError
 from ...model.fitted import Fitted, Pin, Plain, Rolling, positive
-from ..solution import Solution
-from ..statistics import counted
+from ..histories import Histories
+from ..statistics import counted, shares
 from .safety import Safety, Verdict
 
 
@@ -75,20 +75,20 @@ def equivalent_load(
     DeclarationError
         If the rows differ in length, or have numbers that are negative or not finite.
     """
-    loads, shares = np.asarray(load, float), np.asarray(turned, float)
+    loads, lasting = np.asarray(load, float), np.asarray(turned, float)
     if (
         loads.ndim != 1
-        or loads.shape != shares.shape
-        or not np.isfinite([loads, shares]).all()
-        or min(0.0, *loads, *shares) < 0.0
+        or loads.shape != lasting.shape
+        or not np.isfinite([loads, lasting]).all()
+        or min(0.0, *loads, *lasting) < 0.0
     ):
         raise DeclarationError(
             "equivalent_load: expected two rows of one length, finite and not negative"
         )
-    total, most = float(shares.sum()), float(np.max(loads, initial=0.0))
+    total, most = float(lasting.sum()), float(np.max(loads, initial=0.0))
     if total == 0.0 or most == 0.0:
         return 0.0
-    mean = float((shares * (loads / most) ** exponent).sum()) / total
+    mean = float((lasting * (loads / most) ** exponent).sum()) / total
     return float(most * mean ** (1.0 / exponent))
 
 
@@ -139,7 +139,7 @@ class BearingLoads:
 
 
 @public
-def bearing_loads(solution: Solution, joint: str, exponent: Positive = 3.0) -> BearingLoads:
+def bearing_loads(solution: Histories, joint: str, exponent: Positive = 3.0) -> BearingLoads:
     """Compute equivalent loads and speeds of a joint for catalogues of bearings.
 
     Parameters
@@ -166,19 +166,19 @@ def bearing_loads(solution: Solution, joint: str, exponent: Positive = 3.0) -> B
     rate = _joint_rate(solution, joint, "angle")
     if rate is None:
         raise DeclarationError(f"joint '{joint}' does not turn, or its motion was not evaluated")
-    speed, weights = np.abs(rate) * 60.0 / math.tau, _time_weights(solution.t)
-    turned = speed * weights
+    speed = np.abs(rate) * 60.0 / math.tau
+    turned = speed * shares(solution.t)
     return BearingLoads(
         joint,
         equivalent_load(across, turned, exponent),
         equivalent_load(along, turned, exponent),
-        float(turned.sum() / weights.sum()),
+        float(turned.sum()),
         *(float(values.max()) for values in (across, along, speed)),
     )
 
 
 @public
-def joint_safety(solution: Solution, joint: str, parts: Sequence[Fitted] | None = None) -> Safety:
+def joint_safety(solution: Histories, joint: str, parts: Sequence[Fitted] | None = None) -> Safety:
     """Return the factors of safety of the pin and bearings of a joint, over all instants.
 
     Parameters
@@ -231,7 +231,7 @@ def joint_safety(solution: Solution, joint: str, parts: Sequence[Fitted] | None 
     return Safety(joint, tuple(verdicts), tuple(unknown))
 
 
-def _reaction_sizes(solution: Solution, joint: str) -> tuple[Array, Array]:
+def _reaction_sizes(solution: Histories, joint: str) -> tuple[Array, Array]:
     """Return the sizes of a reaction across its joint's axis, and along it, each (t,); zero where
     friction at rest leaves it indeterminate.
 
@@ -270,7 +270,7 @@ def _check(joint: str, part: Fitted) -> None:
             )
 
 
-def _joint_rate(solution: Solution, joint: str, kind: str) -> Array | None:
+def _joint_rate(solution: Histories, joint: str, kind: str) -> Array | None:
     """The rate at which a joint turns or slides; None if it was not evaluated, or there is none."""
     entry = solution.description.joints[joint]
     name = next((axis.coordinate for axis in entry.axes if axis.kind == kind), None)
@@ -279,7 +279,7 @@ def _joint_rate(solution: Solution, joint: str, kind: str) -> Array | None:
     return None if name is None else solution.outputs.get(Output("motion", name, "rate"))
 
 
-def _forces(solution: Solution, joint: str) -> tuple[Array, Array]:
+def _forces(solution: Histories, joint: str) -> tuple[Array, Array]:
     """The sizes of a reaction across the pin's axis, and along it."""
     if not solution.description.space:
         found = solution.reaction(joint)
@@ -335,8 +335,7 @@ def _plain(
     if bearing.speed is not None:
         found.append(_verdict("speed", bearing.speed, speed, t, "speed of sliding", "m/s"))
     if bearing.heating is not None:
-        weights = _time_weights(t)
-        mean = float(pressure * speed @ weights / weights.sum())
+        mean = float(pressure * speed @ shares(t))
         factor = bearing.heating / mean if mean else math.inf
         found.append(Verdict("heating", factor, f"p v {mean / 1e6:.4g} MPa m/s in the mean"))
     return found, []
@@ -346,19 +345,12 @@ def _rolling(
     bearing: Rolling, across: Array, along: Array, rate: Array, t: Array
 ) -> Iterator[Verdict]:
     load = bearing.radial * across + bearing.axial * along
-    weights = _time_weights(t)
-    shares = np.abs(rate) * weights
-    rpm = float(shares.sum() / weights.sum()) * 60 / math.tau
-    even = equivalent_load(load, shares, bearing.exponent)
+    turned = np.abs(rate) * shares(t)
+    rpm = float(turned.sum()) * 60 / math.tau
+    even = equivalent_load(load, turned, bearing.exponent)
     hours = rated_hours(bearing.dynamic, even, rpm, bearing.exponent)
     factor = math.inf if math.isinf(hours) else (hours / bearing.hours) ** (1.0 / bearing.exponent)
     text = f"P {even:.4g} N, {rpm:.4g} 1/min, L10 {hours:.4g} h of {bearing.hours:.4g} h"
     yield Verdict("life of bearing", factor, text)
     if bearing.static is not None:
         yield _verdict("static load", bearing.static, load, t, "load", "N")
-
-
-def _time_weights(t: Array) -> Array:
-    """Weight of each instant, by trapezia [s]; a single one has the weight of a second."""
-    steps = np.diff(t) / 2
-    return np.append(steps, 0.0) + np.append(0.0, steps) if t.size > 1 else np.ones(1)

@@ -120,9 +120,19 @@ def used(amplitude: Array, mean: Array, material: Material, criterion: str = "go
     """Utilisation of a material by amplitude and mean, one over :func:`factor`; of numbers, arrays
     or expressions.
     """
+    return _use(material, criterion)(amplitude, mean)
+
+
+def _use(material: Material, criterion: str) -> Callable[[Operand, Operand], Operand]:
+    """The function of amplitude and mean that gives the utilisation of a material."""
     endurance, strength = strengths(material, criterion)
-    a, m = amplitude / endurance, larger(mean, 0.0) / strength
-    return (a + (a * a + 4.0 * m * m) ** 0.5) / 2 if criterion_of(criterion).square else a + m
+    square = criterion_of(criterion).square
+
+    def use(amplitude: Operand, mean: Operand) -> Operand:
+        a, m = amplitude / endurance, larger(mean, 0.0) / strength
+        return (a + (a * a + 4.0 * m * m) ** 0.5) / 2 if square else a + m
+
+    return use
 
 
 def lacking(material: Material, criterion: str = "goodman") -> str:
@@ -329,32 +339,25 @@ def use_score(material: Material, criterion: str = "goodman") -> Score:
     worst, as long as means count for less than amplitudes.
     """
     endurance, strength = strengths(material, criterion)
-    linear = not criterion_of(criterion).square
+    linear, swing = not criterion_of(criterion).square, _use(material, criterion)
     exact = strength >= (1.0 if linear else 2.0) * endurance
-
-    def swing(amplitude: Array, mean: Array) -> Operand:
-        return used(amplitude, mean, material, criterion)
 
     def of(values: Array) -> float:
         found = loaded(values)
         return float(np.max(swing(found.amplitude, found.mean)))
 
     def bound(stresses: Array) -> Array:
-        low, high = stresses[0].min(axis=-1), stresses[0].max(axis=-1)
         if exact and len(stresses) == 1:
+            low, high = stresses[0].min(axis=-1), stresses[0].max(axis=-1)
             return np.asarray(swing((high - low) / 2, (high + low) / 2))
-        ranges, sizes = _sheared(stresses)
-        square, largest = (high - low) ** 2 + ranges, np.maximum(high, 0.0) ** 2 + sizes
-        if exact and linear:
-            # A smaller swing has a larger mean. Where shear is most of it, or means count for much,
-            # no more is known than the second.
-            middle = np.maximum((high + low) / 2, 0.0) ** 2 + sizes
-            whole = swing(np.sqrt(square) / 2, np.sqrt(middle))
-            square = 2.0 * ranges if strength >= math.sqrt(2.0) * endurance else square
-            found = np.maximum(whole, swing(np.sqrt(square) / 2, np.sqrt(largest)))
-        else:
-            found = swing(np.sqrt(square) / 2, np.sqrt(largest))
-        return np.asarray(found * ROUNDED)
+        most = _bounds(stresses)
+        if not (exact and linear):
+            return np.asarray(swing(most.amplitude, most.mean))
+        # A smaller swing has a larger mean. Where shear is most of it, or means count for much, no
+        # more is known than the second.
+        lesser = most.sheared if strength >= math.sqrt(2.0) * endurance else most.amplitude
+        whole, part = swing(most.amplitude, most.middle), swing(lesser, most.mean)
+        return np.asarray(np.maximum(whole, part))
 
     return Score(of, bound, swing, exact)
 
@@ -364,9 +367,9 @@ def damage_score(material: Material, criterion: str = "goodman") -> Score:
 
     Raises what :func:`strengths` does.
     """
-    strengths(material, criterion)
 
-    def score(sizes: Array, times: Array | float, axis: int | tuple[()]) -> Array:
+    def score(amplitude: Array, mean: Array, times: Array | float, axis: int | tuple[()]) -> Array:
+        sizes = np.asarray(reversed_amplitude(amplitude, mean, material, criterion))
         with np.errstate(divide="ignore"):
             damage = np.sum(times / cycles(sizes, material), axis=axis)
         nothing = -1.0 / np.maximum(np.max(sizes, axis=axis), _NOTHING)
@@ -374,26 +377,35 @@ def damage_score(material: Material, criterion: str = "goodman") -> Score:
 
     def of(values: Array) -> float:
         found = loaded(values)
-        sizes = reversed_amplitude(found.amplitude, found.mean, material, criterion)
-        return float(score(sizes, found.times, 0))
+        return float(score(found.amplitude, found.mean, found.times, 0))
 
     def bound(stresses: Array) -> Array:
-        low, high = stresses[0].min(axis=-1), stresses[0].max(axis=-1)
-        ranges, sizes = _sheared(stresses)
-        amplitude = np.sqrt((high - low) ** 2 + ranges) / 2 * ROUNDED
-        mean = np.sqrt(np.maximum(high, 0.0) ** 2 + sizes) * ROUNDED
-        sizes = reversed_amplitude(amplitude, mean, material, criterion)
-        return score(sizes, stresses.shape[-1] / 2 + 1, ())
+        most = _bounds(stresses)
+        return score(most.amplitude, most.mean, stresses.shape[-1] / 2 + 1, ())
 
-    def swing(amplitude: Array, mean: Array) -> Operand:
-        return used(amplitude, mean, material, criterion)
-
-    return Score(of, bound, swing)
+    return Score(of, bound, _use(material, criterion))
 
 
-def _sheared(stresses: Array) -> tuple[Array, Array]:
-    """Three times the squares of the ranges of shear stresses, and of their largest size, of
-    stresses (k, ..., t).
+class _Bounds(NamedTuple):
+    """Bounds on swings in a history: on the ``amplitude`` and on the ``mean`` of each, on the mean
+    ``middle`` of the widest swing of normal stress, and on the amplitude ``sheared`` of a swing
+    that has no less of shear stress than of normal stress.
     """
-    ranges, sizes = np.ptp(stresses[1:], axis=-1) ** 2, np.sum(stresses[1:] ** 2, axis=0)
-    return 3.0 * np.sum(ranges, axis=0), 3.0 * np.max(sizes, axis=-1)
+
+    amplitude: Array
+    mean: Array
+    middle: Array
+    sheared: Array
+
+
+def _bounds(stresses: Array) -> _Bounds:
+    """Bounds on all swings in stresses (k, ..., t)."""
+    low, high = stresses[0].min(axis=-1), stresses[0].max(axis=-1)
+    ranges = 3.0 * np.sum(np.ptp(stresses[1:], axis=-1) ** 2, axis=0)
+    sizes = 3.0 * np.max(np.sum(stresses[1:] ** 2, axis=0), axis=-1)
+    means = [np.sqrt(np.maximum(mean, 0.0) ** 2 + sizes) for mean in (high, (high + low) / 2)]
+    amplitudes = [np.sqrt(square) / 2 for square in ((high - low) ** 2 + ranges, 2.0 * ranges)]
+    amplitude, mean, middle, sheared = (
+        ROUNDED * found for found in (amplitudes[0], *means, amplitudes[1])
+    )
+    return _Bounds(amplitude, mean, middle, sheared)

@@ -26,10 +26,10 @@ from ...engine.section_function import SIDES, Side
 from ...engine.stress import concentration, notch_factor
 from ...model.beams.beam import Notch
 from .fatigue import Score, widest
-from .member import Cell, Member
+from .member import CLOSE, Cell, Member
 
-_CLOSE, _HALVED = 1e-9, 24
-"""Fraction by which a maximum may be missed, and how often strips are halved at most."""
+_HALVED = 24
+"""Number of times that a strip is halved at most."""
 
 _PLACES = (1.0 - np.cos(np.pi * np.arange(9) / 8)) / 2
 """Places of a strip at which swings are counted."""
@@ -86,16 +86,20 @@ class Strips:
             stresses = ordinates[:, :, some]
             yield cls(cell, side, notch, stresses, fibre, design, begins[some], ends[some])
 
-    def places(self, strip: int) -> Array:
-        """Places at which swings are counted: the ends of a narrow strip, one of a notch."""
-        if self.notch:
-            return _PLACES[:1]
-        return _PLACES[:: 1 if self.high[strip] - self.low[strip] > _NARROW else len(_PLACES) - 1]
+    @property
+    def places(self) -> Array:
+        """Places (places, 1) at which swings are counted: the ends of narrow strips, one of a
+        notch.
+        """
+        narrow = np.max(self.high - self.low, initial=0.0) <= _NARROW
+        return _PLACES[: 1 if self.notch else None : len(_PLACES) - 1 if narrow else 1, None]
 
-    def at(self, strip: int, x: Array) -> Array:
-        """Stresses (3, places, t) at places ``x`` from 0, the end towards the tip, to 1."""
-        values = value(self.ordinates[:, :, strip], x[:, None, None])
-        found = np.zeros((3, *values.shape[::2]))
+    def at(self, strips: npt.NDArray[np.intp], x: Array) -> Array:
+        """Stresses (3, places, m, t) of m strips by their numbers at places ``x`` (places, m) from
+        0, the end towards the tip, to 1.
+        """
+        values = value(self.ordinates[:, :, strips], x[:, None, :, None])
+        found = np.zeros((3, len(x), *values.shape[2:]))
         found[: values.shape[1]] = np.moveaxis(values, 1, 0)
         return found
 
@@ -130,7 +134,7 @@ class Maximum:
     @property
     def history(self) -> Array:
         """The stresses (3, t)."""
-        return self.strips.at(self.strip, np.array([self.x]))[:, 0]
+        return self.strips.at(np.array([self.strip]), np.array([[self.x]]))[:, 0, 0]
 
 
 def maxima(member: Member, score: Score, beside: float = 1.0) -> list[list[Maximum]]:
@@ -161,16 +165,16 @@ def sampled(member: Member) -> Iterator[tuple[Notch | None, Array]]:
     """
     for strips in _strips(member):
         for k in range(strips.design.size):
-            yield strips.notch, np.moveaxis(strips.at(k, strips.places(k)), 0, 1)
+            yield strips.notch, np.moveaxis(strips.at(np.array([k]), strips.places)[:, :, 0], 0, 1)
 
 
 def _strips(member: Member) -> Iterator[Strips]:
     """The strips of all fibres, those beside notches last. In each part those that have normal
     stress alone come first: they cost less, and leave out others.
     """
-    member = replace(member, accuracy=_CLOSE)
+    member = replace(member, accuracy=CLOSE)
     ends = member.pieces[0].ends
-    ends = ends[..., :1] if member.still else np.unique(ends)[:, None]
+    ends = ends[..., :1] if member.still.all() else np.unique(ends)[:, None]
     for cell in member.cells:
         low, high = cell.parts(ends)
         size = 3 * len(cell.names) * (cell.degree + member.degree + 1) * low[0].size * member.t.size
@@ -194,30 +198,52 @@ def _counted(strips: Strips, score: Score, best: Array, beside: float) -> tuple[
     """As :func:`_halved`, by counting swings; -inf of strips that are not looked at."""
     scores, places = np.full(strips.design.size, -np.inf), np.zeros(strips.design.size)
     bounds = score.bound(np.moveaxis(strips.ordinates, 1, 0)).max(axis=0)
-    for k in np.argsort(-bounds, kind="stable").tolist():
-        floor = beside * float(best[strips.design[k]])
-        if bounds[k] <= floor + _CLOSE * abs(floor):
-            continue
-        x = strips.places(k)
-        histories = strips.at(k, x)
-        most, at = _most(score, histories, floor - _MISSED * abs(floor))
-        place = float(x[at])
-        if most > floor - _MISSED * abs(floor) and not strips.notch:
-            ends = strips.ordinates[:, :, k, None][..., list(widest(histories[:, at]))]
-            _, (near,) = _largest(ends, score.of_swing, np.zeros(1, int), np.array([-np.inf]))
-            if near != place:
-                other = score.of(strips.at(k, np.array([near]))[:, 0])
-                most, place = max((most, place), (other, float(near)))
-        scores[k], places[k] = most, place
-        best[strips.design[k]] = max(best[strips.design[k]], most)
+    x, order = strips.places, np.argsort(-bounds, kind="stable")
+    few = max(1, _NUMBERS // (3 * len(x) * strips.ordinates.shape[-1]))
+    for start in range(0, order.size, few):
+        some = order[start : start + few]
+        some = some[bounds[some] > _more(beside * best[strips.design[some]], CLOSE)]
+        histories = strips.at(some, x)
+        shares = score.bound(histories[: strips.ordinates.shape[1]])
+        for k in np.argsort(-shares.max(axis=0), kind="stable").tolist():
+            strip, design = some[k], strips.design[some[k]]
+            floor = beside * best[design]
+            if bounds[strip] > _more(floor, CLOSE):
+                most = _most(score, histories[:, :, k], shares[:, k], float(_more(floor, -_MISSED)))
+                scores[strip], places[strip] = most[0], x[most[1], 0]
+                best[design] = max(best[design], scores[strip])
+    if not strips.notch:
+        _near(strips, score, best, beside, scores, places)
     return scores, places
 
 
-def _most(score: Score, histories: Array, floor: float) -> tuple[float, int]:
-    """The largest score of histories (3, places, t) that may be above a floor, else -inf, and the
-    number of its place.
+def _more(floor: Array, share: float) -> Array:
+    """Scores above others by a share of their size; -inf of none."""
+    return np.asarray(floor * (1.0 + share * np.sign(floor)))
+
+
+def _near(
+    strips: Strips, score: Score, best: Array, beside: float, scores: Array, places: Array
+) -> None:
+    """Raise scores and places of strips to those where their widest swing is largest."""
+    near = np.flatnonzero(scores > _more(beside * best[strips.design], -_MISSED))
+    if not near.size:
+        return
+    histories = strips.at(near, places[None, near])[:, 0]
+    instants = np.array([widest(histories[:, k]) for k in range(near.size)])
+    ends = np.take_along_axis(strips.ordinates[:, :, near], instants[None, None], -1)
+    _, x = _largest(ends, score.of_swing, np.arange(near.size), np.full(near.size, -np.inf))
+    histories = strips.at(near, x[None])[:, 0]
+    for k, strip in enumerate(near.tolist()):
+        if x[k] != places[strip] and (found := score.of(histories[:, k])) > scores[strip]:
+            scores[strip], places[strip] = found, x[k]
+            best[strips.design[strip]] = max(best[strips.design[strip]], found)
+
+
+def _most(score: Score, histories: Array, bounds: Array, floor: float) -> tuple[float, int]:
+    """The largest score of histories (3, places, t) whose ``bounds`` are above a floor, else -inf,
+    and the number of its place.
     """
-    bounds = score.bound(histories)
     most, at = -np.inf, 0
     for k in np.argsort(-bounds, kind="stable").tolist():
         if bounds[k] <= max(most, floor):
@@ -244,7 +270,7 @@ def _largest(
     for _ in range(_HALVED):
         np.maximum.at(best, design, found)
         floor = np.fmax(found, beside * best[design])[strip]
-        some = np.flatnonzero(sizes.max(axis=0) > floor * (1.0 + _CLOSE))
+        some = np.flatnonzero(sizes.max(axis=0) > floor * (1.0 + CLOSE))
         if not some.size:
             break
         width /= 2.0

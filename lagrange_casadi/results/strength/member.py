@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.arrays import Array
-from ...base.bernstein import interpolation, product, raised, value, within
+from ...base.bernstein import interpolated, nodes, product, raised, value, within
 from ...base.brief import Brief
 from ...base.quantities import Output
 from ...engine.model_data import ModelData
@@ -21,15 +21,18 @@ from ...engine.stress import FORCES, CrossSections
 from ...engine.two_force_links import unaimed
 from ...errors import DeclarationError, check_kind
 from ...model.beams.beam import Beam
+from ..histories import Histories
 from ..laws import SectionLaw, law_of
 from ..pieces import Pieces
-from ..solution import Solution
 from ..statistics import counted
 
-_DEGREES, _NARROW = (4, 8, 10, 12), 2.0**-12
-"""Degrees of polynomials for the factors of forces, and the length of a part of a link too short to
-cut.
+_DEGREE, _NARROW = 12, 2.0**-12
+"""Degree of polynomials for the factors of forces where the cross-section changes, and the length
+of a part of a link too short to cut.
 """
+
+CLOSE = 1e-9
+"""Accuracy that is enough for fatigue."""
 
 _TWIST = 1e-9
 
@@ -37,18 +40,26 @@ _STILL = 1e-9
 """Change of a place of a load, as a ratio xi/l, up to which it stands still."""
 
 
+Span = tuple[float, float, int, int]
+"""A part of a link: the first four numbers of a :class:`Cell`."""
+
+Layout = tuple[Span, ...]
+"""The parts of a link, in order along it."""
+
+
 @dataclass(frozen=True, eq=False)
 class Cell:
-    """A part of a link, from one ratio to another, on which its cross-section is smooth.
+    """A part of a link, from one ratio to another, on which its cross-section is smooth: the number
+    ``index`` of the part between two breaks of the cross-section.
 
     ``degree`` is that of polynomials that give what stresses take of section forces there.
     """
 
     low: float
     high: float
-    member: Member
     index: int
     degree: int
+    member: Member
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -57,10 +68,14 @@ class Cell:
 
     @cached_property
     def polynomials(self) -> Array:
-        """Ordinates (degree + 1, 3, fibres, forces, n) of :meth:`factors`."""
-        nodes, weights = interpolation(self.degree)
-        u = (self.high - (self.high - self.low) * nodes)[:, None]
-        return np.asarray(np.tensordot(weights, self.factors(u), (1, 3)))
+        """Ordinates (degree + 1, 3, fibres, forces, n) of :meth:`factors`; a shear stress along z
+        alone has the place of one along y, for its size counts.
+        """
+        u = (self.high - (self.high - self.low) * nodes(self.degree))[:, None]
+        found = interpolated(np.moveaxis(self.factors(u), 3, 0))
+        turned = np.flatnonzero(~found[:, 1].any(axis=(0, 2, 3)))
+        found[:, 1, turned], found[:, 2, turned] = found[:, 2, turned], 0.0
+        return found
 
     def alone(self, *, sheared: bool) -> list[int]:
         """The fibres that are like no other one, with shear stresses or without."""
@@ -101,22 +116,26 @@ class Cell:
         """
         wide = self.high - self.low
         start, stop = (self.high - high) / wide, (self.high - low) / wide
-        factors, force = self.polynomials[:, :, fibres], forces[0]
-        unit = np.eye(len(force)).reshape(len(force), *(1,) * (force.ndim - 1), -1)
-        many = self.degree + len(force)
-        found = np.zeros((*factors.shape[1:3], *force.shape[1:-1], many, force.shape[-1]))
-        for k, force in enumerate(forces):
-            for component in np.flatnonzero(factors[:, :, :, k].any(axis=(0, 2, 3))):
-                # Axes of parts, of designs, and of instants.
-                factor = factors[:, component, :, k, None, :, None]
-                factor = factor if low.ndim > 2 else factor[..., 0]
-                factor = within(factor, start, stop) if self.degree else factor
-                if self.degree and factor.shape[-1] == 1:
-                    # The same at all instants: a matrix of ordinates of the force.
-                    matrix = np.moveaxis(product(factor, unit), 0, -2)
-                    found[component] += np.matmul(matrix, np.moveaxis(force, 0, -2))
-                else:
-                    found[component] += np.moveaxis(product(factor, force[:, None]), 0, -2)
+        factors, many = self.polynomials[:, :, fibres], len(forces[0])
+        rows = [np.moveaxis(force, 0, -2) for force in forces]
+        unit = np.eye(many).reshape(many, *(1,) * low.ndim, many)
+        shape = (self.degree + many, forces[0].shape[-1])
+        found = np.zeros((*factors.shape[1:3], *forces[0].shape[1:-1], *shape))
+        for component, factor in enumerate(np.moveaxis(factors, 1, 0)):
+            some = np.flatnonzero(factor.any(axis=(0, 1, 3))).tolist()
+            # Axes of parts, of designs, and of instants.
+            taken = [factor[:, :, k, None, :, None] for k in some]
+            taken = taken if low.ndim > 2 else [one[..., 0] for one in taken]
+            taken = [within(one, start, stop) for one in taken] if self.degree else taken
+            if self.degree and low.shape[-1] == 1:
+                # The same at all instants: one matrix from ordinates of forces.
+                matrices = [np.moveaxis(product(one, unit), 0, -2) for one in taken]
+                if some:
+                    matrix = np.concatenate(matrices, axis=-1)
+                    found[component] = matrix @ np.concatenate([rows[k] for k in some], axis=-2)
+            else:
+                for one, k in zip(taken, some, strict=True):
+                    found[component] += np.moveaxis(product(one, forces[k][:, None]), 0, -2)
         return np.moveaxis(found, -2, 0)
 
     def factors(self, u: Array) -> Array:
@@ -131,7 +150,8 @@ class Member(Brief):
     """A link of a solution with its beam, whose numbers are those of the solution's parameters; or
     of n designs, each with its own numbers, at t instants (n, t).
 
-    ``accuracy`` is that of polynomials for the factors of forces.
+    ``accuracy`` is that of polynomials for the factors of forces. ``layout`` are its parts, if
+    they are known.
     """
 
     link: str
@@ -141,9 +161,10 @@ class Member(Brief):
     xi: Array
     space: bool
     accuracy: float = 1e-13
+    layout: Layout = ()
 
     @classmethod
-    def of(cls, solution: Solution, link: str, *, spun: bool = False) -> Member:
+    def of(cls, solution: Histories, link: str, *, spun: bool = False) -> Member:
         """A link of a solution; ``spun`` if what is asked of it is the same however a bar is turned
         about its line.
 
@@ -151,7 +172,7 @@ class Member(Brief):
         equilibrium leaves its forces open, its cross-section bears torsion of which its stiffness
         is not known, or it is a bar whose cross-section is not round and has no declared direction.
         """
-        check_kind("strength", solution, "a Solution", Solution)
+        check_kind("strength", solution, "a Solution", Histories)
         law, body = solution.section(link).law, solution.description.bodies[link]
         if not body.beam:
             having = ", ".join(solution.description.beams)
@@ -180,7 +201,7 @@ class Member(Brief):
         cls, data: ModelData, link: str, p: Array, outputs: Mapping[Output, Array]
     ) -> Member:
         """A link of n designs with parameters ``p`` (n, parameters), by ``outputs``, each (n, t),
-        among which are those that its law is made of.
+        among which are those that its law is made of: as accurate as fatigue needs.
         """
         body = data.template.each(data.content.bodies[link], p)
         assert body.beam is not None
@@ -188,7 +209,7 @@ class Member(Brief):
         length: Any = np.zeros((len(p), 1)) + np.reshape(size, (-1, 1))
         law = law_of(link, outputs, length, density)
         t = np.arange(next(iter(outputs.values())).shape[-1], dtype=float)
-        return cls(link, body.beam, law, t, np.zeros(0), data.space)
+        return cls(link, body.beam, law, t, np.zeros(0), data.space, CLOSE)
 
     @cached_property
     def counted(self) -> Member:
@@ -212,9 +233,9 @@ class Member(Brief):
         return self.law.coefficients["n0"].shape
 
     @property
-    def still(self) -> bool:
-        """True if no load moves along it."""
-        return bool(np.all(np.ptp(self.pieces[0].ends, axis=-1) <= _STILL))
+    def still(self) -> npt.NDArray[np.bool_]:
+        """True, of each design if it is of some, where no load moves along it."""
+        return np.asarray(np.all(np.ptp(self.pieces[0].ends, axis=-1) <= _STILL, axis=0))
 
     @cached_property
     def cross(self) -> CrossSections:
@@ -242,11 +263,26 @@ class Member(Brief):
 
     @cached_property
     def cells(self) -> tuple[Cell, ...]:
-        """Parts of the link, in order along it."""
-        breaks = self.beam.course.breaks
-        return tuple(
-            c for k, (a, b) in enumerate(itertools.pairwise(breaks)) for c in self._cells(k, a, b)
-        )
+        """Parts of the link, in order along it; designs must have the same ones."""
+        layout = self.layout or next(iter(self.alike))[0]
+        return tuple(Cell(*span, self) for span in layout)
+
+    @cached_property
+    def alike(self) -> dict[tuple[Layout, int], list[int]]:
+        """The numbers of designs that have the same layout, and no load that moves along them; of
+        another one its own number stands by its layout.
+        """
+        many = self.shape[0] if len(self.shape) > 1 else 1
+        layouts: list[list[Span]] = [[] for _ in range(many)]
+        for k, (low, high) in enumerate(itertools.pairwise(self.beam.course.breaks)):
+            for span, designs in self._spans(k, low, high, np.arange(many)):
+                for design in designs.tolist():
+                    layouts[design].append(span)
+        still = np.broadcast_to(self.still, many).tolist()
+        found: dict[tuple[Layout, int], list[int]] = {}
+        for k, layout in enumerate(layouts):
+            found.setdefault((tuple(layout), -1 if still[k] else k), []).append(k)
+        return found
 
     @property
     def degree(self) -> int:
@@ -286,30 +322,34 @@ class Member(Brief):
         inside = [c for c in self.cells if c.low <= u <= c.high]
         return inside[-1] if side == "tip" else inside[0]
 
-    def _cells(self, index: int, low: float, high: float) -> Iterator[Cell]:
-        """A part as one cell, or where no polynomial gives what it should, cut in halves."""
+    def _spans(
+        self, index: int, low: float, high: float, designs: npt.NDArray[np.intp]
+    ) -> Iterator[tuple[Span, npt.NDArray[np.intp]]]:
+        """A part as one span, or where no polynomial gives what it should, cut in halves: with the
+        designs for which it is so.
+        """
         first, last = self.beam.course.cells[index]
         if first is last:
-            yield Cell(low, high, self, index, 0)
+            yield (low, high, index, 0), designs
             return
-        for degree in _DEGREES:
-            nodes, weights = interpolation(degree)
-            finer = np.linspace(0.0, 1.0, 2 * degree + 3)[:, None]
-            here, there = (
-                np.moveaxis(self.cross.factors(index, low + (high - low) * x), 3, 0)
-                for x in (nodes[:, None], finer)
-            )
-            values = value(np.tensordot(weights, here, 1), finer.reshape(-1, 1, 1, 1, 1))
-            # Of each force, and of each design, its own unit.
-            size = np.abs(there).max(axis=(0, 1, 2))
-            if np.all(np.abs(values - there) <= self.accuracy * size) or (
-                high - low < _NARROW and degree == _DEGREES[-1]
-            ):
-                yield Cell(low, high, self, index, degree)
-                return
-        middle = (low + high) / 2
-        yield from self._cells(index, low, middle)
-        yield from self._cells(index, middle, high)
+
+        def factors(x: Array) -> Array:
+            found = self.cross.factors(index, low + (high - low) * x[:, None])
+            return np.moveaxis(found[:, self.cross.fibres(index).alone], 3, 0)
+
+        x = np.linspace(0.0, 1.0, 2 * _DEGREE + 3)
+        expected = factors(x)
+        # Of each force, and of each design, its own unit.
+        most = self.accuracy * np.abs(expected).max(axis=(0, 1, 2))
+        values = value(interpolated(factors(nodes(_DEGREE))), x.reshape(-1, 1, 1, 1, 1))
+        fits = np.all(np.abs(values - expected) <= most, axis=(0, 1, 2, 3)) | (high - low < _NARROW)
+        some = np.broadcast_to(fits, self.shape[:-1] or 1)[designs]
+        if some.any():
+            yield (low, high, index, _DEGREE), designs[some]
+        if not some.all():
+            middle = (low + high) / 2
+            yield from self._spans(index, low, middle, designs[~some])
+            yield from self._spans(index, middle, high, designs[~some])
 
     def _check_torsion(self) -> None:
         if not self.space or self.cross.properties(0, 0.0).torsion is not None:

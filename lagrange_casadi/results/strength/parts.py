@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 
 from ...base.arguments import public
 from ...errors import DeclarationError
-from ..solution import Solution
+from ..histories import Histories
 from .bearings import joint_safety
 from .member import Member
-from .safety import Safety, safety
+from .safety import Safety, safety, stress
 
 NEEDED = ("yield_strength", "elasticity")
 """The numbers of a material that factors of safety need."""
 
 
 @public
-def safeties(solution: Solution) -> Iterator[Safety]:
+def safeties(solution: Histories) -> Iterator[Safety]:
     """Yield the factors of safety of all links with a beam and of all joints with pins or bearings.
 
     Parameters
@@ -32,7 +33,7 @@ def safeties(solution: Solution) -> Iterator[Safety]:
     return (found for found in looked(solution) if found.verdicts)
 
 
-def looked(solution: Solution) -> Iterator[Safety]:
+def looked(solution: Histories) -> Iterator[Safety]:
     """The same, and of those that are open the reason, without a verdict."""
     links, joints = _parts(solution)
     for part in [*links, *joints]:
@@ -42,24 +43,22 @@ def looked(solution: Solution) -> Iterator[Safety]:
             yield Safety(part, (), (str(error),))
 
 
-def not_evaluated(solution: Solution) -> dict[str, str]:
+def not_evaluated(solution: Histories) -> dict[str, str]:
     """Links with beams, and joints with pins or bearings, that have no factor of safety, and the
     reasons.
     """
     links, joints = _parts(solution)
     reasons = {
-        link: _reason(
+        link: reason(
             lambda name: Member.of(solution, name).beam.material.needs("safety", *NEEDED), link
         )
         for link in links
     }
-    reasons |= {
-        joint: _reason(lambda name: joint_safety(solution, name), joint) for joint in joints
-    }
-    return {part: reason for part, reason in reasons.items() if reason}
+    reasons |= {joint: reason(partial(joint_safety, solution), joint) for joint in joints}
+    return {part: why for part, why in reasons.items() if why}
 
 
-def _parts(solution: Solution) -> tuple[list[str], list[str]]:
+def _parts(solution: Histories) -> tuple[list[str], list[str]]:
     """The links that have a beam and sections, and the joints that have something fitted."""
     described = solution.description
     links = [link for link in solution.links_with_sections if link in described.beams]
@@ -67,7 +66,11 @@ def _parts(solution: Solution) -> tuple[list[str], list[str]]:
 
 
 def part_safety(
-    solution: Solution, part: str, *, criterion: str = "goodman", yield_criterion: str = "von_mises"
+    solution: Histories,
+    part: str,
+    *,
+    criterion: str = "goodman",
+    yield_criterion: str = "von_mises",
 ) -> Safety:
     """The factors of safety of a link, or of what is fitted to a joint: see :func:`.safety` and
     :func:`.joint_safety`.
@@ -77,7 +80,7 @@ def part_safety(
     return safety(solution, part, criterion=criterion, yield_criterion=yield_criterion)
 
 
-def fitted_in(solution: Solution) -> tuple[str, ...]:
+def fitted_in(solution: Histories) -> tuple[str, ...]:
     """The joints that have pins or bearings whose reactions were evaluated."""
     fitted = solution.description.fitted
     forces = {
@@ -87,25 +90,18 @@ def fitted_in(solution: Solution) -> tuple[str, ...]:
     return tuple(name for name, own in forces.items() if own and all(map(solution.determined, own)))
 
 
-def strong_of(solution: Solution, *numbers: str) -> tuple[str, ...]:
+def strong_of(solution: Histories, *numbers: str) -> tuple[str, ...]:
     """The links whose stresses were evaluated, and whose material has some numbers."""
     materials = solution.description.materials
-    known = (link for link in solution.links_with_sections if not _reason(solution.stress, link))
     return tuple(
         link
-        for link in known
-        if all(getattr(materials[link], name) is not None for name in numbers)
+        for link in solution.links_with_sections
+        if not reason(partial(stress, solution), link)
+        and all(getattr(materials[link], name) is not None for name in numbers)
     )
 
 
-def bending_of(solution: Solution) -> tuple[str, ...]:
-    """The links whose deflections were evaluated."""
-    return tuple(
-        link for link in strong_of(solution, "elasticity") if not _reason(solution.deflection, link)
-    )
-
-
-def _reason(asked: Callable[[str], object], part: str) -> str:
+def reason(asked: Callable[[str], object], part: str) -> str:
     """Reason why a result of a part is not available; empty if it is."""
     try:
         asked(part)

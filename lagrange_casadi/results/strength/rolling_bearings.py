@@ -23,7 +23,7 @@ from ...base.csv_table import Per, Table
 from ...base.units import count as whole
 from ...errors import DeclarationError, NoDesignError
 from ...model.fitted import Rolling
-from ..solution import Solution
+from ..histories import Histories
 from .bearings import joint_safety
 
 _BORES = (10, 12, 15, 17, 20, 25, 30, 35, 40, 45, 50, 55, 60, 65, 70, 75, 80, 85, 90, 95, 100)
@@ -227,7 +227,7 @@ def read_bearings(path: str | os.PathLike[str]) -> tuple[RollingBearing, ...]:
 
 @public
 def select_bearing(
-    solution: Solution,
+    solution: Histories,
     joint: str,
     bearings: Sequence[RollingBearing],
     *,

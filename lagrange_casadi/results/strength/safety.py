@@ -16,7 +16,7 @@ from ...engine.buckling import Column
 from ...errors import UnknownNameError
 from ...model.description import Description
 from ...model.end_conditions import effective_lengths
-from ..solution import Solution
+from ..histories import Histories
 from .critical_plane import FINDLEY, critical_plane, plane_factor, plane_score
 from .fatigue import CRITERIA, damage_score, lacking, loaded, use_score, used
 from .fibres import worst
@@ -97,7 +97,7 @@ class Life:
 
 
 @public
-def stress(solution: Solution, link: str) -> Stress:
+def stress(solution: Histories, link: str) -> Stress:
     """Return the stresses in a link.
 
     Parameters
@@ -122,7 +122,11 @@ def stress(solution: Solution, link: str) -> Stress:
 
 @public
 def safety(
-    solution: Solution, link: str, *, criterion: str = "goodman", yield_criterion: str = "von_mises"
+    solution: Histories,
+    link: str,
+    *,
+    criterion: str = "goodman",
+    yield_criterion: str = "von_mises",
 ) -> Safety:
     """Return the factors of safety of a link against yielding, buckling and fatigue.
 
@@ -256,7 +260,7 @@ def buckling(member: Member, of: Column) -> Verdict:
 
 
 @public
-def life(solution: Solution, link: str, *, criterion: str = "goodman") -> Life:
+def life(solution: Histories, link: str, *, criterion: str = "goodman") -> Life:
     """Return the fatigue life of a link whose span of time is repeated.
 
     Parameters

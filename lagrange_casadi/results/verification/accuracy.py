@@ -22,7 +22,7 @@ from ...engine.instants.cycle_table import CycleTable
 from ...engine.instants.refusing import resting
 from ...engine.program import Program
 from ..histories import Histories
-from ..sizes import largest
+from ..sizes import largest, most
 from .longer import LONG, long_doubles, missed
 from .reference import elementwise
 from .reported import blur
@@ -111,11 +111,6 @@ def _worst(
                 np.abs(residuals) + 2.0 * ROUNDING["double"] * sizes
             )
     return {output: error for output, error in errors.items() if histories.determined(output)}
-
-
-def most(values: Array) -> float:
-    """The largest size among values, 0 where none is a number."""
-    return float(np.fmax.reduce(np.abs(values), axis=None, initial=0.0))
 
 
 def by_unit(histories: Histories) -> dict[str, float]:

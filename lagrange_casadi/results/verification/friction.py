@@ -10,7 +10,8 @@ import numpy as np
 
 from ...base.arrays import Array
 from ...base.quantities import Output
-from ...model.description import JointNumbers
+from ...model.description import JointNumbers, LoadNumbers
+from ..sizes import most
 from .placing import Placed
 from .reported import Reported
 from .vectors import Axes, Scalar, Vector
@@ -39,62 +40,52 @@ def friction_residuals(placed: Placed) -> Array | None:
     return np.fmax.reduce(found) if found else None
 
 
+def _sliding(
+    placed: Placed,
+) -> Iterator[tuple[str, LoadNumbers, str, Array, Vector | None, bool]]:
+    """Each friction whose rate is known: its name, its load and its joint, that rate, the vector of
+    which it is the size in a spherical joint, and whether it is of an angle.
+    """
+    reported, declared = placed.reported, placed.declared
+    for name, load, joint in placed.frictions:
+        rotates, spin = declared.coordinates[load.coordinate] == "angle", None
+        rate = reported.outputs.get(Output("motion", load.coordinate, "rate"))
+        if declared.joints[joint].kind == "spherical":
+            near, far = placed.ends(joint)
+            spin = far.rate - near.rate
+            rate = np.broadcast_to(spin.size, reported.t.shape)
+        if rate is not None:
+            yield name, load, joint, rate, spin, rotates
+
+
 def _of_losses(placed: Placed) -> Iterator[Array]:
     """Residual of the power of each friction against its force times its rate, relative to the
     largest.
     """
     outputs, (turned, fastest, _) = placed.reported.outputs, placed.rates
-    for name, rate, rotates in _sliding(placed):
+    for name, _, _, rate, _, rotates in _sliding(placed):
         value, lost = (
             outputs.get(Output("friction", name, member)) for member in ("along", "loss")
         )
         if value is None or lost is None:
             continue
         blur = placed.reported.coarseness * np.max(turned if rotates else fastest)
-        scale = _largest(value) * (_largest(rate) + float(blur))
+        scale = most(value) * (most(rate) + float(blur))
         residual = np.abs(lost + value * rate) / (scale or 1.0)
         yield np.where(np.isnan(residual), 0.0, residual)
-
-
-def _sliding(placed: Placed) -> Iterator[tuple[str, Array, bool]]:
-    """Each friction with the rate that it follows, and whether that is of an angle."""
-    reported, declared = placed.reported, placed.declared
-    for name, load, holder in placed.frictions:
-        if declared.joints[holder].kind == "spherical":
-            near, far = placed.ends(holder)
-            yield name, np.broadcast_to((far.rate - near.rate).size, reported.t.shape), True
-        elif Output("motion", load.coordinate, "rate") in reported.outputs:
-            yield (
-                name,
-                reported.rate(load.coordinate),
-                declared.coordinates[load.coordinate] == "angle",
-            )
-
-
-def _largest(values: Array) -> float:
-    return float(np.fmax.reduce(np.abs(values), initial=0.0))
 
 
 def _of_laws(placed: Placed) -> Array | None:
     """Residuals of joints' frictions against their laws, relative to those under the largest
     reaction of the cycle.
     """
-    declared, outputs = placed.declared, placed.reported.outputs
+    outputs = placed.reported.outputs
     worst: Array | None = None
-    for name, load, holder in placed.frictions:
+    for name, load, holder, rate, spin, rotates in _sliding(placed):
         numbers, value = load.friction, outputs.get(Output("friction", name, "along"))
-        rate = outputs.get(Output("motion", load.coordinate, "rate"))
         if numbers is None or value is None or Output("reaction", holder, "fx") not in outputs:
             continue
-        joint, spin = declared.joints[holder], None
-        if joint.kind == "spherical":
-            near, far = placed.ends(holder)
-            spin = far.rate - near.rate
-            rate = np.broadcast_to(spin.size, value.shape)
-        if rate is None:
-            continue
         worst = np.zeros_like(value) if worst is None else worst
-        rotates = declared.coordinates[load.coordinate] == "angle"
         lever = numbers.get("radius", 1.0) if rotates else 1.0
         speed, share = np.abs(rate) * lever, None
         if (other := _beside(load.coordinate)) is not None:
@@ -169,14 +160,18 @@ def _beside(coordinate: str) -> str | None:
 
 def _most(outputs: Mapping[Output, Array], numbers: Mapping[str, float]) -> float:
     """The largest reaction of all joints [N], its moment by its arm."""
-    arm = numbers.get("length", np.inf)
-    sizes = {"f": 0.0, "m": 0.0}
-    for output, values in outputs.items():
-        if output.group == "reaction":
-            sizes[output.member[0]] = max(
-                sizes[output.member[0]], float(np.fmax.reduce(np.abs(values)))
-            )
-    return sizes["f"] + 2.0 * sizes["m"] / arm
+    force, moment = (
+        max(
+            (
+                most(values)
+                for output, values in outputs.items()
+                if output.group == "reaction" and output.member[0] == letter
+            ),
+            default=0.0,
+        )
+        for letter in "fm"
+    )
+    return force + 2.0 * moment / numbers.get("length", np.inf)
 
 
 def _pressing(placed: Placed, name: str, numbers: Mapping[str, float], rotates: bool) -> Pressing:

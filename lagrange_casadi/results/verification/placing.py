@@ -15,7 +15,7 @@ import numpy as np
 
 from ...base.arrays import Array
 from ...base.quantities import Output
-from ...model.description import AxisNumbers, Description, JointNumbers, LoadNumbers, Triple
+from ...model.description import AxisNumbers, Description, JointNumbers, LoadNumbers
 from ...model.stated import Entry, Stated
 from .reported import Reported
 from .vectors import GROUND, NIL, Axes, Scalar, Vector, most
@@ -124,7 +124,7 @@ class Placed:
     def pin(self, joint: str) -> Motion:
         """Motion of a joint's point on its child."""
         child = self.declared.joints[joint].child
-        return self.bodies[child.body].point(_vector(child.at))
+        return self.bodies[child.body].point(Vector(*child.at))
 
     @cached_property
     def pins(self) -> Mapping[str, Motion]:
@@ -283,34 +283,30 @@ def _outward(
     if not motion.whole and declared.oriented(joint.child.body):
         return None
     at, speed, change = motion.slide
-    place, moves, changes = base.point(_vector(joint.parent.at) + at)
+    place, moves, changes = base.point(Vector(*joint.parent.at) + at)
     slides = base.axes.turn(speed)
     there = place, moves + slides, changes + 2.0 * base.rate.cross(slides) + base.axes.turn(change)
     if not motion.whole:
-        return Moving.directionless(there, _vector(joint.child.at))
+        return Moving.directionless(there, Vector(*joint.child.at))
     spin = base.axes.turn(motion.rate)
     gains = base.axes.turn(motion.acceleration) + base.rate.cross(spin)
     turning = base.axes.carry(motion.turned), base.rate + spin, base.acceleration + gains
-    return Moving.holding(there, _vector(joint.child.at), *turning)
+    return Moving.holding(there, Vector(*joint.child.at), *turning)
 
 
 def _inward(
     declared: Description, joint: JointNumbers, motion: Relative, far: Moving
 ) -> Moving | None:
     """The motion of a joint's parent, or None where the joint does not give it."""
-    place, moves, changes = far.point(_vector(joint.child.at))
+    place, moves, changes = far.point(Vector(*joint.child.at))
     if not motion.whole:
         if declared.oriented(joint.parent.body):
             return None
-        return Moving.directionless((place, moves, changes), _vector(joint.parent.at))
+        return Moving.directionless((place, moves, changes), Vector(*joint.parent.at))
     at, speed, change = motion.slide
     axes = far.axes.carry(motion.turned.inverse)
     spin, slides = axes.turn(motion.rate), axes.turn(speed)
     rate = far.rate - spin
     acceleration = far.acceleration - axes.turn(motion.acceleration) - rate.cross(spin)
     under = place, moves - slides, changes - 2.0 * rate.cross(slides) - axes.turn(change)
-    return Moving.holding(under, _vector(joint.parent.at) + at, axes, rate, acceleration)
-
-
-def _vector(numbers: Triple) -> Vector:
-    return Vector(*numbers)
+    return Moving.holding(under, Vector(*joint.parent.at) + at, axes, rate, acceleration)

@@ -58,14 +58,10 @@ def joint_residuals(
 
 def stacked(placed: Placed, equation: Equation | LoadLaw) -> tuple[Array, Array, Array]:
     """Places, rates and accelerations of what an equation or a law measures, each (entries, t)."""
-    shape = (len(equation.entries), placed.reported.t.size)
-    motions = [placed.measured(entry) for entry in equation.entries]
-    found = []
-    for k in range(3):
-        rows = np.empty(shape)
-        for row, motion in zip(rows, motions, strict=True):
-            row[:] = motion[k]
-        found.append(rows)
+    found = np.empty((3, len(equation.entries), placed.reported.t.size))
+    for k, entry in enumerate(equation.entries):
+        for row, values in zip(found[:, k], placed.measured(entry), strict=True):
+            row[:] = values
     return found[0], found[1], found[2]
 
 
@@ -130,26 +126,17 @@ class _Unplaced:
     def _trial(self, rates: Array, accelerations: Array | None) -> dict[str, Moving]:
         """The bodies with velocities, and accelerations, each (unknowns, t)."""
         found: dict[str, Moving] = {}
-        start = 0
+        given = [iter(() if rows is None else rows) for rows in (rates, accelerations)]
         for name in self.names:
-            free = self._free(name)
             vectors: list[Vector] = []
-            for rows in (rates, accelerations):
+            for rows in given:
                 components: list[Scalar] = [0.0] * 6
-                if rows is not None:
-                    for k, row in zip(free, rows[start : start + len(free)], strict=True):
-                        components[k] = row
+                for k, row in zip(self._free(name), rows, strict=False):
+                    components[k] = row
                 vectors += [Vector(*components[:3]), Vector(*components[3:])]
             speed, rate, change, acceleration = vectors
-            found[name] = Moving(
-                self.reported.place(name),
-                speed,
-                change,
-                self.reported.axes(name),
-                rate,
-                acceleration,
-            )
-            start += len(free)
+            place, axes = self.reported.place(name), self.reported.axes(name)
+            found[name] = Moving(place, speed, change, axes, rate, acceleration)
         return found
 
     def _residuals(self, trial: Mapping[str, Moving], order: Literal[1, 2]) -> Array:

@@ -64,7 +64,7 @@ class DriveEnergy:
         share, span = ((t - t[0]) / (t[-1] - t[0]))[:, None], t[-1] - t[0]
         moved = (1.0 - share) * first + share * last
         number = np.full(t.size, engine.quantities.index(str(self.drive)), np.intc)
-        nowhere, z = np.full_like(t, np.nan), engine.slopes.iterated(instants, p, t)
+        nowhere, z = np.full_like(t, np.nan), engine.slopes.loops.at(instants, p, t)
         there = engine.slopes.at(t, z, p, number, nowhere)
         rows = np.atleast_2d(self._rate_slopes(t[None], p).full())
         by_time, by_p = rows[0], rows[1:].T

@@ -117,7 +117,7 @@ class Tired:
             return []
         values = {output: columns[None, outputs[output], instants] for output in law}
         member = Member.of_designs(self.program.data, self.link, sampled.p[None], values)
-        if not member.still:
+        if not member.still.all():
             raise DeclarationError(
                 f"a load moves along link '{self.link}'; its fatigue is available in sweeps only"
             )

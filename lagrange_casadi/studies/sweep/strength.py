@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
 import casadi as ca
@@ -164,15 +164,13 @@ class Kept:
         """The largest score (designs,) of designs by number, among all parameters and members of a
         ``law``.
         """
-        found, many = list[float](), max(1, _MANY // next(iter(law.values())).shape[1])
+        found, many = np.empty(designs.size), max(1, _MANY // next(iter(law.values())).shape[1])
         for start in range(0, designs.size, many):
             some = designs[start : start + many]
-            whole = self._member(link, p, law, some)
-            members = (
-                [whole] if whole.still else [self._member(link, p, law, k) for k in some[:, None]]
-            )
-            found += [few[0].score for member in members for few in maxima(member, score)]
-        return np.array(found)
+            for (layout, _), alike in self._member(link, p, law, some).alike.items():
+                member = replace(self._member(link, p, law, some[alike]), layout=layout)
+                found[start + np.array(alike)] = [few[0].score for few in maxima(member, score)]
+        return found
 
     def _member(
         self, link: str, p: Array, law: Mapping[Output, Array], some: npt.NDArray[np.int64]

@@ -1,18 +1,14 @@
-"""Options of an animation, and the file that it makes."""
+"""The file that an animation makes."""
 
 from __future__ import annotations
 
-import math
 import os
-from base64 import b64encode
-from dataclasses import dataclass
-from html import escape
 from pathlib import Path
 
 from ...base.arguments import public
 from ...base.files import writing
-from ...base.vocabulary import RATE, SECONDS, WIDTH
 from ...errors import DeclarationError
+from ...results.pictures import Animation, Film
 from ...results.solution import Solution
 from ..shapes.poses import require_poses
 from ..shapes.primitives import drawing, size_of
@@ -27,67 +23,10 @@ from .pixels import find_ffmpeg, gif, mp4
 ENDINGS = (".gif", ".mp4", ".svg", ".glb")
 """Kinds of animations, by the name's ending."""
 
-_KINDS = {".gif": "image/gif", ".svg": "image/svg+xml", ".mp4": "video/mp4"}
-"""Kinds that browsers show."""
-
 _WIDE = 640.0
 """The width of a sheet [points]: widths of lines and sizes of letters are for it, and grow with the
 picture.
 """
-
-_WIDTHS, _MOST, _SHORTEST = (80, 3840), 3000, 0.1
-
-
-@public
-@dataclass(frozen=True)
-class Film:
-    """Options of a film: the picture's ``width`` [pixels], frames a second, and the ``seconds`` of
-    a cycle.
-
-    ``forces`` adds reactions, efforts and loads as arrows, ``section`` a section force by its name,
-    as "bending", as ribbons along links. ``names`` writes the joints' names beside them. Raises
-    :class:`.DeclarationError` for what is out of range.
-    """
-
-    width: int = WIDTH
-    rate: float = RATE
-    seconds: float = SECONDS
-    forces: bool = False
-    section: str = ""
-    names: bool = True
-
-    def __post_init__(self) -> None:
-        low, high = _WIDTHS
-        if (
-            isinstance(self.width, bool)
-            or not isinstance(self.width, int)
-            or not low <= self.width <= high
-            or self.width % 2
-        ):
-            raise DeclarationError(
-                f"width: expected an even number of pixels from {low} to {high}, got {self.width!r}"
-            )
-        for name, value, unit in (
-            ("rate", self.rate, "frames a second"),
-            ("seconds", self.seconds, "seconds a cycle"),
-        ):
-            if (
-                isinstance(value, bool)
-                or not isinstance(value, (int, float))
-                or not (math.isfinite(value) and value > 0)
-            ):
-                raise DeclarationError(f"{name}: expected {unit} above 0, got {value!r}")
-        if self.seconds < _SHORTEST:
-            raise DeclarationError(
-                f"seconds: expected {_SHORTEST} seconds a cycle at least, got {self.seconds!r}"
-            )
-        if self.rate > 50:
-            raise DeclarationError(f"rate: expected 50 frames a second at most, got {self.rate!r}")
-        if self.rate * self.seconds > _MOST:
-            raise DeclarationError(
-                f"rate and seconds: expected {_MOST} frames at most, got"
-                f" {self.rate * self.seconds:.6g}"
-            )
 
 
 def check_ending(path: Path) -> None:
@@ -112,25 +51,6 @@ def check_ending(path: Path) -> None:
         )
     if path.suffix.lower() == ".mp4":
         find_ffmpeg()
-
-
-@dataclass(frozen=True)
-class Animation:
-    """An animation in a file, which a notebook shows if it is the last value of a cell; a .glb is
-    for programs of its own.
-    """
-
-    path: Path
-
-    def _repr_html_(self) -> str:
-        """The file itself, within the page."""
-        path, kind = escape(str(self.path)), _KINDS.get(self.path.suffix.lower())
-        if kind is None or not self.path.is_file():
-            return f"<p>{path}</p>"
-        source = f"data:{kind};base64,{b64encode(self.path.read_bytes()).decode()}"
-        if kind.startswith("video"):
-            return f'<video src="{source}" title="{path}" autoplay loop controls muted></video>'
-        return f'<img src="{source}" alt="{path}">'
 
 
 @public

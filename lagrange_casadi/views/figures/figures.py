@@ -1,5 +1,5 @@
-"""Pictures of a solution, by the specs that say what is drawn (:mod:`.shapes.specs`); matplotlib is
-imported when one is drawn.
+"""Pictures of a solution, by the specs that say what is drawn (:mod:`.results.store.specs`);
+matplotlib is imported when one is drawn.
 """
 
 from __future__ import annotations
@@ -19,13 +19,11 @@ from ...base.arrays import Array
 from ...base.quantities import Output
 from ...base.tables import PLANE, SPACE
 from ...errors import DeclarationError, PathError, UnknownNameError, shown
+from ...results.elastic.deflection import bending_of
 from ...results.histories import Peak
 from ...results.ordering import vanishes
 from ...results.solution import Solution
-from ...results.strength.parts import NEEDED, bending_of, fitted_in, strong_of
-from ..shapes.pictures import ending_of, one_at_a_time, save
-from ..shapes.readable import instant, number, scale_for
-from ..shapes.specs import (
+from ...results.store.specs import (
     DeflectionPlot,
     MechanismDrawing,
     PolarPlots,
@@ -37,6 +35,9 @@ from ..shapes.specs import (
     TimePlot,
     UtilisationPlot,
 )
+from ...results.strength.parts import NEEDED, fitted_in, strong_of
+from ..shapes.pictures import ending_of, one_at_a_time, save
+from ..shapes.readable import instant, number, scale_for
 from .deflection_plot import draw_deflection
 from .diagrams import draw_polar, draw_section_diagrams, polar_members
 from .mechanism import draw_mechanism

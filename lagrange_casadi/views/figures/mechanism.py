@@ -13,6 +13,7 @@ import numpy as np
 
 from ...base.arrays import Array
 from ...results.solution import Solution
+from ...results.store.specs import MechanismDrawing
 from ..shapes.poses import Poses
 from ..shapes.primitives import (
     GROUND,
@@ -30,7 +31,6 @@ from ..shapes.primitives import (
 from ..shapes.readable import Scale, instant, scale_for
 from ..shapes.shapes import named_spots
 from ..shapes.sheet import filling, together, view_of
-from ..shapes.specs import MechanismDrawing
 from ..shapes.symbols import SYMBOLS
 from ..shapes.views import View, page, views
 from .labels import apart, label_bodies, placed

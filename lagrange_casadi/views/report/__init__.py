@@ -4,7 +4,7 @@ one file.
 
 from .comparison import write_comparison
 from .live import Live
-from .notebook import View, scene_summary, summary, view
+from .notebook import scene_summary, summary, view
 from .page import (
     ENDINGS,
     assembled,
@@ -19,7 +19,6 @@ from .page import (
 __all__ = [
     "ENDINGS",
     "Live",
-    "View",
     "assembled",
     "live_digest",
     "page",

@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 
 from ...base.arrays import Array, Json, spread
+from ...results.elastic.deflection import bending_of
 from ...results.solution import Solution
 from ...results.statistics import counted
-from ...results.strength.parts import bending_of, strong_of
+from ...results.strength.parts import strong_of
 from ...results.strength.stress import Stress
 from .arrays import Arrays
 from .instants import Mark, mark

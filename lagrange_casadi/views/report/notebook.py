@@ -5,13 +5,13 @@ report inside them.
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import dataclass
 from html import escape
 
 from ...engine.model_data import template
 from ...errors import DeclarationError, LagrangeCasadiError
 from ...model.scene import Scene
 from ...results.ordering import ordered
+from ...results.pictures import View
 from ...results.solution import Solution
 from ...studies.evaluate import evaluate
 from ..shapes.index import html_table
@@ -22,31 +22,6 @@ from .words import what
 
 _ROWS = 12
 """Peaks that are shown at most: the largest of each unit first."""
-
-
-@dataclass(frozen=True)
-class View:
-    """A report's page, which a notebook shows in a frame of a ``height`` [points]."""
-
-    case: str
-    text: str
-    height: int
-
-    def __repr__(self) -> str:
-        return (
-            f"<View of {self.case}: a notebook shows it; solution.report('{self.case}.html')"
-            " writes it>"
-        )
-
-    def _repr_html_(self) -> str:
-        """The page in a frame of its own, which runs its script and may
-        do nothing to the notebook.
-        """
-        style, text = "width:100%;border:0;border-radius:8px", escape(self.text)
-        return (
-            f'<iframe sandbox="allow-scripts allow-modals" style="{style}" height="{self.height}"'
-            f' srcdoc="{text}"></iframe>'
-        )
 
 
 def view(solution: Solution, height: int = 760) -> View:

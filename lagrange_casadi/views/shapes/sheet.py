@@ -11,10 +11,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...base.arrays import Array
+from ...base.vocabulary import AZIMUTH, ELEVATION
 from ...model.description import Description
 from .primitives import Line, Name, Primitive, Symbol, cloud, frame, seen, turn
 from .symbols import BODY, Outline
-from .views import AZIMUTH, ELEVATION, View, upright, view
+from .views import View, upright, view
 
 _MARGIN, _FOOT = 40.0, 30.0
 """Around everything, and below for words [points]."""

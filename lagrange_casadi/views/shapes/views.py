@@ -10,9 +10,6 @@ import numpy as np
 
 from ...base.arrays import Array
 
-AZIMUTH, ELEVATION = -60.0, 25.0
-"""The view that shows most of most mechanisms [deg]."""
-
 _WIDE, _HIGH, _LARGE = 9.6, 7.6, 6.4
 """The most that all columns, all rows and one picture take [inch]."""
 

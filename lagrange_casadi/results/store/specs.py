@@ -6,16 +6,21 @@ when something is drawn.
 
 from __future__ import annotations
 
+import dataclasses
+import json
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from ...base.arguments import Finite, public
 from ...base.brief import Brief
 from ...base.methods import method
 from ...base.quantities import Output
 from ...base.tables import PLANE
-from ...results.solution import Solution
-from .views import AZIMUTH, ELEVATION
+from ...base.vocabulary import AZIMUTH, ELEVATION
+from ...errors import DeclarationError
+from ..solution import Solution
+from .untrusted import parsed
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -31,6 +36,18 @@ class _Drawn:
         """
         found: Figure = method("Spec.draw")(self, solution, si)
         return found
+
+
+@dataclass(frozen=True)
+class _OfLink(_Drawn):
+    """A spec of what is drawn of the section forces of one link."""
+
+    name: str
+    link: str
+
+    def needs(self) -> tuple[str, ...]:
+        """Full names of the quantities it draws."""
+        return tuple(str(Output("section", self.link, force)) for force in PLANE.forces)
 
 
 @public
@@ -76,7 +93,7 @@ class SpanPlot(_Drawn, Brief):
 
 @public
 @dataclass(frozen=True)
-class SectionMaps(_Drawn):
+class SectionMaps(_OfLink):
     """The section forces of a link as maps of time and xi/l, the peaks marked; a grid finer than
     the picture is thinned.
 
@@ -84,12 +101,6 @@ class SectionMaps(_Drawn):
     """
 
     kind: ClassVar[str] = "maps"
-    name: str
-    link: str
-
-    def needs(self) -> tuple[str, ...]:
-        """Full names of the quantities it draws."""
-        return tuple(str(Output("section", self.link, force)) for force in PLANE.forces)
 
 
 @public
@@ -155,18 +166,12 @@ class MechanismDrawing(_Drawn):
 
 @public
 @dataclass(frozen=True)
-class StrengthPlot(_Drawn):
+class StrengthPlot(_OfLink):
     """Von Mises' stress of a link that has a beam, over time and along it, and its swings in
     Goodman's diagram.
     """
 
     kind: ClassVar[str] = "strength"
-    name: str
-    link: str
-
-    def needs(self) -> tuple[str, ...]:
-        """Full names of the quantities it draws."""
-        return SectionMaps(self.name, self.link).needs()
 
 
 @public
@@ -196,18 +201,12 @@ class UtilisationPlot(_Drawn):
 
 @public
 @dataclass(frozen=True)
-class DeflectionPlot(_Drawn):
+class DeflectionPlot(_OfLink):
     """The deflection of a link that has a beam, over time and along it, and the harmonics of its
     bending.
     """
 
     kind: ClassVar[str] = "deflection"
-    name: str
-    link: str
-
-    def needs(self) -> tuple[str, ...]:
-        """Full names of the quantities it draws."""
-        return SectionMaps(self.name, self.link).needs()
 
 
 Spec = (
@@ -236,3 +235,29 @@ KINDS: dict[str, type[Spec]] = {
     )
 }
 """Kinds of figures by their words in files."""
+
+
+def dump_specs(specs: Sequence[Spec]) -> str:
+    """Specs as text, for a file."""
+    return json.dumps([{"kind": spec.kind} | dataclasses.asdict(spec) for spec in specs])
+
+
+def parse_specs(text: str) -> tuple[Spec, ...]:
+    """Specs from a file's text; none from an empty one.
+
+    Raises ``ValueError`` for others.
+    """
+    return tuple(map(_parse, parsed(text or "[]", [{"kind": str, "name": str}], "figures")))
+
+
+def _parse(entry: dict[str, Any]) -> Spec:
+    fields: dict[str, Any] = {
+        key: tuple(value) if isinstance(value, list) else value for key, value in entry.items()
+    }
+    kind = fields.pop("kind")
+    if kind not in KINDS:
+        raise ValueError(f"figures: unknown kind {kind!r}; valid: {', '.join(KINDS)}")
+    try:
+        return KINDS[kind](**fields)
+    except DeclarationError as error:
+        raise ValueError(f"figures: {error}") from None
