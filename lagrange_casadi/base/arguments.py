@@ -6,14 +6,13 @@ from __future__ import annotations
 
 import functools
 import inspect
-import math
 import os
 import sys
 import types
 import typing
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from itertools import chain, repeat
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple, ParamSpec, TypeAlias, TypeVar
 
@@ -24,43 +23,12 @@ from ..errors import DeclarationError, shown
 from .space import MOST_THREADS
 from .units import Within, double, is_whole, typed
 
-LATER = "looked at where it is used"
-"""Annotation of an argument that its function checks itself, with a better message."""
-
-_OWN = ("Body", "Point", "Joint", "Link", "Density", "Beam")
-"""Parts of mechanisms: declarations look at these themselves, for they list what is valid."""
-
-Finite: TypeAlias = Annotated[float, Within()]
-"""A number that is not infinite."""
-
-Positive: TypeAlias = Annotated[float, Within(0.0, above=True)]
-NotNegative: TypeAlias = Annotated[float, Within(0.0)]
-Share: TypeAlias = Annotated[float, Within(0.0, 1.0)]
-Count: TypeAlias = Annotated[int, Within(1)]
-Index: TypeAlias = Annotated[int, Within(0)]
-
-ThreadCount: TypeAlias = Annotated[int, Within(1, MOST_THREADS)]
-
-Elastic: TypeAlias = Annotated[tuple[float, float], "elastic"]
-"""Young's modulus and Poisson's ratio."""
-
-Numeric: TypeAlias = Annotated[Any, "numeric"]
-"""A number, or an array of numbers of any shape."""
-
-Symbolic: TypeAlias = Annotated[Any, "symbolic"]
-"""A number, a text with a unit, or an expression of parameters, for what is declared before there
-is a mechanism.
-"""
-
-Outputs: TypeAlias = Annotated[Sequence[str], "outputs"]
-"""Names of outputs that are wanted."""
-
-Graph: TypeAlias = Annotated[Any, "graph"]
-"""A ``casadi.SX`` expression."""
-
 Thing = TypeVar("Thing", bound=Callable[..., Any])
 _P = ParamSpec("_P")
 _Result = TypeVar("_Result")
+
+_OWN = ("Body", "Point", "Joint", "Link", "Density", "Beam")
+"""Parts of mechanisms: declarations look at these themselves, for they list what is valid."""
 
 
 def public(thing: Thing) -> Thing:
@@ -93,128 +61,73 @@ def fitting(thing: Thing) -> Thing:
 
 
 class _Kind(NamedTuple):
-    """A kind of values, in words; ``read`` makes of one what the function takes, and ``_NONE`` of
-    what is of another kind.
+    """A kind of values, in words; ``read`` makes of one what the function takes, and None of what
+    is of another kind. None itself is taken where it is ``optional``.
     """
 
     words: str
     read: Callable[[Any], Any]
+    optional: bool = False
 
 
-_NONE: Any = object()
-
-
-@dataclass(frozen=True)
-class _Asked:
-    """Arguments that a function asks for: its ``signature``, the ``kinds`` that are known, and a
-    key that shows that a call fits.
-
-    ``positional`` are the names of arguments that may be given by their place; there are none if
-    some of its arguments are not of these two simple sorts.
+class _Asked(NamedTuple):
+    """Arguments that a function asks for: kinds and defaults of those that are ``known`` by name,
+    of ``others`` by name, the ``names`` of those that may be given by their place, and that of the
+    ``rest`` of these.
     """
 
-    signature: inspect.Signature
-    kinds: Mapping[str, _Kind]
-    positional: tuple[str, ...]
-    defaults: Mapping[str, object]
-    required: frozenset[str]
-
-    @functools.cached_property
-    def placed(self) -> tuple[tuple[int, str, _Kind, object], ...]:
-        """Place, name, kind and default of each argument of a kind that may be given by its
-        place.
-        """
-        return tuple(
-            (k, name, self.kinds[name], self.defaults[name])
-            for k, name in enumerate(self.positional)
-            if name in self.kinds
-        )
-
-    @functools.cached_property
-    def fewest(self) -> float:
-        """Number of arguments that a call without names gives at least."""
-        lacking = [k for k, name in enumerate(self.defaults, 1) if name in self.required]
-        named = self.required.difference(self.positional)
-        return math.inf if named or not self.defaults else max(lacking, default=0)
+    known: Mapping[str | None, tuple[_Kind | None, object]]
+    others: tuple[_Kind | None, object]
+    names: Sequence[str]
+    rest: str | None
 
     @classmethod
-    def of(cls, signature: inspect.Signature, kinds: Mapping[str, _Kind]) -> _Asked:
-        """Make them of a signature."""
-        each = signature.parameters.values()
-        by_place, by_name = inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY
-        simple = all(one.kind in (by_place, by_name) for one in each)
+    def of(cls, function: Callable[..., object], kinds: bool) -> _Asked:
+        """Read them from a signature, or all but the ``kinds``."""
+        each = inspect.signature(function).parameters.values()
+        scope = vars(sys.modules[function.__module__])
+        known: dict[str | None, tuple[_Kind | None, object]] = {None: (None, None)}
+        for one in each:
+            known[one.name] = _said(one.annotation, scope) if kinds else None, one.default
+        stars = {one.kind: one.name for one in each}
         return cls(
-            signature,
-            kinds,
-            tuple(one.name for one in each if one.kind is by_place) if simple else (),
-            {one.name: one.default for one in each} if simple else {},
-            frozenset(one.name for one in each if one.default is one.empty),
-        )
-
-    def fits(self, given: Sequence[object], named: Mapping[str, object]) -> bool:
-        """Return whether arguments are all that a function needs, each once."""
-        if not named:
-            return self.fewest <= len(given) <= len(self.positional)
-        if len(given) > len(self.positional) or not self.defaults:
-            return False
-        placed = self.positional[: len(given)]
-        return (
-            self.defaults.keys() >= named.keys()
-            and named.keys().isdisjoint(placed)
-            and self.required.difference(placed) <= named.keys()
+            known,
+            known[stars.get(inspect.Parameter.VAR_KEYWORD)],
+            [one.name for one in each if one.kind <= inspect.Parameter.POSITIONAL_OR_KEYWORD],
+            stars.get(inspect.Parameter.VAR_POSITIONAL),
         )
 
 
 def _looking(function: Callable[_P, _Result], kinds: bool = True) -> Callable[_P, _Result]:
-    """A function that looks at its arguments before it runs: whether they
-    fit, and at their kinds.
+    """A function that looks at the kinds of its arguments before it runs, and at whether they fit
+    where Python finds that something does not.
     """
 
     @functools.cache
     def asked() -> _Asked:  # a module's names are not all there when it is read
-        signature = inspect.signature(function)
-        return _Asked.of(signature, _kinds(function, signature) if kinds else {})
+        return _Asked.of(function, kinds)
 
     @functools.wraps(function)
     def called(*given: _P.args, **named: _P.kwargs) -> _Result:
-        expected = asked()
-        signature, known = expected.signature, expected.kinds
+        known, others, names, rest = asked()
 
-        def read(kind: _Kind, name: str, value: object) -> Any:
+        def read(name: str | None, value: Any) -> Any:
+            kind, default = known.get(name, others)
+            if kind is None or value is default or (value is None and kind.optional):
+                return value
             found = kind.read(value)
-            if found is _NONE:
-                what = f"{_called(function)}{_part(signature, given)}: {name}"
+            if found is None:
+                what = f"{_called(function)}{_part(names, given)}: {name}"
                 raise DeclarationError(f"{what}: expected {kind.words}, got {shown(value)}")
             return found
 
-        # Most calls fit, which is seen without binding them: that takes longer than all the rest.
-        if expected.fits(given, named):
-            for name, each in named.items():
-                if (kind := known.get(name)) and each is not expected.defaults[name]:
-                    named[name] = read(kind, name, each)
-            placed: Any = list(given)
-            for k, name, kind, default in expected.placed:
-                if k < len(placed) and placed[k] is not default:
-                    placed[k] = read(kind, name, placed[k])
-            return function(*placed, **named)
+        placed: Any = map(read, chain(names, repeat(rest)), given)
+        by_name: Any = {name: read(name, value) for name, value in named.items()}
         try:
-            bound = signature.bind(*given, **named)
-        except TypeError as wrong:
-            raise DeclarationError(_not_taken(function, signature, given, str(wrong))) from None
-        bound_arguments = bound.arguments
-        for name, kind in known.items():
-            if (
-                name not in bound_arguments
-                or (value := bound_arguments[name]) is signature.parameters[name].default
-            ):
-                continue
-            if signature.parameters[name].kind is inspect.Parameter.VAR_POSITIONAL:
-                bound_arguments[name] = tuple(read(kind, name, each) for each in value)
-            elif signature.parameters[name].kind is inspect.Parameter.VAR_KEYWORD:
-                bound_arguments[name] = {key: read(kind, key, each) for key, each in value.items()}
-            else:
-                bound_arguments[name] = read(kind, name, value)
-        return function(*bound.args, **bound.kwargs)
+            return function(*placed, **by_name)
+        except TypeError:
+            _check_fit(function, given, named)
+            raise
 
     return called
 
@@ -227,67 +140,59 @@ def _called(function: Callable[..., object]) -> str:
     return owner if name.startswith("__") else name
 
 
-def _part(signature: inspect.Signature, given: tuple[object, ...]) -> str:
+def _part(names: Sequence[str], given: Sequence[object]) -> str:
     """The name of the part that is declared, if that is what the first argument says."""
     named = (
-        list(signature.parameters)[:2] in (["self", "name"], ["mechanism", "name"])
+        [*names[:2]] in (["self", "name"], ["mechanism", "name"])
         and len(given) > 1
         and isinstance(given[1], str)
     )
     return f" {shown(given[1])}" if named else ""
 
 
-def _not_taken(
-    function: Callable[..., object],
-    signature: inspect.Signature,
-    given: tuple[object, ...],
-    wrong: str,
-) -> str:
-    """Describe missing or superfluous arguments of a call."""
-    each = list(signature.parameters.values())
+def _check_fit(
+    function: Callable[..., object], given: Sequence[object], named: Mapping[str, object]
+) -> None:
+    """Raise :class:`DeclarationError` for arguments that a function does not take, or lacks."""
+    signature = inspect.signature(function)
+    try:
+        signature.bind(*given, **named)
+    except TypeError as error:
+        wrong = str(error)
+    else:
+        return
+    each = signature.parameters.values()
     own = [one.name for one in each if one.name not in ("self", "cls")]
-    named = [one.name for one in each if one.kind is inspect.Parameter.KEYWORD_ONLY]
-    beyond = len(given) - (len(each) - len(named))
-    if named and beyond > 0 and "too many positional" in wrong:
-        wrong = f"name them: {', '.join(f'{name}=' for name in named[:beyond])}"
+    by_name = [one.name for one in each if one.kind is inspect.Parameter.KEYWORD_ONLY]
+    beyond = len(given) - (len(each) - len(by_name))
+    if by_name and beyond > 0 and "too many positional" in wrong:
+        wrong = f"name them: {', '.join(f'{name}=' for name in by_name[:beyond])}"
     space = getattr(given[0], "space", None) if given and len(own) < len(each) else None
     where = "" if not isinstance(space, bool) else "in space " if space else "in a plane "
-    return (
-        f"{_called(function)}{_part(signature, given)}: {wrong}; {where}it takes"
+    raise DeclarationError(
+        f"{_called(function)}{_part([*signature.parameters], given)}: {wrong}; {where}it takes"
         f" {', '.join(own) or 'nothing'}"
-    )
+    ) from None
 
 
-def _kinds(function: Callable[..., object], signature: inspect.Signature) -> dict[str, _Kind]:
-    """The kinds of a function's arguments, of those whose annotation says one."""
-    scope = vars(sys.modules[function.__module__])
-    found: dict[str, _Kind] = {}
-    for name, parameter in signature.parameters.items():
-        hint = parameter.annotation
-        with suppress(NameError, TypeError, AttributeError):  # names that only type checkers see
-            hint = eval(hint, scope) if isinstance(hint, str) else hint
-            if hint is not inspect.Parameter.empty and (kind := _kind(hint)):
-                found[name] = kind
-    return found
+def _said(hint: Any, scope: dict[str, Any]) -> _Kind | None:
+    """The kind that an annotation says, which may be a text in a module."""
+    with suppress(NameError, TypeError, AttributeError):  # names that only type checkers see
+        return _kind(eval(hint, scope) if isinstance(hint, str) else hint)
+    return None
 
 
 def _kind(hint: Any) -> _Kind | None:
     """The kind that an annotation says; None for one that its function looks at itself."""
     origin, of = typing.get_origin(hint) or hint, typing.get_args(hint)
     if origin is Annotated:
-        return (
-            None if of[1] == LATER else _ranged(*of) if isinstance(of[1], Within) else _NAMED[of[1]]
-        )
+        return _ranged(*of) if isinstance(of[1], Within) else of[1]
     if origin in (typing.Union, types.UnionType):
         return _one_of(of)
     if origin is Literal:
         return _SIMPLE[str] if all(isinstance(one, str) for one in of) else None
-    if hint in (None, type(None)):
-        return _if("None", lambda value: value is None)
-    if isinstance(origin, type) and origin in _SIMPLE:
-        return _SIMPLE[origin]
     if origin in (Sequence, Iterable, Collection) or (origin is tuple and of[1:] == (...,)):
-        return _row(of[0], named=origin is Collection)
+        return _row(of[0], _NO_NAMES if origin is Collection else _NO_ROWS)
     if origin is np.ndarray:
         return _ARRAYS.get(of[-1])
     if origin is Mapping or origin is dict:
@@ -296,8 +201,10 @@ def _kind(hint: Any) -> _Kind | None:
         return _if(words, lambda value: isinstance(value, Mapping))
     if origin is Callable:
         return _if("a function", callable)
-    ours = isinstance(origin, type) and origin.__module__.startswith("lagrange_casadi")
-    if not ours or origin.__name__ in _OWN or getattr(origin, "_is_protocol", False):
+    if not isinstance(origin, type) or origin in _SIMPLE:
+        return _SIMPLE.get(origin)
+    ours = origin.__module__.startswith("lagrange_casadi")
+    if not ours or origin.__name__ in _OWN:
         return None
     article = "an" if origin.__name__[0] in "AEIO" else "a"
     words = getattr(origin, "_known_as", f"{article} {origin.__name__}")
@@ -306,23 +213,22 @@ def _kind(hint: Any) -> _Kind | None:
 
 def _if(words: str, admits: Callable[[object], bool]) -> _Kind:
     """A kind of which values are taken as they are."""
-    return _Kind(words, lambda value: value if admits(value) else _NONE)
+    return _Kind(words, lambda value: value if admits(value) else None)
 
 
-def _one_of(hints: tuple[object, ...]) -> _Kind | None:
+def _one_of(hints: Sequence[object]) -> _Kind | None:
     """One of several kinds; None where one of them is looked at by the function."""
-    found = [kind for hint in hints if (kind := _kind(hint))]
-    if len(found) < len(hints):
+    others = [hint for hint in hints if hint is not type(None)]
+    found = [kind for hint in others if (kind := _kind(hint))]
+    if len(found) < len(others):
         return None
     if _SIMPLE[Path] in found:  # may be a text
         found = [kind for kind in found if kind is not _SIMPLE[str]]
-    words = list(dict.fromkeys(kind.words for kind in found if kind.words != "None")) or ["None"]
-    listed = f"{', '.join(words[:-1])} or {words[-1]}" if len(words) > 1 else words[0]
+    *words, last = dict.fromkeys(kind.words for kind in found)
     return _Kind(
-        listed,
-        lambda value: next(
-            (got for kind in found if (got := kind.read(value)) is not _NONE), _NONE
-        ),
+        f"{', '.join(words)} or {last}" if words else last,
+        lambda value: next((got for kind in found if (got := kind.read(value)) is not None), None),
+        len(others) < len(hints),
     )
 
 
@@ -332,84 +238,83 @@ def _ranged(of: type, span: Within) -> _Kind:
 
     def read(value: object) -> Any:
         found = simple.read(value)
-        return found if found is not _NONE and span.admits(found) else _NONE
+        return found if found is not None and span.admits(found) else None
 
-    sign = "positive " if span == Within(0.0, above=True) else "finite " if span == Within() else ""
-    return _Kind(f"a {sign}{simple.words.removeprefix('a ')}{'' if sign else span.words}", read)
+    named = {Within(): "a finite number", Within(0.0, above=True): "a positive number"}
+    return _Kind(named.get(span, f"{simple.words}{span.words}"), read)
 
 
-def _row(of: object, named: bool = False) -> _Kind | None:
-    """The kind of rows of something: of numbers, of names, of parts; or the names of a mapping,
-    where no order is asked for.
-    """
+_NO_TEXTS = (str, Mapping)
+_NO_NAMES = (str, bytes, set, frozenset)
+_NO_ROWS = (*_NO_NAMES, Mapping)
+"""Kinds that are walked over, and are no list: of texts, of names of a mapping, of anything."""
+
+
+def _row(of: object, never: tuple[type, ...]) -> _Kind | None:
+    """The kind of rows of something: of numbers, of names, of parts."""
     if of is float:
         return _Kind(
             "a row of numbers",
-            lambda value: tuple(found.tolist()) if np.ndim(found := _array(value)) == 1 else _NONE,
+            lambda value: tuple(found.tolist()) if np.ndim(found := _array(value)) == 1 else None,
         )
-    kind = _SIMPLE[str] if of is str else _kind(of)
+    kind = _kind(of)
     if kind is None:
         return None
+    return _Kind(
+        "a list of texts" if of is str else f"a list, each {kind.words}",
+        lambda value: None if (found := _each(value, kind.read, never)) is None else tuple(found),
+    )
 
-    def read(value: object) -> object:
-        if isinstance(value, str | bytes | set | frozenset) or not isinstance(value, Iterable):
-            return _NONE
-        if isinstance(value, Mapping) and not named:
-            return _NONE
+
+def _each(value: Any, read: Callable[[Any], Any], never: tuple[type, ...]) -> list[Any] | None:
+    """List of what is walked over, each read; None where it is no list, or one is of another
+    kind.
+    """
+    if isinstance(value, Iterable) and not isinstance(value, never):
         with suppress(Exception):  # of a class that is not ours, when it is walked over
-            found = [
-                kind.read(one)
-                for one in (value.tolist() if isinstance(value, np.ndarray) else value)
-            ]
-            return tuple(found) if all(one is not _NONE for one in found) else _NONE
-        return _NONE
+            found = [*map(read, value.tolist() if isinstance(value, np.ndarray) else value)]
+            return found if all(one is not None for one in found) else None
+    return None
 
-    return _Kind("a list of texts" if of is str else f"a list, each {kind.words}", read)
+
+def texts(value: object) -> list[str] | None:
+    """Texts of a list, an array or what else is walked over; None of anything else, as a text."""
+    return _each(value, _SIMPLE[str].read, _NO_TEXTS)
 
 
 def _array(value: object) -> Any:
     """A value as an array of doubles."""
     if isinstance(value, str | bytes | memoryview | Mapping | set | frozenset | ca.SX | ca.MX):
-        return _NONE
+        return None
     with suppress(TypeError, ValueError, OverflowError, RuntimeError, NotImplementedError):
         found = np.asarray(value)
         whole = found.dtype.kind in "iuf" or (
             found.dtype.kind == "O" and all(double(one) is not None for one in found.flat)
         )
-        return found.astype(float) if whole else _NONE
-    return _NONE
+        return found.astype(float) if whole else None
+    return None
+
+
+def _whole(value: object) -> Any:
+    return int(value) if is_whole(value) and abs(value) < 2**63 else None
 
 
 def _pair(value: object) -> Any:
     """Two numbers."""
-    found = _array(value)
-    return tuple(found.tolist()) if found is not _NONE and found.shape == (2,) else _NONE
+    return tuple(found.tolist()) if np.shape(found := _array(value)) == (2,) else None
 
 
 def _wholes(value: object) -> Any:
     """A value as an array of whole numbers."""
     found = _array(value)
-    whole = (
-        found is not _NONE
-        and (np.abs(found) < 2.0**53).all()
-        and np.array_equal(found, np.rint(found))
-    )
-    return found.astype(np.int64) if whole else _NONE
-
-
-def texts(value: object) -> list[str] | None:
-    """Texts of a list, an array or what else is walked over; None of anything else, as a text."""
-    if isinstance(value, Iterable) and not isinstance(value, str | Mapping):
-        with suppress(Exception):  # of a class that is not ours, when it is walked over
-            found = value.tolist() if isinstance(value, np.ndarray) else list(value)
-            return found if all(isinstance(one, str) for one in found) else None
-    return None
+    if found is None or not (np.abs(found) < 2.0**53).all() or (found != np.rint(found)).any():
+        return None
+    return found.astype(np.int64)
 
 
 def _graph(value: object) -> Any:
-    if isinstance(value, ca.SX | ca.DM):
-        return ca.SX(value)
-    return _NONE if (found := double(value)) is None else ca.SX(found)
+    found = value if isinstance(value, ca.SX | ca.DM) else double(value)
+    return None if found is None else ca.SX(found)
 
 
 def _symbolic(value: object) -> Any:
@@ -417,11 +322,10 @@ def _symbolic(value: object) -> Any:
     at where it is used.
     """
     if isinstance(value, ca.SX):
-        return value if value.is_scalar() else _NONE
+        return value if value.is_scalar() else None
     if isinstance(value, str):
-        return value if typed(value)[1] else _NONE
-    found = double(value)
-    return _NONE if found is None else value if isinstance(value, int | float) else found
+        return value if typed(value)[1] else None
+    return value if type(value) is int else double(value)
 
 
 def _is_path(value: object) -> bool:
@@ -439,10 +343,10 @@ def _is_path(value: object) -> bool:
 _SIMPLE: dict[type, _Kind] = {
     str: _if("a text", lambda value: isinstance(value, str)),
     bool: _Kind(
-        "True or False", lambda value: bool(value) if isinstance(value, bool | np.bool_) else _NONE
+        "True or False", lambda value: bool(value) if isinstance(value, bool | np.bool_) else None
     ),
-    int: _Kind("a whole number", lambda value: int(value) if is_whole(value) else _NONE),
-    float: _Kind("a number", lambda value: _NONE if (found := double(value)) is None else found),
+    int: _Kind("a whole number", _whole),
+    float: _Kind("a number", double),
     Path: _if("a path", _is_path),
 }
 _SIMPLE[os.PathLike] = _SIMPLE[Path]
@@ -450,13 +354,39 @@ _ARRAYS = {
     np.dtype[np.float64]: _Kind("an array of numbers", _array),
     np.dtype[np.int64]: _Kind("an array of whole numbers", _wholes),
 }
-_NAMED = {
-    "elastic": _Kind("Young's modulus [Pa] and Poisson's ratio", _pair),
-    "numeric": _Kind("a number or an array of numbers", _array),
-    "symbolic": _Kind("a number, or an expression in parameters", _symbolic),
-    # What is no output is refused by who knows which outputs there are.
-    "outputs": _Kind(
-        "a list of texts", lambda value: value if (found := texts(value)) is None else found
-    ),
-    "graph": _Kind("a casadi.SX expression", _graph),
-}
+
+LATER = None
+"""Annotation of an argument that its function checks itself, with a better message."""
+
+Finite: TypeAlias = Annotated[float, Within()]
+"""A number that is not infinite."""
+
+Positive: TypeAlias = Annotated[float, Within(0.0, above=True)]
+NotNegative: TypeAlias = Annotated[float, Within(0.0)]
+Share: TypeAlias = Annotated[float, Within(0.0, 1.0)]
+Count: TypeAlias = Annotated[int, Within(1)]
+Index: TypeAlias = Annotated[int, Within(0)]
+
+ThreadCount: TypeAlias = Annotated[int, Within(1, MOST_THREADS)]
+
+Elastic: TypeAlias = Annotated[
+    tuple[float, float], _Kind("Young's modulus [Pa] and Poisson's ratio", _pair)
+]
+
+Numeric: TypeAlias = Annotated[Any, _Kind("a number or an array of numbers", _array)]
+"""A number, or an array of numbers of any shape."""
+
+Symbolic: TypeAlias = Annotated[Any, _Kind("a number, or an expression in parameters", _symbolic)]
+"""A number, a text with a unit, or an expression of parameters, for what is declared before there
+is a mechanism.
+"""
+
+# What is no output is refused by who knows which outputs there are.
+Outputs: TypeAlias = Annotated[
+    Sequence[str],
+    _Kind("a list of texts", lambda value: value if (found := texts(value)) is None else found),
+]
+"""Names of outputs that are wanted."""
+
+Graph: TypeAlias = Annotated[Any, _Kind("a casadi.SX expression", _graph)]
+"""A ``casadi.SX`` expression."""

@@ -8,11 +8,10 @@ counts of encoders.
 from __future__ import annotations
 
 import csv
-import io
 import math
 import os
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from decimal import Decimal
 from itertools import chain
@@ -21,7 +20,7 @@ from typing import TypeAlias, TypeVar
 
 import numpy as np
 
-from ..errors import DeclarationError, PathError, UnknownNameError, check_kind, one_line
+from ..errors import DeclarationError, PathError, UnknownNameError, one_line
 from .arrays import Array
 from .numerals import plain
 from .streams import check_regular
@@ -298,7 +297,6 @@ def read_rows(
     :class:`.DeclarationError` for a row that is longer or shorter than the first, for a quote that
     does not end on its line, and for a file without rows, of which ``expected`` says what was.
     """
-    check_kind("file", path, "a path", str, os.PathLike)
     check_regular(path, names)
     first, delimiter, length = "", "", 0
     marks: dict[str, str] | None = None
@@ -376,13 +374,6 @@ def count_sizes(
             )
         sizes[name] = math.tau / per_turn
     return sizes
-
-
-def csv_text(rows: Iterable[Sequence[object]]) -> str:
-    """Rows as text, with commas and points; numbers have every digit they have."""
-    text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerows(rows)
-    return text.getvalue()
 
 
 def _cells(where: str, line: str, delimiter: str) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""Table by which methods of data and keywords of functions reach packages that lie above them.
+"""Table by which methods of data reach packages that lie above them.
 
 `Solution`, `Scene` and `Sweep` are data, and so know no report, no animation and no factor of
 safety. Their methods look these up here when they are called. No other module may name a module in
@@ -30,8 +30,6 @@ METHODS: dict[str, str] = {
     "Sweep.report": "views.report.of_sweep:write_sweep_report",
     "figures.default_figures": "views.figures.figures:default_figures",
     "figures.draw": "views.figures.figures:draw",
-    "optimise.dask": "studies.cluster.dask_workers:Cluster",
-    "sweep.dask": "studies.cluster.dask_workers:Cluster",
 }
 """Module and function of each method, by its name."""
 

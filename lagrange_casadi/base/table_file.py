@@ -1,4 +1,4 @@
-"""Tables for spreadsheets: rows below a line of heads, as CSV or as a workbook."""
+"""Tables as they are written: rows below a line of heads, as text, as CSV or as a workbook."""
 
 from __future__ import annotations
 
@@ -8,12 +8,14 @@ import math
 import os
 import re
 import tempfile
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
-from io import TextIOWrapper
+from functools import partial
+from io import StringIO, TextIOWrapper
+from itertools import chain, zip_longest
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, TextIO
 
 from ..errors import DeclarationError, StoreError
 from .files import check_writable, writing
@@ -88,16 +90,10 @@ class TableFile:
         self, file: BinaryIO, heads: Sequence[str], rows: Iterable[Sequence[Cell]]
     ) -> int:
         text = TextIOWrapper(file, encoding="utf-8", newline="")
-        writer = csv.writer(text, delimiter=";" if self.decimal_comma else ",", lineterminator="\n")
-        point = "," if self.decimal_comma else "."
-        writer.writerow(heads)
-        count = 0
-        for row in rows:
-            writer.writerow(x if isinstance(x, str) else repr(x).replace(".", point) for x in row)
-            count += 1
+        count = write_csv(text, chain([heads], rows), self.decimal_comma)
         text.detach()
         file.flush()
-        return count
+        return count - 1
 
     def _write_workbook(
         self, file: BinaryIO, heads: Sequence[str], rows: Iterable[Sequence[Cell]]
@@ -116,7 +112,7 @@ class TableFile:
         letter = openpyxl.utils.get_column_letter
         for column, words in enumerate(heads, 1):
             sheet.column_dimensions[letter(column)].width = max(len(words) + 2, _WIDTH)
-        made = _cell_maker(sheet, WriteOnlyCell)
+        made = partial(_cell, WriteOnlyCell, sheet)
         count = 0
         try:
             with closing(sheet):
@@ -140,16 +136,53 @@ class TableFile:
         return count
 
 
-def _cell_maker(sheet: Any, cell_of: Callable[..., Any]) -> Callable[[Cell], Any]:
-    """Make cells of a sheet: what is no finite number is a text, and NaN is nothing."""
+def _cell(of: Callable[..., Any], sheet: object, value: Cell) -> Any:
+    """A cell of a sheet: what is no finite number is a text, and NaN is nothing."""
+    if not isinstance(value, str):
+        if math.isfinite(value):
+            return value
+        value = "" if math.isnan(value) else str(value)
+    found = of(sheet, _UNPRINTABLE.sub("", value))
+    found.data_type = "s"  # else what begins with = is a formula
+    return found
 
-    def made(cell: Cell) -> Any:
-        if not isinstance(cell, str):
-            if math.isfinite(cell):
-                return cell
-            cell = "" if math.isnan(cell) else str(cell)
-        found = cell_of(sheet, _UNPRINTABLE.sub("", cell))
-        found.data_type = "s"  # else what begins with = is a formula
-        return found
 
-    return made
+def write_csv(text: TextIO, rows: Iterable[Sequence[object]], comma: bool = False) -> int:
+    """Write rows with every digit of their numbers; returns how many there are.
+
+    Cells are parted by commas and numbers have points, or, if they have a ``comma``, semicolons.
+    """
+    writer = csv.writer(text, delimiter=";" if comma else ",", lineterminator="\n")
+    count = 0
+    for row in rows:
+        writer.writerow([_with_comma(cell) for cell in row] if comma else row)
+        count += 1
+    return count
+
+
+def _with_comma(cell: object) -> object:
+    return cell if isinstance(cell, str) else repr(cell).replace(".", ",")
+
+
+def csv_text(rows: Iterable[Sequence[object]]) -> str:
+    """Return rows as CSV with points in numbers."""
+    text = StringIO()
+    write_csv(text, rows)
+    return text.getvalue()
+
+
+def aligned(
+    heads: Sequence[str], rows: Sequence[Sequence[str]], left: Collection[int] = (), width: int = 0
+) -> Iterator[str]:
+    """Rows of texts below their heads as lines, in columns of some ``width`` at least; those of
+    ``left`` begin at the left. A column without any text has no head.
+    """
+    columns = [list(cells) for cells in zip_longest(heads, *rows, fillvalue="")]
+    columns = [cells if any(cells[1:]) else [""] * len(cells) for cells in columns]
+    widths = [max(width, *map(len, cells)) for cells in columns]
+    for row in zip(*columns, strict=True):
+        words = [
+            f"{word:{'<' if k in left else '>'}{width}}"
+            for k, (word, width) in enumerate(zip(row, widths, strict=True))
+        ]
+        yield "  ".join(words).rstrip()

@@ -100,11 +100,6 @@ def number(value: object, unit: str = "1", *, finite: bool = True) -> float:
     return found
 
 
-def angle(value: object) -> float:
-    """An angle in rad; see :func:`number`."""
-    return number(value, "rad")
-
-
 def in_words(unit: str) -> str:
     """Describe a number in a unit, and that it may be a text if it may."""
     base, per, rest = unit.partition("/")

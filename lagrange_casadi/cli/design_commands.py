@@ -94,7 +94,8 @@ from .options import (
     "--workers",
     click.IntRange(1, MOST_THREADS),
     "N",
-    "Use this number of threads; default: one per core.",
+    "Use this number of threads, or send a cluster this number of blocks at a time; default: one"
+    " per core, or 128.",
 )
 @value(
     "--dask", str, "ADDRESS", "Evaluate on the cluster of this Dask scheduler, as tcp://HOST:8786."

@@ -14,6 +14,7 @@ from ..studies.optimise import optimise as search
 from ..views.figures.optimum import draw_front, draw_optimum
 from ..views.shapes.pictures import PICTURES
 from .echo import echo
+from .executor import executor_at
 from .optimum_lines import front_lines, optimum_lines
 from .options import HDF5, target
 from .progress import bar_of
@@ -22,6 +23,7 @@ from .progress import bar_of
 def optimise(
     case: Path,
     minimise: Sequence[str],
+    dask: str | None,
     out: Path | None,
     figure: Path | None,
     **given: Any,
@@ -32,7 +34,7 @@ def optimise(
     check_writable(out, hdf5=True)
     figure = target("--figure", figure, f"{loaded.name}_optimum.png", PICTURES)
     check_writable(figure)
-    with bar_of("programs") as bar:
+    with executor_at(dask) as executor, bar_of("programs") as bar:
 
         def progress(start: int, objective: float, excess: float) -> None:
             bar.set_postfix_str(
@@ -41,7 +43,7 @@ def optimise(
             )
             bar.update()
 
-        given |= {"out": out, "progress": progress}
+        given |= {"out": out, "executor": executor, "progress": progress}
         found: Optimum | Front
         if len(minimise) == 1:
             found = search(loaded, minimise=minimise[0], **given)

@@ -449,7 +449,9 @@ def table_file(says: str) -> Option:
         from ..base.table_file import TableFile
 
         if path is not None:
-            return TableFile(path, context.meta[_COMMA])
+            table = TableFile(path, context.meta[_COMMA])
+            table.check()
+            return table
         if context.meta[_COMMA]:
             raise click.UsageError("--decimal-comma goes with --csv FILE.csv")
         return None

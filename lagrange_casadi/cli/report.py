@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -11,6 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from ..base.quantities import Output
+from ..base.table_file import aligned
 from ..results.histories import Peak
 from ..results.ordering import error_of, ordered
 from ..results.solution import Solution
@@ -121,7 +121,9 @@ class Rows:
             if capacity is None or len(self.rows) <= capacity
             else self._first(capacity - 1)
         )
-        yield from _aligned(self._heads(), [self._cells(row) for row in rows])
+        # Names and units begin at the left.
+        lines = aligned(self._heads(), [self._cells(row) for row in rows], left=(0, 2))
+        yield from (f"  {line}" for line in lines)
         if len(rows) < len(self.rows):
             yield (
                 f"  {len(rows)} of {len(self.rows)} quantities, the largest of each kind;"
@@ -279,19 +281,6 @@ def _size(peak: Peak | None) -> float:
         return 0.0
     size = abs(peak.value) if peak.least is None else peak.least
     return 0.0 if math.isnan(size) else size
-
-
-def _aligned(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> Iterator[str]:
-    """Write cells in columns: names and units to the left, numbers to the right."""
-    cells = [list(cells) for cells in itertools.zip_longest(*rows, fillvalue="")]
-    heads = [head if any(column) else "" for head, column in zip(heads, cells, strict=False)]
-    widths = [max(map(len, (head, *column))) for head, column in zip(heads, cells, strict=True)]
-    for row in (heads, *zip(*cells, strict=True)):
-        words = [
-            word.ljust(width) if k in (0, 2) else word.rjust(width)
-            for k, (word, width) in enumerate(zip(row, widths, strict=True))
-        ]
-        yield f"  {'  '.join(words)}".rstrip()
 
 
 def asked_line(words: Sequence[float | str], slides: bool) -> str:

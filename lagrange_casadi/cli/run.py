@@ -157,14 +157,12 @@ def _check_places(out: Path, folder: Path | None, csv: TableFile | None) -> None
             raise click.UsageError(f"--figures {folder}: expected another place than the file's")
         check_writable(folder, folder=True)
         MANIFEST.check(folder)
-    if csv:
-        if os.path.realpath(csv.path) in [
-            os.path.realpath(other) for other in (out, folder) if other
-        ]:
-            raise click.UsageError(
-                f"--csv {csv.path}: expected another place than the file's and the figures'"
-            )
-        csv.check()
+    if csv and os.path.realpath(csv.path) in [
+        os.path.realpath(other) for other in (out, folder) if other
+    ]:
+        raise click.UsageError(
+            f"--csv {csv.path}: expected another place than the file's and the figures'"
+        )
 
 
 def _head(solution: Solution, refined: bool | None) -> str:

@@ -18,6 +18,7 @@ from ..studies.sweep import sweep as carry_out
 from ..studies.sweep.axes import counted, grouped
 from ..studies.sweep.notes import fatigue_notes, resting_note, turning_note
 from .echo import echo
+from .executor import executor_at
 from .options import HDF5, target
 from .progress import shown
 
@@ -27,6 +28,7 @@ def sweep(
     axes: Mapping[str, Axis],
     designs: Path | None,
     quiet: bool,
+    dask: str | None,
     out: Path | None,
     **given: Any,
 ) -> None:
@@ -39,8 +41,8 @@ def sweep(
     scene = loaded.scene
     out = target("--out", out, f"{loaded.name}_sweep.h5", HDF5)
     swept = read_designs(designs, scene.parameters) if designs else axes
-    with closing(shown(quiet)) as progress:
-        found = carry_out(loaded, swept, out=out, progress=progress, **given)
+    with executor_at(dask) as executor, closing(shown(quiet)) as progress:
+        found = carry_out(loaded, swept, out=out, executor=executor, progress=progress, **given)
     _report(found)
     fixed, t, over = (given[name] for name in ("parameters", "t", "over"))
     turning = turning_note(scene, scene.timing(t, over), swept, fixed)

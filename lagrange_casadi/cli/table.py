@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterable, Iterator, Sequence
+from functools import partial
 from itertools import chain, islice
 from pathlib import Path
 from typing import Any
 
 from ..base.streams import is_standard_output
-from ..base.table_file import TableFile, head
+from ..base.table_file import TableFile, aligned, head
 from ..errors import NoDesignError
 from ..studies.sweep import Sweep, chosen
 from ..studies.sweep import best as find
@@ -25,8 +26,6 @@ _WIDTH = 10
 
 def best(file: Path, where: Sequence[str], csv: TableFile | None, **given: Any) -> None:
     """See :func:`.commands.best`."""
-    if csv:
-        csv.check()
     sweep = Sweep.open(file)
     found = find(sweep, where=where, **given)
     if not found:
@@ -48,8 +47,6 @@ def table(
     file: Path, where: Sequence[str], columns: Sequence[str], rows: int, csv: TableFile | None
 ) -> None:
     """See :func:`.commands.table`."""
-    if csv:
-        csv.check()
     sweep = Sweep.open(file)
     along = sweep.axes_of([*columns, *(condition.name for condition in conditions_in(where))])
     single = [name for name, kept in sweep.columns.items() if not kept.axes]
@@ -125,18 +122,9 @@ def _show(sweep: Sweep, names: Sequence[str], rows: Iterable[tuple[int, Sequence
     """Print rows below a head of names and units, each with its design's number; how many there
     were.
     """
-    heads = ["design", *_heads_of(sweep, names)]
-    widths = [max(len(head), _WIDTH) for head in heads]
-    echo("  ".join(head.rjust(width) for head, width in zip(heads, widths, strict=True)))
-    count = 0
-    for number, values in rows:
-        cells = [
-            str(number),
-            *(_cell(sweep, name, value) for name, value in zip(names, values, strict=True)),
-        ]
-        echo("  ".join(cell.rjust(width) for cell, width in zip(cells, widths, strict=True)))
-        count += 1
-    return count
+    cells = [[str(number), *map(partial(_cell, sweep), names, values)] for number, values in rows]
+    echo(*aligned(["design", *_heads_of(sweep, names)], cells, width=_WIDTH))
+    return len(cells)
 
 
 def _heads_of(sweep: Sweep, names: Sequence[str]) -> list[str]:

@@ -26,8 +26,6 @@ def tolerances(
     **given: Any,
 ) -> None:
     """See :func:`.commands.tolerances`."""
-    if csv:
-        csv.check()
     found = spreads(load_case(case).scene, within, **given)
     _print(found)
     if csv:

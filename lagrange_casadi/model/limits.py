@@ -12,7 +12,7 @@ import casadi as ca
 
 from ..base.scalars import column
 from ..base.vocabulary import Precision
-from ..errors import DeclarationError, ParameterError, UnknownNameError, check_kind
+from ..errors import DeclarationError, ParameterError, UnknownNameError
 from .density import Density
 from .joints import Joint
 from .parts import Body, Expression, Ground, Link, Parameter, Point
@@ -73,7 +73,6 @@ def parameter_values(
     once, and :class:`DeclarationError` for what has no names.
     """
     overrides = {} if overrides is None else overrides
-    check_kind("parameters", overrides, "values by name, as {'l': 0.25}", Mapping)
     if unknown := [name for name in overrides if name not in parameters]:
         raise UnknownNameError("parameter", unknown, parameters)
     if faults := parameter_faults(parameters, overrides):

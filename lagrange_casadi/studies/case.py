@@ -9,15 +9,19 @@ modules of its own beside its file.
 
 from __future__ import annotations
 
+import importlib
 import os
+import sys
+import threading
 import traceback
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from importlib.machinery import SourceFileLoader
 from pathlib import Path
 from types import ModuleType
 from typing import TypeVar
 
-from ..base import case_modules
 from ..base.arguments import public
 from ..base.shipped_cases import shipped_cases
 from ..errors import CaseError, LagrangeCasadiError, shown
@@ -26,6 +30,14 @@ from ..model.scene import Scene
 from ..results.store.specs import Spec, dump_specs, parse_specs
 
 _Result = TypeVar("_Result")
+
+_loading = threading.RLock()
+"""Held while a case is loaded: one at a time, but for those that this one loads."""
+
+_under_way: list[tuple[Path, set[str]]] = []
+"""Folders of the cases that are being loaded, each by the one before, with the packages that were
+imported before.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,16 +97,16 @@ def load_case(path: str | os.PathLike[str]) -> Case:
             f"case {given}: expected a folder with a case.py, or a Python file ending in .py"
         )
     file = file.resolve()
-    module = _guard(given, file, lambda: case_modules.load(file))
-    scene = _call(given, file, module, "scene")
+    with _beside(file.parent):
+        module = _guard(given, file, lambda: _executed(file))
+        scene = _call(given, file, module, "scene")
+        drawn = callable(getattr(module, "figures", None))
+        figures = _call(given, file, module, "figures") if drawn else ()
     if not isinstance(scene, Scene):
         raise CaseError(
             f"case {given}: scene() returned {type(scene).__name__}, expected a"
             " lagrange_casadi.Scene"
         )
-    figures = (
-        _call(given, file, module, "figures") if callable(getattr(module, "figures", None)) else ()
-    )
     if not isinstance(figures, (list, tuple)) or not all(
         isinstance(spec, Spec) for spec in figures
     ):
@@ -141,8 +153,49 @@ def _call(given: Path, file: Path, module: ModuleType, name: str) -> object:
     function = getattr(module, name, None)
     if not callable(function):
         raise CaseError(f"case {given}: has no function {name}()")
-    with case_modules.beside(module):
-        return _guard(given, file, function)
+    return _guard(given, file, function)
+
+
+@contextmanager
+def _beside(folder: Path) -> Iterator[None]:
+    """Let modules in a case's folder be imported by their names. They are forgotten then: another
+    case has its own.
+    """
+    with _loading:
+        outer = _forgotten(*_under_way[-1]) if _under_way else {}
+        _under_way.append((folder, set(map(_package, [*sys.modules]))))
+        importlib.invalidate_caches()
+        sys.path.insert(0, str(folder))
+        try:
+            yield
+        finally:
+            with suppress(ValueError):  # a case may have changed the path
+                sys.path.remove(str(folder))
+            _forgotten(*_under_way.pop())
+            sys.modules.update(outer)
+
+
+def _forgotten(folder: Path, before: set[str]) -> dict[str, ModuleType]:
+    """Modules that were imported from a folder, by name, after they are forgotten."""
+    own = {
+        package
+        for package in {*map(_package, [*sys.modules])} - before
+        if (folder / package).is_dir() or (folder / f"{package}.py").is_file()
+    }
+    return {name: sys.modules.pop(name) for name in [*sys.modules] if _package(name) in own}
+
+
+def _package(name: str) -> str:
+    return name.partition(".")[0]
+
+
+def _executed(file: Path) -> ModuleType:
+    """The module of a case's file. Dataclasses look up where they are defined: it has a name."""
+    loader = SourceFileLoader(f"case {file}", str(file))
+    module = sys.modules[loader.name] = ModuleType(loader.name)
+    module.__file__ = str(file)
+    loader.exec_module(module)
+    return module
 
 
 def _guard(given: Path, file: Path, action: Callable[[], _Result]) -> _Result:

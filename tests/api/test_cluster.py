@@ -1,17 +1,18 @@
-"""A real scheduler and real worker processes: the same bytes, whatever dies."""
+"""Processes, and a real scheduler with real workers: the same bytes, whatever dies."""
 
 import contextlib
 import json
-import logging
+import multiprocessing
 import os
-import re
 import signal
 import sys
+from concurrent.futures import ProcessPoolExecutor
 
 import pytest
 import sweeps
 
-from lagrange_casadi import Case, load_case, optimise, sweep
+from lagrange_casadi import optimise, sweep
+from lagrange_casadi.cli import main
 from lagrange_casadi.errors import ClusterError, DeclarationError, StoppedError
 
 pytestmark = pytest.mark.usefixtures("released")
@@ -80,18 +81,36 @@ def two_workers(tmp_path_factory):
         yield address
 
 
+@contextlib.contextmanager
+def client(address):
+    """A client of the scheduler at an address."""
+    with distributed.Client(address, set_as_default=False) as found:
+        yield found
+
+
+@pytest.fixture(scope="module")
+def processes():
+    """An executor of Python's own."""
+    with ProcessPoolExecutor(2, multiprocessing.get_context("spawn")) as found:
+        yield found
+
+
 def parts(path):
     return len(list(path.parent.glob(f"{path.name}.parts/*.part")))
 
 
-def test_two_worker_processes_give_the_same_bytes(slider_crank, two_workers, whole, tmp_path):
-    level = logging.getLogger("distributed").disabled
-    found = sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", dask=two_workers)
+def test_processes_give_the_same_bytes(slider_crank, processes, whole, tmp_path):
+    found = sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", executor=processes, workers=3)
     assert found.path.read_bytes() == whole
-    assert logging.getLogger("distributed").disabled == level
 
 
-def test_searches_for_a_design_give_the_same_bytes(slider_crank, two_workers, tmp_path):
+def test_two_workers_of_a_scheduler_give_the_same_bytes(slider_crank, two_workers, whole, tmp_path):
+    with client(two_workers) as executor:
+        found = sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", executor=executor)
+    assert found.path.read_bytes() == whole
+
+
+def test_searches_for_a_design_give_the_same_bytes(slider_crank, processes, tmp_path):
     words = {
         "minimise": "peak:effort:O",
         "over": {"l": (0.12, 0.8), "r": (0.05, 0.1)},
@@ -100,50 +119,60 @@ def test_searches_for_a_design_give_the_same_bytes(slider_crank, two_workers, tm
     }
     words |= {"t": (0, 0.08, 41), "screen": 16}
     here, there = tmp_path / "here.h5", tmp_path / "there.h5"
-    found = optimise(slider_crank, **words, out=here)
-    assert found.converged
-    assert (
-        optimise(slider_crank, **words, out=there, dask=two_workers).starts[2].ending == "converged"
-    )
+    assert optimise(slider_crank, **words, out=here).converged
+    found = optimise(slider_crank, **words, out=there, executor=processes)
+    assert found.starts[2].ending == "converged"
     assert there.read_bytes() == here.read_bytes()
+
+
+def test_the_command_line_connects_to_a_scheduler(two_workers, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    words = ["sweep", "slider_crank", "--grid", "l=0.2:0.4:9", "--want", "effort", "--quiet"]
+    assert main([*words, "--out", "here.h5"]) == 0
+    assert main([*words, "--out", "there.h5", "--dask", two_workers]) == 0
+    assert (tmp_path / "there.h5").read_bytes() == (tmp_path / "here.h5").read_bytes()
+    assert capsys.readouterr().err == ""
 
 
 @pytest.mark.long
 def test_a_worker_that_is_killed_is_done_without(slider_crank, whole, tmp_path):
     path, killed = tmp_path / "x.h5", []
-    with started(tmp_path, [PLAIN] * 2) as (address, _, workers):
+    with started(tmp_path, [PLAIN] * 2) as (address, _, workers), client(address) as executor:
 
         def progress(_what, done, _total):
             if done and not killed:
                 workers[0].send_signal(signal.SIGKILL)
                 killed.append(workers[0].wait())
 
-        assert (
-            sweep(
-                slider_crank, GRID, **ASKED, out=path, dask=address, progress=progress
-            ).path.read_bytes()
-            == whole
-        )
+        found = sweep(slider_crank, GRID, **ASKED, out=path, executor=executor, progress=progress)
+        assert found.path.read_bytes() == whole
     assert killed == [-signal.SIGKILL]
 
 
-LACKING = r"^no lagrange_casadi on worker tcp://\S+: install it there too; (nothing|\d+ of 480)"
-NUMBERS = "a Dask worker would give other numbers than this machine: versions h5py was .* is 0.0 "
+LACKING = "^a worker has no lagrange_casadi: install it there too; nothing was done yet"
+NUMBERS = "a worker would give other numbers than this machine: versions h5py was .* is 0.0 "
 
 
 @pytest.mark.parametrize(("program", "says"), [(WITHOUT, LACKING), (OTHER, NUMBERS)])
-def test_workers_that_cannot_give_the_same_numbers_are_named(slider_crank, tmp_path, program, says):
-    with started(tmp_path, [program]) as (address, *_), pytest.raises(ClusterError, match=says):
-        sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", dask=address)
+def test_workers_that_cannot_give_the_same_numbers_are_refused(
+    slider_crank, tmp_path, program, says
+):
+    with (
+        started(tmp_path, [program]) as (address, *_),
+        client(address) as executor,
+        pytest.raises(ClusterError, match=says),
+    ):
+        sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", executor=executor)
     assert not (tmp_path / "x.h5").exists()
 
 
 @pytest.mark.parametrize("lost", ["stopped", pytest.param("scheduler", marks=pytest.mark.long)])
-def test_what_is_stopped_or_lost_is_one_line_and_loses_nothing(
-    slider_crank, whole, tmp_path, capfd, lost
-):
+def test_what_is_stopped_or_lost_is_one_line_and_loses_nothing(slider_crank, whole, tmp_path, lost):
     path, asked = tmp_path / "x.h5", []
-    with started(tmp_path, [PLAIN]) as (address, scheduler, _):
+    with (
+        started(tmp_path, [PLAIN]) as (address, scheduler, _),
+        distributed.Client(address, set_as_default=False, timeout=2) as executor,
+    ):
 
         def progress(_what, done, _total):
             if done and not asked:
@@ -152,28 +181,27 @@ def test_what_is_stopped_or_lost_is_one_line_and_loses_nothing(
 
         told = rf"{lost}.*; \d+ of 480 designs are kept in .*: continue with resume=True"
         with pytest.raises((ClusterError, StoppedError), match=told):
-            sweep(slider_crank, GRID, **ASKED, out=path, dask=address, progress=progress)
-    assert capfd.readouterr().err == ""
+            sweep(slider_crank, GRID, **ASKED, out=path, executor=executor, progress=progress)
     assert parts(path) > 0
     assert sweep(slider_crank, GRID, **ASKED, out=path, resume=True).path.read_bytes() == whole
 
 
-@pytest.mark.parametrize(
-    "address", ["", "nonsense", "foo://127.0.0.1:8786", "tcp://127.0.0.1", "tcp://127.0.0.1:22x"]
-)
-def test_what_is_no_address_is_one_line(slider_crank, tmp_path, address):
-    with pytest.raises(
-        DeclarationError,
-        match=f"dask: expected an address like tcp://HOST:8786, got '{re.escape(address)}'",
-    ):
-        sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", dask=address)
+def test_what_calls_nothing_is_no_executor(slider_crank, tmp_path):
+    says = "^sweep: executor: expected an Executor, got 'x'$"
+    with pytest.raises(DeclarationError, match=says):
+        sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", executor="x")
 
 
-def test_without_dask_one_line_says_how_to_get_it(slider_crank, monkeypatch, tmp_path):
+def test_what_is_no_scheduler_is_one_line(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    words = ["sweep", "slider_crank", "--grid", "l=0.2:0.4:9", "--dask"]
+    for address, says in {
+        "tcp://127.0.0.1": "dask: expected an address like tcp://HOST:8786, got 'tcp://127.0.0.1'\n",
+        "tcp://127.0.0.1:1": "no Dask scheduler answers at tcp://127.0.0.1:1: ",
+    }.items():
+        assert main([*words, address]) > 0
+        assert capsys.readouterr().err.startswith(f"error: {says}")
     monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(
-        ClusterError,
-        match=r"a cluster needs Dask; install it with: pip install 'lagrange_casadi\[cluster\]'",
-    ):
-        sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", dask="tcp://127.0.0.1:1")
-    assert isinstance(load_case(slider_crank.path), Case)
+    assert main([*words, "tcp://127.0.0.1:1"]) == 2
+    says = "a cluster needs distributed; install it with: pip install 'lagrange_casadi[cluster]'"
+    assert capsys.readouterr().err == f"error: {says}\n"

@@ -610,7 +610,6 @@ SEARCHED_AND_SWEPT = [
     ("--grid l=0.2 --out mine.h5", 2, "mine.h5 exists: --force replaces it, --resume continues"),
     ("--grid l=0.2 --out mine.h5 --resume", 1, "mine.h5: not a file of this program"),
     ("--grid l=0.2 --resume --force", 2, "resume and force exclude each other"),
-    ("--grid l=0.2 --dask tcp://127.0.0.1:1 --workers 2", 2, "workers and dask exclude each other"),
 ]
 SENTENCES += [
     (line if "CASE" in line else f"{ASKED} {line}", *row) for line, *row in SEARCHED_AND_SWEPT

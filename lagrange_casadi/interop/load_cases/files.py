@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from ...base.arguments import public
-from ...base.csv_table import csv_text
 from ...base.folders import filling
+from ...base.table_file import csv_text
 from ...base.vocabulary import LOAD_FORMATS
 from ...errors import DeclarationError, UnknownNameError, shown
 from .beam_model import beam_model

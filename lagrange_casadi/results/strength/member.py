@@ -19,7 +19,7 @@ from ...engine.model_data import ModelData
 from ...engine.section_function import Side
 from ...engine.stress import FORCES, CrossSections
 from ...engine.two_force_links import unaimed
-from ...errors import DeclarationError, check_kind
+from ...errors import DeclarationError
 from ...model.beams.beam import Beam
 from ..histories import Histories
 from ..laws import SectionLaw, law_of
@@ -172,7 +172,6 @@ class Member(Brief):
         equilibrium leaves its forces open, its cross-section bears torsion of which its stiffness
         is not known, or it is a bar whose cross-section is not round and has no declared direction.
         """
-        check_kind("strength", solution, "a Solution", Histories)
         law, body = solution.section(link).law, solution.description.bodies[link]
         if not body.beam:
             having = ", ".join(solution.description.beams)

@@ -17,10 +17,9 @@ from decimal import Decimal
 
 import numpy as np
 
-from ...base.arguments import NotNegative, Positive, public
+from ...base.arguments import Count, NotNegative, Positive, public
 from ...base.brief import Brief
 from ...base.csv_table import Per, Table
-from ...base.units import count as whole
 from ...errors import DeclarationError, NoDesignError
 from ...model.fitted import Rolling
 from ..histories import Histories
@@ -107,7 +106,7 @@ class RollingBearing(Brief):
 
 
 @public
-def dynamic_rating(element: Positive, pitch: Positive, count: int) -> float:
+def dynamic_rating(element: Positive, pitch: Positive, count: Count) -> float:
     """Compute C_r of ISO 281 for a deep groove ball bearing.
 
     Parameters
@@ -122,7 +121,6 @@ def dynamic_rating(element: Positive, pitch: Positive, count: int) -> float:
     float
         The dynamic radial load rating [N].
     """
-    count = whole("dynamic_rating: count", count)
     share, size = element / pitch, 1e3 * element
     inner = 1.04 * ((1.0 - share) / (1.0 + share)) ** 1.72
     factor = _LEADING * (1.0 + inner ** (10.0 / 3.0)) ** -0.3 * (2 * 0.52 / (2 * 0.52 - 1)) ** 0.41
@@ -132,7 +130,7 @@ def dynamic_rating(element: Positive, pitch: Positive, count: int) -> float:
 
 
 @public
-def static_rating(element: Positive, pitch: Positive, count: int) -> float:
+def static_rating(element: Positive, pitch: Positive, count: Count) -> float:
     """Compute C_0r of ISO 76 for a deep groove ball bearing.
 
     Parameters
@@ -147,7 +145,6 @@ def static_rating(element: Positive, pitch: Positive, count: int) -> float:
     float
         The static radial load rating [N].
     """
-    count = whole("static_rating: count", count)
     factor = np.interp(element / pitch, np.arange(len(_F0)) / 100.0, _F0)
     return float(factor * count * (1e3 * element) ** 2)
 

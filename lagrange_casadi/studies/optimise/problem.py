@@ -17,7 +17,7 @@ from ...base.vocabulary import Compiled
 from ...engine.identity import sources
 from ...engine.instants.evaluation_method import EvaluationMethod
 from ...engine.model_data import template
-from ...errors import DeclarationError, UnknownNameError, check_kind
+from ...errors import DeclarationError, UnknownNameError
 from ...model.scene import Scene
 from ...model.times import Times, Timing
 from ...results.strength.fatigue import lacking, strengths
@@ -58,7 +58,6 @@ class Box:
             raise DeclarationError(
                 f"over: expected bounds by parameter, as {{'l': (0.15, 0.4)}}, got {over!r}"
             )
-        check_kind("parameters", parameters or {}, "values by name, as {'l': 0.25}", Mapping)
         names, low, high = tuple(over), [], []
         for name, bounds in over.items():
             if name not in declared:
@@ -179,10 +178,6 @@ class Question:
         if len(set(objectives)) < len(objectives):
             raise DeclarationError(
                 f"minimise: a term is listed twice: {', '.join(map(str, objectives))}"
-            )
-        if isinstance(subject_to, str) or not isinstance(subject_to, Sequence):
-            raise DeclarationError(
-                f"subject_to: expected a list of constraints, got {subject_to!r}"
             )
         constraints = tuple(found for text in subject_to for found in constraints_of(text, scene))
         box = Box.of(scene, over, parameters)

@@ -10,7 +10,6 @@ from typing import Annotated, Any, overload
 
 from ...base.arguments import public
 from ...base.interrupts import uninterrupted
-from ...base.methods import method
 from ...base.units import Within
 from ...base.vocabulary import POINTS, Compiled
 from ...errors import DeclarationError
@@ -20,11 +19,12 @@ from ...results.store.opening import SEARCH
 from ...results.store.runs import check_target
 from ..case import Case, scene_of
 from ..checkpoint import Checkpoint, check_resuming
+from ..sweep.workers import Executor
 from .file import save
 from .front import Front, front_of
 from .optimum import Optimum
 from .problem import Problem, Question
-from .searching import Executor, Progress, Search, one_by_one
+from .searching import Progress, Search, by_executor, one_by_one
 from .solver import Solver
 from .starts import MOST, Starts
 
@@ -45,7 +45,7 @@ def optimise(
     t: Times | None = ...,
     parameters: Mapping[str, float] | None = ...,
     backend: Compiled = ...,
-    dask: str | None = ...,
+    executor: Executor | None = ...,
     out: str | os.PathLike[str] | None = ...,
     resume: bool = ...,
     force: bool = ...,
@@ -67,7 +67,7 @@ def optimise(
     t: Times | None = ...,
     parameters: Mapping[str, float] | None = ...,
     backend: Compiled = ...,
-    dask: str | None = ...,
+    executor: Executor | None = ...,
     out: str | os.PathLike[str] | None = ...,
     resume: bool = ...,
     force: bool = ...,
@@ -89,7 +89,7 @@ def optimise(
     t: Times | None = None,
     parameters: Mapping[str, float] | None = None,
     backend: Compiled = "auto",
-    dask: str | None = None,
+    executor: Executor | None = None,
     out: str | os.PathLike[str] | None = None,
     resume: bool = False,
     force: bool = False,
@@ -132,8 +132,9 @@ def optimise(
         Values of the parameters that are not chosen.
     backend
         Backend that evaluates designs, as in :func:`.evaluate`.
-    dask
-        Address of a Dask scheduler whose workers run the starts.
+    executor
+        Executor whose workers run the starts: one of :mod:`concurrent.futures`, or a client of
+        Dask.
     out
         The file to write. A folder beside it keeps finished runs until the search ends.
     resume
@@ -158,7 +159,7 @@ def optimise(
     PathError, StoreError, BusyError
         If the file or the folder belongs to another search, or cannot be written.
     ClusterError
-        If a cluster is not available.
+        If the executor is lost, or its workers fail or have other versions.
     """
     found_scene = scene_of(scene)
     question = Question.of(
@@ -174,7 +175,6 @@ def optimise(
     check_resuming(resume, force)
     if resume and out is None:
         raise DeclarationError("resume: expected out, the file of the search that was stopped")
-    executor: Executor = one_by_one if dask is None else method("optimise.dask")(dask).go
     solver = Solver.of(question, question.engine(found_scene))
     target = None if out is None else Path(out)
     if target is not None:
@@ -185,8 +185,9 @@ def optimise(
     }
     parts = None if target is None else Checkpoint.of(target, "search")
     identity = {**question.words(solver.engine), **options}
+    runs = one_by_one if executor is None else by_executor(executor)
     with parts.opened(identity, resume=resume, force=force) if parts else nullcontext():
-        search = Search(solver, parts, executor, progress or (lambda *_: None), starts, screen)
+        search = Search(solver, parts, runs, progress or (lambda *_: None), starts, screen)
         found: Optimum | Front
         if isinstance(minimise, str):
             problem = Problem(question.objectives[0], question.constraints)

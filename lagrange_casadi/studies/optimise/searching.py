@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Sequence
+import pickle
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from functools import partial
 from typing import TypeAlias, TypeVar
 
 import numpy as np
 
+from ...base.arrays import Json
 from ...base.files import digest
 from ...base.interrupts import uninterrupted
-from ...errors import NoDesignError
+from ...engine.program import Program
+from ...errors import ClusterError, NoDesignError
 from ..checkpoint import Checkpoint
+from ..designs.engine import DesignEngine
+from ..sweep.blocks import Queue
+from ..sweep.workers import Asked, Executor, by_workers, check_same, made, making
 from .optimum import Optimum, optimum_of
-from .problem import Problem
+from .problem import Problem, Question
 from .sampled_design import EvaluatedDesign
 from .search_run import STOPPED, SearchRun
 from .solver import SearchTask, Solver
@@ -29,7 +35,7 @@ it.
 """
 
 
-Executor: TypeAlias = Callable[
+Runs: TypeAlias = Callable[
     [Solver, Sequence[SearchTask], Progress], Iterator[tuple[int, SearchRun]]
 ]
 """Function that gives the runs of tasks with their numbers, in any order; one that was interrupted
@@ -45,15 +51,52 @@ def one_by_one(
         yield number, solver.descend(task, partial(progress, number))
 
 
+def by_executor(executor: Executor) -> Runs:
+    """Runs of tasks by the workers of an executor; those that an interrupt stopped are left out."""
+
+    def runs(
+        solver: Solver, tasks: Sequence[SearchTask], progress: Progress
+    ) -> Iterator[tuple[int, SearchRun]]:
+        question = solver.question
+        call = pickle.dumps(partial(_solver, solver.engine.program, question))
+        words = question.words(solver.engine)
+
+        def asked(start: int, _stop: int) -> Asked:
+            return Asked(_descend, (call, words, tasks[start]))
+
+        for done in by_workers(executor, asked, Queue((k, k + 1) for k in range(len(tasks)))):
+            if done is not None:
+                number, _, run = done
+                progress(number, run.objective, run.excess)
+                yield number, run
+
+    return runs
+
+
+def _solver(program: Program, question: Question) -> Solver:
+    return Solver.of(question, DesignEngine.compiled(program, question.timing, question.method))
+
+
+def _descend(call: bytes, words: Mapping[str, Json], task: SearchTask) -> SearchRun:
+    """Run a start on a worker: a solver is at one run at a time."""
+    with making:
+        solver: Solver = made(call)
+        check_same(words, solver.question.words(solver.engine))
+        run = solver.descend(task, lambda *_: None)
+    if run.ending == STOPPED:
+        raise ClusterError("a worker was interrupted")
+    return run
+
+
 @dataclass(eq=False)
 class Search:
-    """A solver, ``parts`` of a file, which are finished runs, and what executes the others;
+    """A solver, ``parts`` of a file, which are finished runs, and what runs the others;
     ``stopped`` says that an interrupt came.
     """
 
     solver: Solver
     parts: Checkpoint | None
-    executor: Executor
+    runs: Runs
     progress: Progress
     starts: Starts
     many: int
@@ -132,7 +175,7 @@ class Search:
             self.progress(first + missing[number], objective, excess)
 
         try:
-            for number, run in self.executor(self.solver, [tasks[k] for k in missing], report):
+            for number, run in self.runs(self.solver, [tasks[k] for k in missing], report):
                 found[missing[number]] = run
                 if run.ending == STOPPED:
                     self.stopped = True

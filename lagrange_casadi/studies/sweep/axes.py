@@ -25,7 +25,6 @@ from ...errors import (
     NumberError,
     ParameterError,
     UnknownNameError,
-    check_kind,
     shown,
 )
 from ...model.even_points import points
@@ -344,7 +343,6 @@ def check_designs(
     """Raise for parameters that are none or set twice, and for values out of their ranges, all of
     them at once.
     """
-    check_kind("parameters", fixed, "values by name, as {'l': 0.25}", Mapping)
     if designs.source:
         check_known(designs.names, parameters, f"{designs.source}, head")
     check_known([*designs.names, *fixed], parameters)

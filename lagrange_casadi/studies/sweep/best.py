@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ...base.arguments import public
+from ...base.arguments import Count, public
 from ...base.arrays import Array, Operand
 from ...base.numerals import real
 from ...base.units import typed
@@ -100,7 +100,7 @@ def best(
     minimise: str | Sequence[str] = (),
     maximise: str | Sequence[str] = (),
     where: str | Condition | Sequence[str | Condition] = (),
-    count: int | None = None,
+    count: Count | None = None,
     columns: str | Sequence[str] = (),
 ) -> list[Design]:
     """Return the best designs of a sweep that have a result and meet all conditions.
@@ -144,8 +144,6 @@ def best(
             "expected one column to minimise or maximise, or two for their front, got"
             f" {len(objectives)}"
         )
-    if count is not None and (not isinstance(count, int) or count < 1):
-        raise DeclarationError(f"count: expected a whole number of at least 1, got {count!r}")
     names = tuple(dict.fromkeys(name for name, _ in objectives))
     sweep.check_columns(
         [*names, *names_in(columns), *(condition.name for condition in conditions_in(where))]

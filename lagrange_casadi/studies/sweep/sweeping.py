@@ -12,11 +12,8 @@ from pathlib import Path
 from typing import Annotated
 
 from ...base.arguments import LATER, Outputs, ThreadCount, public
-from ...base.methods import method
-from ...base.space import MOST_THREADS
 from ...base.vocabulary import Compiled, Keep, PeakSearch, Precision
 from ...engine.instants.evaluation_method import EvaluationMethod
-from ...errors import DeclarationError
 from ...model.even_points import EvenPoints
 from ...model.scene import Scene
 from ...model.times import Over, Times
@@ -26,7 +23,7 @@ from .axes import DesignsLike, designs_of
 from .carrying_out import Progress, carry_out
 from .plan import Plan
 from .reading import Sweep, opened_sweep
-from .workers import Threads, Workers
+from .workers import Executor, Sent, Threads
 
 
 @public
@@ -48,7 +45,7 @@ def sweep(
     newton: Annotated[int | None, LATER] = None,
     flags: Annotated[str, LATER] = "",
     workers: ThreadCount | None = None,
-    dask: str | None = None,
+    executor: Executor | None = None,
     resume: bool = False,
     force: bool = False,
     many: bool = False,
@@ -90,9 +87,11 @@ def sweep(
     backend, precision, newton, flags
         Method of evaluation: see :class:`.EvaluationMethod`.
     workers
-        Number of threads that share the designs; default: one a core.
-    dask
-        Address of a Dask scheduler whose workers evaluate instead.
+        Number of threads that share the designs, by default one a core; or of blocks that an
+        executor is given at a time, by default 128.
+    executor
+        Executor whose workers evaluate instead: one of :mod:`concurrent.futures`, or a client of
+        Dask.
     resume, force
         Continue an earlier sweep into ``out``, or replace what is there.
     many
@@ -115,7 +114,7 @@ def sweep(
     BusyError
         If another process writes it.
     ClusterError
-        If a cluster is not available.
+        If the executor is lost, or its workers fail or have other versions.
     SizeError
         If memory does not hold the results of a design.
     StoppedError
@@ -129,7 +128,7 @@ def sweep(
     target = keeper.path / "sweep.h5" if keeper else Path(out or "")
     if isinstance(scene, Case) and not keeper:
         plan = replace(plan, case_file=reference(scene, target.parent))
-    workforce = hired(workers, dask)
+    workforce = Threads(workers) if executor is None else Sent(executor, workers)
     verified = carry_out(
         plan, target, workforce, resume=resume, force=force, progress=progress or (lambda *_: None)
     )
@@ -142,22 +141,3 @@ class _Temporary:
     def __init__(self) -> None:
         self.path = Path(tempfile.mkdtemp(prefix="lagrange_casadi-"))
         weakref.finalize(self, shutil.rmtree, self.path, ignore_errors=True)
-
-
-def hired(workers: int | None, dask: str | None) -> Workers:
-    """Choose who evaluates.
-
-    Raises :class:`DeclarationError` for a count that no machine has, and for both.
-    """
-    if workers is not None and (type(workers) is not int or not 1 <= workers <= MOST_THREADS):
-        raise DeclarationError(
-            f"workers: expected a whole number from 1 to {MOST_THREADS}, got {workers!r}"
-        )
-    if dask is None:
-        return Threads(workers)
-    if workers is not None:
-        raise DeclarationError(
-            "workers and dask exclude each other: the cluster provides the workers"
-        )
-    cluster: Workers = method("sweep.dask")(dask)
-    return cluster

@@ -1,16 +1,23 @@
-"""Evaluation of blocks by the threads of this process."""
+"""Blocks handed to threads of this process, or to the workers of an executor.
+
+Workers of an executor are sent what is derived, compile it themselves, and are refused where their
+numbers might differ.
+"""
 
 from __future__ import annotations
 
+import functools
+import pickle
 import threading
-from collections import deque
-from collections.abc import Callable, Generator, Iterable
-from concurrent.futures import Future, wait
+from collections.abc import Callable, Generator, Iterator, Mapping
+from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
 from dataclasses import dataclass
-from queue import SimpleQueue
-from typing import Any, Protocol, TypeVar
+from typing import Any, Protocol, runtime_checkable
 
+from ...base.arrays import Array, Json
 from ...base.space import cores, memory
+from ...errors import ClusterError, LagrangeCasadiError, one_line
+from ..checkpoint import difference
 from .blocks import Queue
 from .plan import Plan
 
@@ -22,15 +29,28 @@ Blocks = Generator[Block | None, None, None]
 that whoever waits may stop.
 """
 
-
-PULSE, PATIENCE = 0.1, 0.7
+_PULSE, _PATIENCE = 0.1, 0.7
 """Seconds after which whoever waits hears that nothing came, and in which blocks that are under way
 may still end.
 """
 
+_AHEAD = 128
+"""Blocks that an executor is given at a time: for as many workers as it may have."""
+
+making = threading.Lock()
+"""Held while a worker compiles what it was sent."""
+
+
+@runtime_checkable
+class Executor(Protocol):
+    """Caller of functions elsewhere, as the executors of :mod:`concurrent.futures` do."""
+
+    def submit(self, function: Callable[..., Any], /, *arguments: Any) -> Future[Any]:
+        """The future of a call."""
+
 
 class Workers(Protocol):
-    """Executor of blocks."""
+    """Who evaluates blocks."""
 
     def results(self, plan: Plan, queue: Queue) -> Blocks:
         """Evaluate what is in the queue, in any order; what was begun when it is stopped is given
@@ -48,86 +68,146 @@ class Threads:
 
     def results(self, plan: Plan, queue: Queue) -> Blocks:
         """Evaluate what is in the queue."""
-        count = max(
-            1, int(min(self.count or cores(), memory() / max(1, plan.harvest.engine.capacity)))
-        )
+        most = memory() / max(1, plan.harvest.engine.capacity)
+        count = max(1, int(min(self.count or cores(), most)))
+        free = threading.Semaphore(count)
 
-        def evaluated(start: int, stop: int) -> list[bytes]:
-            return plan.harvest.chunks(plan.block(start, stop), plan.capacity)
+        def submit(start: int, stop: int) -> Future[list[bytes]]:
+            return _aside(free, plan.harvest.chunks, plan.block(start, stop), plan.capacity)
 
-        pool, pending = ThreadPool(count), deque[tuple[int, int, Future[list[bytes]]]]()
-        try:
-            while True:
-                while len(pending) <= count and (block := queue.take()):
-                    pending.append((*block, pool.give(evaluated, *block)))
-                if not pending:
-                    return
-                start, stop, future = pending[0]
-                if queue.stopped:
-                    yield from _last(pending)
-                    return
-                if not wait([future], PULSE).done:
-                    yield None
-                    continue
-                pending.popleft()
-                yield start, stop, future.result()
-        finally:
-            for _, _, future in pending:
-                future.cancel()
-            pool.dismiss()
+        yield from handed(submit, queue, count + 1)
 
 
-def _last(pending: Iterable[tuple[int, int, Future[list[bytes]]]]) -> Blocks:
-    """Yield the blocks that were begun and still end; no other one begins."""
-    begun = [(start, stop, future) for start, stop, future in pending if not future.cancel()]
-    ended = wait([future for _, _, future in begun], PATIENCE).done
-    for start, stop, future in begun:
-        if future in ended:
-            yield start, stop, future.result()
-
-
-_Result = TypeVar("_Result")
-
-
-class ThreadPool:
-    """So many threads that do what they are given, in its order.
-
-    Once dismissed they begin nothing more.
+def _aside(free: threading.Semaphore, call: Callable[..., Any], *arguments: object) -> Future[Any]:
+    """The future of a call by a thread of its own, once it is ``free``. Python does not wait for
+    such a thread at its end, as it does for those of its own executors: a block may take hours.
     """
+    future: Future[Any] = Future()
 
-    def __init__(self, count: int) -> None:
-        self._given: SimpleQueue[tuple[Future[Any], Callable[..., Any], tuple[Any, ...]] | None] = (
-            SimpleQueue()
-        )
-        self._count = count
-        for _ in range(count):
-            threading.Thread(target=self._work, daemon=True).start()
-
-    @classmethod
-    def alone(cls, work: Callable[..., _Result], *arguments: object) -> Future[_Result]:
-        """Future of one piece of work, by a thread of its own."""
-        pool = cls(1)
-        future = pool.give(work, *arguments)
-        pool.dismiss()
-        return future
-
-    def give(self, work: Callable[..., _Result], *arguments: object) -> Future[_Result]:
-        """Start a piece of work, and return its future."""
-        future: Future[_Result] = Future()
-        self._given.put((future, work, arguments))
-        return future
-
-    def dismiss(self) -> None:
-        """Let each go home when it is done."""
-        for _ in range(self._count):
-            self._given.put(None)
-
-    def _work(self) -> None:
-        while given := self._given.get():
-            future, work, arguments = given
+    def work() -> None:
+        with free:
             if future.set_running_or_notify_cancel():
                 try:
-                    future.set_result(work(*arguments))
+                    future.set_result(call(*arguments))
                 except BaseException as error:
                     future.set_exception(error)
-            del given, future, arguments
+
+    threading.Thread(target=work, daemon=True).start()
+    return future
+
+
+@dataclass(frozen=True)
+class Sent:
+    """Workers of an executor, which has ``count`` blocks at a time."""
+
+    executor: Executor
+    count: int | None = None
+
+    def results(self, plan: Plan, queue: Queue) -> Blocks:
+        """Evaluate what is in the queue."""
+        harvest = plan.harvest
+        made = pickle.dumps(
+            functools.partial(harvest.task.harvest, harvest.engine.program, harvest.whole)
+        )
+
+        def asked(start: int, stop: int) -> Asked:
+            designs = plan.block(start, stop)
+            return Asked(_evaluate, (made, harvest.signature, designs, plan.capacity))
+
+        yield from by_workers(self.executor, asked, queue, self.count)
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A call that becomes what it comes to where it is unpickled."""
+
+    function: Callable[..., Any]
+    arguments: tuple[Any, ...]
+
+    def __reduce__(self) -> tuple[Callable[..., object], tuple[object, ...]]:
+        """The call that unpickling it is."""
+        return self.function, self.arguments
+
+
+def handed(
+    submit: Callable[[int, int], Future[Any]], queue: Queue, ahead: int
+) -> Iterator[tuple[int, int, Any] | None]:
+    """Yield the blocks of a queue with the results of their futures, as they are done; None if
+    nothing came for a while.
+
+    So many are under way at a time. When the queue is stopped those that have not begun are
+    cancelled.
+    """
+    pending: dict[Future[Any], tuple[int, int]] = {}
+    try:
+        while True:
+            while len(pending) < ahead and (block := queue.take()):
+                pending[submit(*block)] = block
+            if not pending:
+                return
+            if queue.stopped:
+                begun = [future for future in pending if not future.cancel()]
+                for future in wait(begun, _PATIENCE).done:
+                    yield (*pending[future], future.result())
+                return
+            ended = wait(pending, _PULSE, FIRST_COMPLETED).done
+            if not ended:
+                yield None
+            # Those that come first are written first.
+            for future in sorted(ended, key=pending.__getitem__):
+                yield (*pending.pop(future), future.result())
+    finally:
+        for future in pending:
+            future.cancel()
+
+
+def by_workers(
+    executor: Executor, asked: Callable[[int, int], Asked], queue: Queue, count: int | None = None
+) -> Iterator[tuple[int, int, Any] | None]:
+    """Yield what :func:`handed` does, of what workers are ``asked`` for each block.
+
+    Raises :class:`ClusterError` where the executor is lost, or a worker fails or lacks the package.
+    """
+    # Dask's client has futures of its own, and an executor with those of Python.
+    executor = executor.get_executor(pure=False) if hasattr(executor, "get_executor") else executor
+
+    def submit(start: int, stop: int) -> Future[Any]:
+        # As bytes: a scheduler needs not know this package.
+        return executor.submit(pickle.loads, pickle.dumps(asked(start, stop)))
+
+    try:
+        yield from handed(submit, queue, count or _AHEAD)
+    except LagrangeCasadiError:
+        raise
+    except CancelledError:
+        raise ClusterError("the executor was shut down, or its scheduler was lost") from None
+    except Exception as error:
+        package = __name__.partition(".")[0]
+        if isinstance(error, ModuleNotFoundError) and package in str(error):
+            raise ClusterError(f"a worker has no {package}: install it there too") from None
+        words = f"{type(error).__name__}: {one_line(error)}"
+        raise ClusterError(f"a worker failed: {words}") from None
+
+
+def check_same(asked: Mapping[str, Json], here: Mapping[str, Json]) -> None:
+    """Raise :class:`ClusterError` if a worker's inputs ``here`` differ from those asked for."""
+    if found := difference(asked, here):
+        raise ClusterError(
+            f"a worker would give other numbers than this machine: {found} on the worker;"
+            " install the same there"
+        )
+
+
+@functools.lru_cache(maxsize=4)
+def made(call: bytes) -> Any:
+    """Object that a pickled call makes, once in a process."""
+    return pickle.loads(call)()
+
+
+def _evaluate(call: bytes, asked: Mapping[str, Json], p: Array, capacity: int) -> list[bytes]:
+    """Evaluate the columns of a block of designs on a worker."""
+    with making:
+        harvest = made(call)
+    check_same(asked, harvest.signature)
+    chunks: list[bytes] = harvest.chunks(p, capacity)
+    return chunks

@@ -1,1 +1,0 @@
-"""Dask's workers, for sweeps and for searches."""
