@@ -43,7 +43,7 @@ def plot(
             raise click.UsageError("--si goes with the file of a run; figures of a sweep are in SI")
         sweep = Sweep.open(file)
         there = {name: _number(sweep, name, value) for name, value in at.items()}
-        _draw(sweep, default_plots(sweep, over=over, at=there, against=against), out, svg)
+        _draw(sweep, default_plots(sweep, over, there, against), out, svg)
     elif over or at or against:
         raise click.UsageError("--over, --at and --against go with a sweep's file")
     else:

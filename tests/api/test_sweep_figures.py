@@ -79,7 +79,7 @@ def listed(monkeypatch, tmp_path):
 
 def test_maps_over_two_parameters_in_either_order(swept, plot):
     """Values that are not in order on the grid are in order on the map; what has no result is
-    masked, and shaded instead.
+    masked, above what is hatched.
     """
     sizes = np.abs(swept[BENDING][:, [0, 2, 1], 1])
     assert 0 < np.isnan(sizes).sum() < sizes.size
@@ -89,14 +89,22 @@ def test_maps_over_two_parameters_in_either_order(swept, plot):
         shown = plot(swept, *asked)["peak_section_rod"]
         bar = next(bar for bar in shown.axes if "rod bending" in plain(bar.get_xlabel()))
         axes = shown.axes[shown.axes.index(bar) - 3]
-        cells, shade = axes.collections
+        (cells,) = axes.collections
         np.testing.assert_array_equal(np.ma.filled(cells.get_array(), np.nan), expected)
-        np.testing.assert_array_equal(np.ma.getmaskarray(shade.get_array()), ~np.isnan(expected))
+        assert axes.patch.get_hatch()
         (star,) = lines(axes, "*")
         place = {"l": swept["l"][l], "r": np.sort(swept["r"])[r]}
         assert (star.get_xdata()[0], star.get_ydata()[0]) == tuple(place[name] for name in over)
         assert legend(shown) == [REACH, "smallest of those drawn"]
         assert plain(bar.get_xlabel()) == "rod bending, |peak| [N m]"
+
+
+def test_section_forces_at_one_ratio_are_a_map_of_one_row(monkeypatch, plot, tmp_path):
+    sweeps.use(monkeypatch)
+    grid = {"l": (0.15, 0.4, 9)}
+    found = sweep(sweeps.scene(), grid, out=tmp_path / "one.h5", xi=(0.5, 0.5, 1))
+    (cells,) = plot(found)["along_rod"].axes[0].collections
+    np.testing.assert_array_equal(cells.get_array().shape, (1, 9))
 
 
 @pytest.mark.parametrize("sized", [False, True])
@@ -112,16 +120,33 @@ def test_section_forces_along_the_link(swept, plot, sized):
     shown = plot(found, "--over", "l", "--at", "r=0.1", "--at", "m1=0.2")["along_rod"]
     values = found["peak_at:section:rod:bending"][:, 1, 1].T
     assert np.nanmin(values) < 0.0 < np.nanmax(values)
-    cells, shade = shown.axes[2].collections
+    (cells,) = shown.axes[2].collections
     np.testing.assert_array_equal(
         np.ma.filled(cells.get_array(), np.nan), np.abs(values) if sized else values
     )
-    np.testing.assert_array_equal(np.ma.getmaskarray(shade.get_array()), ~np.isnan(values))
-    assert cells.norm.vmin == (0.0 if sized else -cells.norm.vmax)
+    least = np.nanmin(np.abs(values)) if sized else -cells.norm.vmax
+    assert cells.norm.vmin == least
     assert (
         plain(cells.colorbar.ax.get_xlabel())
         == f"rod bending, {'|peak|' if sized else 'peak'} [N m]"
     )
+
+
+def test_one_design_near_a_dead_centre_does_not_set_the_scale(swept, plot):
+    """It is beyond the scale of a map and of a curve, whose labels say how large it is."""
+
+    def raised(values):
+        values[4, 2, 1] = 1e6
+        return values
+
+    asked, found = ["--over", "l", "--at", "m1=0.2"], rewritten(swept, EFFORT, raised)
+    usual = plot(swept, *asked, "--over", "r")["peak_effort"].axes[0].collections[0].norm
+    shown = plot(found, *asked, "--over", "r")["peak_effort"]
+    assert shown.axes[0].collections[0].norm.vmax < 2.0 * usual.vmax
+    assert plain(shown.axes[1].get_xlabel()).endswith("beyond: up to 1e+06")
+    curve = plot(found, *asked, "--at", "r=0.07")["peak_effort"].axes[0]
+    assert curve.get_ylim()[1] < 2.0 * usual.vmax
+    assert plain(curve.get_ylabel()).endswith("beyond: up to 1e+06")
 
 
 REFUSED = {
@@ -185,7 +210,7 @@ def test_curves_over_a_parameter(swept, plot):
         k = np.nanargmin(values)
         assert star.get_xydata().tolist() == [[swept["l"][k], values[k]]]
         np.testing.assert_array_equal(crosses.get_xdata(), swept["l"][np.isnan(values)])
-        told = f"★ {values[k]:.3g} at l = {swept['l'][k]:.4g}"
+        told = f"★ {values[k]:.4g} at l = {swept['l'][k]:.4g}"
         assert plain(axes.get_title(loc="left")) == told
     assert axes.get_xlabel() == "l [m]"
     assert plain(axes.get_ylabel()) == "rod bending, |peak| [N m]"
@@ -196,7 +221,7 @@ def test_curves_over_a_parameter(swept, plot):
 
 def test_the_front_and_all_designs(swept, plot):
     shown = plot(swept)[FRONT]
-    dots, front, *_ = lines(shown.axes[0], "o")
+    dots, front, *_ = lines(shown.axes[0], ".")
     assert np.isfinite(dots.get_xdata()).sum() == np.isfinite(swept[EFFORT]).sum()
     designs = best(swept, minimise=[EFFORT, BENDING])
     expected = [[abs(design.values[name]) for name in (EFFORT, BENDING)] for design in designs]
@@ -207,7 +232,7 @@ def test_the_front_and_all_designs(swept, plot):
         assert words == ", ".join(values)
     asked = ["--against", EFFORT, "l", "--at", "m1=0.2"]
     some = plot(swept, *asked)[FRONT.replace(BENDING.replace(":", "-"), "l")]
-    shown = np.isfinite(lines(some.axes[0], "o")[0].get_xdata()).sum()
+    shown = np.isfinite(lines(some.axes[0], ".")[0].get_xdata()).sum()
     assert shown == np.isfinite(swept[EFFORT][:, :, 1]).sum()
     assert plain(some.get_suptitle()).endswith("at m1 = 0.2 kg")
 
@@ -218,6 +243,6 @@ def test_the_usual_figures_of_a_grid_and_of_a_list(swept, listed, plot):
     drawn = plot(listed, "--at", "m1=0.2")
     assert [*drawn] == [*USUAL[:3], FRONT]
     axes = drawn["peak_effort"].axes[0]
-    np.testing.assert_array_equal(lines(axes, "o")[0].get_xdata(), listed["l"][25:])
+    np.testing.assert_array_equal(lines(axes, ".")[0].get_xdata(), listed["l"][25:])
     least = 25 + np.nanargmin(np.abs(listed[EFFORT][25:]))
     assert axes.get_title(loc="left").endswith(f"design {least}")

@@ -42,6 +42,21 @@ RESULTS = (DESIGN, "status", "t", "xi")
 _SHOWN = 20
 
 
+def numbers_in(given: Iterable[object]) -> tuple[tuple[float, ...], str]:
+    """Numbers, of which some may be texts, as ``"30 deg"``, and the unit that these are in; none
+    where none is a text.
+
+    Raises :class:`NumberError` for anything else, :class:`DeclarationError` for several units.
+    """
+    read = [typed(value) for value in given]
+    units = dict.fromkeys(unit for _, unit in read if unit)
+    if len(units) > 1:
+        raise DeclarationError(
+            f"expected values of one unit, got some in {' and some in '.join(units)}"
+        )
+    return tuple(number(value, finite=False) for value, _ in read), next(iter(units), "")
+
+
 @public
 @dataclass(frozen=True)
 class Range:
@@ -61,13 +76,8 @@ class Range:
     unit: str = field(default="", init=False, compare=False)
 
     def __post_init__(self) -> None:
-        (start, one), (stop, other) = typed(self.start), typed(self.stop)
-        if one or other:
-            for name, value in (("start", start), ("stop", stop), ("unit", _one_unit(one, other))):
-                object.__setattr__(self, name, value)
         try:
-            for end in (self.start, self.stop):
-                number(end, finite=False)
+            ends, unit = numbers_in((self.start, self.stop))
             if type(self.count) is not int:
                 raise TypeError
         except (TypeError, NumberError):
@@ -78,6 +88,8 @@ class Range:
             raise DeclarationError(
                 f"expected numbers for START and STOP and a whole COUNT, got {text}"
             ) from None
+        for name, value in zip(("start", "stop", "unit"), (*ends, unit), strict=True):
+            object.__setattr__(self, name, value)
         if type(self.log) is not bool:
             raise DeclarationError(
                 "expected True or False after (start, stop, count), for equal ratios or not, got"
@@ -135,12 +147,11 @@ class Values:
         try:
             if isinstance(self.values, bytes | set | frozenset):
                 raise TypeError
-            typed_values = [typed(value) for value in self.values]
-            numbers = tuple(number(value, finite=False) for value, _ in typed_values)
+            numbers, unit = numbers_in(self.values)
         except (TypeError, ValueError):
             raise DeclarationError(f"expected numbers, got {shown(self.values)}") from None
         object.__setattr__(self, "values", numbers)
-        object.__setattr__(self, "unit", _one_unit(*(unit for _, unit in typed_values)))
+        object.__setattr__(self, "unit", unit)
         if not numbers:
             raise DeclarationError("expected at least one value, got none")
         for value in numbers:
@@ -448,16 +459,6 @@ def _named(words: Sequence[str]) -> str:
     return ", ".join(words[:_SHOWN]) + more
 
 
-def _one_unit(*units: str) -> str:
-    """The unit of texts. Raises :class:`DeclarationError` for several."""
-    found = dict.fromkeys(unit for unit in units if unit)
-    if len(found) > 1:
-        raise DeclarationError(
-            f"expected values of one unit, got some in {' and some in '.join(found)}"
-        )
-    return next(iter(found), "")
-
-
 def _axis(name: str, given: AxisLike) -> Axis:
     """An axis, a tuple (start, stop, count) whose count is whole, or any other sequence of values;
     errors name the parameter.
@@ -467,10 +468,6 @@ def _axis(name: str, given: AxisLike) -> Axis:
             return given
         if isinstance(given, tuple) and len(given) in (3, 4) and type(given[2]) is int:
             return Range(*given)
-        if isinstance(given, (tuple, list)):
-            return Values(
-                tuple(value if typed(value)[1] else number(value, finite=False) for value in given)
-            )
         if isinstance(given, np.ndarray) and given.dtype.kind in "iuf":
             return Values(tuple(np.atleast_1d(given).astype(float).tolist()))
         return Values(

@@ -56,21 +56,16 @@ class Condition:
 
         Raises :class:`DeclarationError`.
         """
-        found = _CONDITION.fullmatch(text)
-        try:
-            if not found:
-                raise ValueError
+        if found := _CONDITION.fullmatch(text):
+            name, relation, words = found.groups()
+            value, unit = typed(words)
             with suppress(ValueError):
-                if not math.isnan(value := real(found[3])):
-                    return cls(found[1], found[2], value)
-            value, unit = typed(found[3])
-            if not unit:
-                raise ValueError
-            return cls(found[1], found[2], value, unit)
-        except ValueError:
-            raise DeclarationError(
-                f"expected a condition like l<0.3 or peak:effort:O<=12, got '{text}'"
-            ) from None
+                value = value if unit else real(words)
+            if isinstance(value, float) and not math.isnan(value):
+                return cls(name, relation, value, unit)
+        raise DeclarationError(
+            f"expected a condition like l<0.3 or peak:effort:O<=12, got '{text}'"
+        )
 
     def holds(self, values: Array) -> npt.NDArray[np.bool_]:
         """Return where the condition holds; never where there is no number."""
@@ -163,7 +158,7 @@ def best(
         kept, costs = kept[order], costs[:, order]
     shown = with_errors(sweep, [*names, *names_in(columns)])
     asked = tuple(dict.fromkeys([*sweep.parameters, *shown]))
-    return [row(sweep, int(number), asked) for number in kept[:count]]
+    return [Design(number, sweep.values(number, asked)) for number in kept[:count].tolist()]
 
 
 def with_errors(sweep: Sweep, names: Sequence[str]) -> list[str]:
@@ -245,16 +240,6 @@ def missed(
         f"; {absent(c.name, sweep[c.name], c.value)}"
         for c in asked
         if not near(sweep[c.name], c.value).any()
-    )
-
-
-def row(sweep: Sweep, number: int, names: Sequence[str]) -> Design:
-    """A design with values of parameters and columns."""
-    values = sweep.design(number)
-    columns = [name for name in names if name not in values]
-    return Design(
-        number,
-        {name: values[name] for name in names if name in values} | sweep.values(number, columns),
     )
 
 

@@ -18,8 +18,7 @@ from ...results.store.words import unlike, unlike_conventions
 from ..checkpoint import Checkpoint
 from .axes import are_described, counted, grouped, size_of
 from .blocks import designs_in, slabs
-from .contents import KeptColumn
-from .meanings import STATUS
+from .meanings import CYCLE, OVER, STATUS, Column, Meanings
 from .plan import IDENTITY, Identity
 from .reading import Sweep
 
@@ -36,13 +35,14 @@ def check_sweep(path: str | Path) -> list[str]:
     """
     sweep = Sweep.open(path)
     found: list[str] = []
+    meanings = _meanings(sweep)
     with sweep.opened() as file:
-        found += unlike_conventions(file, sweep.meanings.table)
-        found += _check_scales(file, sweep)
+        found += unlike_conventions(file, meanings.table)
+        found += _check_scales(file, sweep, meanings)
         found += _check_asked(file, sweep)
         for kept in sweep.columns.values():
             try:
-                found += _check_column(file, sweep, kept)
+                found += _check_column(file, sweep, kept, meanings)
             except Exception as error:
                 found.append(f"{kept.name}: damaged: {one_line(error)}")
     return found
@@ -91,7 +91,16 @@ def flaws(folder: Checkpoint) -> Iterator[str]:
             yield f"{name}: damaged: it will be done again"
 
 
-def _check_scales(file: h5py.File, sweep: Sweep) -> list[str]:
+def _meanings(sweep: Sweep) -> Meanings:
+    """Meanings of columns and axes, by what was asked for."""
+    times = sweep.identity["t"]
+    joint = times[3] if len(times) > 3 else ""
+    shared = not joint and not any(isinstance(bound, str) for bound in times[:2])
+    axis = next((name for name in (OVER, CYCLE) if name in sweep.axes), "t" if shared else CYCLE)
+    return Meanings.of(sweep.description, axis, joint)
+
+
+def _check_scales(file: h5py.File, sweep: Sweep, meanings: Meanings) -> list[str]:
     """Faults of axes: each is read, and its numbers must be finite."""
     found: list[str] = []
 
@@ -101,7 +110,7 @@ def _check_scales(file: h5py.File, sweep: Sweep) -> list[str]:
                 check_chunks(item)
                 if not np.isfinite(item[()]).all():
                     found.append(f"{place}: values that are not finite")
-                found.extend(unlike(item, *sweep.meanings.of_axis(place.rpartition("/")[2])))
+                found.extend(unlike(item, *meanings.of_axis(place.rpartition("/")[2])))
             except Exception as error:
                 found.append(f"{place}: damaged: {one_line(error)}")
 
@@ -133,14 +142,14 @@ def _check_asked(file: h5py.File, sweep: Sweep) -> Iterator[str]:
             yield f"{axis}: differs from the plan"
 
 
-def _check_column(file: h5py.File, sweep: Sweep, kept: KeptColumn) -> Iterator[str]:
-    dataset, status = file[kept.name.replace(":", "/")], file[STATUS]
+def _check_column(file: h5py.File, sweep: Sweep, kept: Column, meanings: Meanings) -> Iterator[str]:
+    dataset, status = file[kept.place], file[STATUS]
     names = (*sweep.dimensions, *kept.axes)
     for axis, name in enumerate(names):
         if file[name] not in dataset.dims[axis].values():
             yield f"{kept.name}: axis {axis} has no scale {name}"
     check_chunks(dataset)
-    yield from unlike(dataset, *sweep.meanings.of_column(kept.name, sweep.columns))
+    yield from unlike(dataset, *meanings.of_column(kept.name, sweep.columns))
     dims = tuple(sweep.dimensions.values())
     missing = surplus = unknown = wrong = 0
     for _, _, where in slabs(dims, dataset.chunks[: len(dims)]):

@@ -8,7 +8,6 @@ A column's full name is ``kind:quantity`` (``peak:section:rod:bending``, ``peak_
 from __future__ import annotations
 
 import json
-import math
 import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -40,7 +39,7 @@ from ..designs.energy import DriveEnergy
 from ..designs.engine import DesignEngine
 from ..designs.outcome import Outcome
 from .chunks import encoded
-from .meanings import ERROR, FLUCTUATION, STATUS, TIMES, InstantAxis, Meanings
+from .meanings import ERROR, FLUCTUATION, STATUS, TIMES, Column, InstantAxis, Meanings
 from .strength import Kept
 
 MISSING = "NaN for designs for which it is indeterminate, by equilibrium or by friction at rest"
@@ -66,30 +65,6 @@ def check_keep(keep: str) -> None:
     """Raise :class:`UnknownNameError` for what cannot be kept."""
     if keep not in KEEPS:
         raise UnknownNameError("choice of what to keep", str(keep), KEEPS)
-
-
-@dataclass(frozen=True)
-class Column:
-    """One dataset: its full name, the axes beyond those of the designs, their lengths, unit, type,
-    and what a file says of it.
-    """
-
-    name: str
-    unit: str
-    attributes: Mapping[str, str]
-    axes: tuple[str, ...] = ()
-    lengths: tuple[int, ...] = ()
-    dtype: str = "<f8"
-
-    @property
-    def place(self) -> str:
-        """The dataset's path in the file."""
-        return self.name.replace(":", "/")
-
-    @property
-    def width(self) -> int:
-        """Bytes a design."""
-        return np.dtype(self.dtype).itemsize * math.prod(self.lengths)
 
 
 @dataclass(frozen=True)
@@ -190,27 +165,14 @@ class Harvest:
     @cached_property
     def columns(self) -> tuple[Column, ...]:
         """All columns, in the order of :meth:`evaluate`."""
-        lengths, meanings = (
-            {self.axis.name: self.axis.values.size, "xi": self.xi.size},
-            self.meanings,
-        )
+        lengths = {self.axis.name: self.axis.values.size, "xi": self.xi.size}
         found = []
         for name, (axes, *_) in self._kept.items():
-            unit, words = meanings.of_column(name, self._kept)
-            indeterminate = self.strength.columns.get(
-                name, name.partition(":")[2] in self.engine.indeterminate
-            )
-            words |= {"missing": MISSING} if indeterminate else {}
-            found.append(
-                Column(
-                    name,
-                    unit,
-                    words,
-                    axes,
-                    tuple(lengths[axis] for axis in axes),
-                    "|i1" if name == STATUS else "<f8",
-                )
-            )
+            unit, words = self.meanings.of_column(name, self._kept)
+            if self.strength.columns.get(name, name.partition(":")[2] in self.engine.indeterminate):
+                words["missing"] = MISSING
+            sizes, dtype = tuple(map(lengths.__getitem__, axes)), "|i1" if name == STATUS else "<f8"
+            found.append(Column(name, unit, words, axes, sizes, dtype))
         return tuple(found)
 
     @cached_property

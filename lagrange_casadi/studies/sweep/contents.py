@@ -4,8 +4,7 @@ its statuses.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any, TypedDict
+from typing import Any
 
 import h5py
 import numpy as np
@@ -21,8 +20,8 @@ from ...results.store.untrusted import (
 )
 from .axes import DESIGN
 from .file import WORDS
-from .meanings import KINDS, STATUS
-from .plan import IDENTITY, Identity
+from .meanings import KINDS, STATUS, Column
+from .plan import IDENTITY
 
 _NAMED = (
     "backend",
@@ -37,29 +36,7 @@ _NAMED = (
 )
 
 
-@dataclass(frozen=True)
-class KeptColumn:
-    """Description of a column in a file: unit, meaning, and its axes beyond those of the
-    designs.
-    """
-
-    name: str
-    unit: str
-    long_name: str
-    axes: tuple[str, ...]
-
-
-class Contents(TypedDict):
-    """Description of a sweep, from its file."""
-
-    identity: Identity
-    dimensions: dict[str, int]
-    parameters: dict[str, str]
-    columns: dict[str, KeptColumn]
-    statuses: dict[int, tuple[str, str]]
-
-
-def contents(file: h5py.File) -> Contents:
+def contents(file: h5py.File) -> dict[str, Any]:
     """The fields of a :class:`.Sweep` that its file has.
 
     Raises ``ValueError``, ``KeyError`` and others where it is not what a sweep writes.
@@ -71,7 +48,7 @@ def contents(file: h5py.File) -> Contents:
     }
     check_shape(identity, IDENTITY, "attributes")
     described(identity["mechanism"])
-    columns: dict[str, KeptColumn] = {}
+    columns: dict[str, Column] = {}
     status = file[STATUS]
     names = [dim[0].name.rpartition("/")[2] for dim in status.dims]
     dimensions = dict(zip(names, status.shape, strict=True))
@@ -93,9 +70,8 @@ def contents(file: h5py.File) -> Contents:
                 name = place.replace("/", ":")
                 if name.partition(":")[0] not in KINDS:
                     raise ValueError(f"{place} is no column of a sweep")
-                columns[name] = KeptColumn(
-                    name, shown(item.attrs["units"]), shown(item.attrs["long_name"]), axes
-                )
+                words = {"long_name": shown(item.attrs["long_name"])}
+                columns[name] = Column(name, shown(item.attrs["units"]), words, axes)
 
     file.visititems(visit)
     if list(dimensions) not in ([DESIGN], list(file["grid"])):
@@ -108,16 +84,14 @@ def contents(file: h5py.File) -> Contents:
     meanings = shown(status.attrs["flag_meanings"]).split()
     if len(meanings) != len(sentences):
         raise ValueError(f"it has {len(meanings)} words for {len(sentences)} statuses")
+    order = sorted(columns, key=lambda name: (tuple(KINDS).index(name.partition(":")[0]), name))
+    axes = dict.fromkeys(axis for name in reversed(order) for axis in columns[name].axes)
     return {
         "identity": identity,
         "dimensions": dimensions,
         "parameters": {name: shown(file["grid"][name].attrs["units"]) for name in file["grid"]},
-        "columns": {
-            name: columns[name]
-            for name in sorted(
-                columns, key=lambda name: (tuple(KINDS).index(name.partition(":")[0]), name)
-            )
-        },
+        "axes": {axis: shown(file[axis].attrs["units"]) for axis in axes},
+        "columns": {name: columns[name] for name in order},
         "statuses": {
             int(number): (word, sentence)
             for (number, sentence), word in zip(sentences.items(), meanings, strict=True)

@@ -25,8 +25,7 @@ from ...results.store.words import conventions, say
 from .axes import DESIGN, Designs, Grid
 from .blocks import chunk_of, slabs
 from .chunks import FILTERS
-from .columns import Column
-from .meanings import KINDS, InstantAxis
+from .meanings import KINDS, Column, InstantAxis
 from .plan import Plan
 
 WORDS = ("versions", "mechanism", "wanted", "t", "xi", "grid")

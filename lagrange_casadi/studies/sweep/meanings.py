@@ -5,6 +5,7 @@ what ``check`` compares.
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -134,6 +135,35 @@ class InstantAxis:
             return cls(OVER, coordinates, joint, unit)
         places = points((0.0, 1.0, timing.count)) if timing.count > 1 else np.zeros(1)
         return cls(CYCLE, places, joint, unit)
+
+
+@dataclass(frozen=True)
+class Column:
+    """One dataset: its full name, unit, what a file says of it, the axes beyond those of the
+    designs, their lengths, and its type.
+    """
+
+    name: str
+    unit: str
+    attributes: Mapping[str, str]
+    axes: tuple[str, ...] = ()
+    lengths: tuple[int, ...] = ()
+    dtype: str = "<f8"
+
+    @property
+    def long_name(self) -> str:
+        """Meaning in words."""
+        return self.attributes["long_name"]
+
+    @property
+    def place(self) -> str:
+        """The dataset's path in the file."""
+        return self.name.replace(":", "/")
+
+    @property
+    def width(self) -> int:
+        """Bytes a design."""
+        return np.dtype(self.dtype).itemsize * math.prod(self.lengths)
 
 
 @dataclass(frozen=True)

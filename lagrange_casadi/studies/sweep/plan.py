@@ -26,7 +26,8 @@ from ..designs.spot_check import wanted_whole
 from ..request import Request
 from .axes import Designs, check_designs, counted
 from .blocks import Slab, chunk_of, slabs
-from .columns import Column, Harvest, Task, check_keep
+from .columns import Harvest, Task, check_keep
+from .meanings import Column
 
 _BOUND = (float, str)
 """Start and end of instants: a number, or an expression of parameters in words."""

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -17,8 +17,7 @@ import h5py
 import numpy as np
 import numpy.typing as npt
 
-from ...base.arguments import LATER, Count, Index, Outputs, public, texts
-from ...base.arrays import Array
+from ...base.arguments import LATER, Outputs, public, texts
 from ...base.brief import listed
 from ...base.methods import method
 from ...errors import (
@@ -36,8 +35,8 @@ from ...results.store.opening import SWEEP, VerifiedFile, kind_of, opened_file, 
 from ..checkpoint import Checkpoint
 from .axes import DESIGN, counted
 from .blocks import chunk_of, slabs
-from .contents import KeptColumn, contents
-from .meanings import CYCLE, OVER, STATUS, Meanings
+from .contents import contents
+from .meanings import STATUS, Column
 from .plan import Identity
 from .selection import Selected, matches
 
@@ -55,18 +54,20 @@ Values = npt.NDArray[Any]
 class Sweep:
     """A finished sweep; arrays are read when they are asked for.
 
-    ``dimensions`` are the axes of the designs and their lengths: the swept parameters of a grid, or
-    ``design`` of a list. ``columns`` are what is kept of each design, by full name, with units.
-    ``parameters`` are the units of what was swept, and ``chosen`` the numbers along axes that
-    :meth:`select` left. The whole file is compared with its seal when it is opened, and again only
-    where it has changed since.
+    A sweep has named columns over axes. ``dimensions`` are the axes of the designs and their
+    lengths: the swept parameters of a grid, or ``design`` of a list. ``parameters`` are the units
+    of what was swept. ``columns`` are what is kept of each design, by full name, with units;
+    ``axes`` are the units of the axes that columns have beyond those of the designs, such as ``t``.
+    ``chosen`` are the numbers along axes of the designs that :meth:`select` left. The whole file is
+    compared with its seal when it is opened, and again only where it has changed since.
     """
 
     path: Path
     identity: Annotated[Identity, LATER]
     dimensions: Mapping[str, int]
     parameters: Mapping[str, str]
-    columns: Mapping[str, KeptColumn]
+    axes: Mapping[str, str]
+    columns: Mapping[str, Column]
     statuses: Mapping[int, tuple[str, str]]
     chosen: Mapping[str, npt.NDArray[np.int64]] = field(default_factory=dict)
     keeper: Any = None
@@ -159,30 +160,29 @@ class Sweep:
         return int(np.prod(self.shape, dtype=np.int64))
 
     def __getitem__(self, name: str) -> Values:
-        """A column (designs' axes, its own axes), a parameter along its axis, or ``t`` [s] or
-        ``xi`` of columns that have them.
+        """A column (designs' axes, its own axes), a parameter along its axis, ``t`` [s] or ``xi``
+        of columns that have them, or the numbers ``design`` of a list.
 
         A design without a result is NaN. Raises :class:`UnknownNameError` for another name,
         :class:`StoreError` for a damaged file.
         """
-        if name not in self.parameters and name not in self._over:
-            self.column(name)
+        axes = self._axes(name)
+        boxes = {axis: _box(numbers) for axis, numbers in self.chosen.items()}
         with self.opened() as file:
-            if name in self.parameters:
-                return self._cut(file["grid"][name], (self._axis(name),))
-            if name in self._over:
-                return _taken(file[name])
-            return self._cut(
-                file[name.replace(":", "/")], (*self.dimensions, *self.columns[name].axes)
-            )
+            values = self._read(file, name, boxes)
+        for k, axis in enumerate(axes):
+            numbers = self.chosen.get(axis)
+            if numbers is not None and numbers.size != values.shape[k]:
+                values = np.take(values, numbers - numbers[0], axis=k)
+        return values
 
     def __iter__(self) -> Iterator[str]:
         """The names of all that it has, of which ``self[name]`` gives each: parameters, ``t`` and
         ``xi`` where columns have them, and columns.
         """
-        yield from (*self.parameters, *self._over, *self.columns)
+        yield from (*self.parameters, *self.axes, *self.columns)
 
-    def column(self, name: str) -> KeptColumn:
+    def column(self, name: str) -> Column:
         """Return the description of a column.
 
         Parameters
@@ -192,7 +192,7 @@ class Sweep:
 
         Returns
         -------
-        KeptColumn
+        Column
             Its unit, its meaning and its axes.
 
         Raises
@@ -200,8 +200,7 @@ class Sweep:
         UnknownNameError
             If there is no such column.
         """
-        if name not in self.columns:
-            raise self._unknown([name])
+        self._check_known([name], self.columns)
         return self.columns[name]
 
     def select(self, **values: Selected) -> Sweep:
@@ -231,67 +230,37 @@ class Sweep:
         if unknown := [name for name in values if name not in self.parameters]:
             raise UnknownNameError("swept parameter", unknown, self.parameters)
         for name, wanted in values.items():
-            axis = self._axis(name)
+            (axis,) = self._axes(name)
             there = replace(self, chosen=chosen)[name]
             found = np.flatnonzero(matches(name, there, wanted, self.parameters[name]))
             before = chosen.get(axis)
             chosen[axis] = found if before is None else before[found]
         return replace(self, chosen=chosen)
 
-    def thinned(self, axis: str, stride: Count) -> Sweep:
-        """Return every n-th of the selected designs along an axis.
+    def part(self, axis: str, places: slice) -> Sweep:
+        """Return the designs at some places along an axis.
 
         Parameters
         ----------
         axis : str
             Axis of the designs, of ``dimensions``.
-        stride : int
-            The n, at least 1.
+        places : slice
+            Places among those selected, as ``slice(None, None, 2)`` for every other one.
 
         Returns
         -------
         Sweep
-            The thinned part.
+            The part; its axis stays, if one place is left too.
 
         Raises
         ------
         UnknownNameError
             If there is no such axis.
-        """
-        numbers = self._along(axis)
-        return replace(self, chosen={**self.chosen, axis: numbers[::stride]})
-
-    def at_number(self, axis: str, number: Index) -> Sweep:
-        """Return the designs at one place along an axis.
-
-        Parameters
-        ----------
-        axis : str
-            Axis of the designs, of ``dimensions``.
-        number : int
-            Place among those selected, from 0.
-
-        Returns
-        -------
-        Sweep
-            The part with an axis of length one.
-
-        Raises
-        ------
-        UnknownNameError
-            If there is no such axis.
-        """
-        numbers = self._along(axis)
-        return replace(self, chosen={**self.chosen, axis: numbers[number : number + 1]})
-
-    def _along(self, axis: str) -> npt.NDArray[np.int64]:
-        """The numbers that are selected along an axis of the designs.
-
-        Raises :class:`UnknownNameError`.
         """
         if axis not in self.dimensions:
             raise UnknownNameError("axis of designs", axis, self.dimensions)
-        return self.chosen.get(axis, np.arange(self.dimensions[axis]))
+        numbers = self.chosen.get(axis, np.arange(self.dimensions[axis]))
+        return replace(self, chosen={**self.chosen, axis: numbers[places]})
 
     def axes_of(self, names: Outputs) -> tuple[str, ...]:
         """Return the axes that columns share beyond those of the designs.
@@ -314,10 +283,7 @@ class Sweep:
             If two columns have different axes.
         """
         names = names_in(names)
-        if unknown := [
-            name for name in names if name not in (*self.parameters, *self.columns, *self._over)
-        ]:
-            raise self._unknown(unknown)
+        self._check_known(names, [*self])
         found = {self.columns[name].axes: name for name in names if name in self.columns}
         (axes, first), *others = [item for item in found.items() if item[0]] or [((), "")]
         for other, name in others:
@@ -346,7 +312,7 @@ class Sweep:
         UnknownNameError
             If there is no such column.
         """
-        return self.parameters.get(name) or self._units.get(name) or self.column(name).unit
+        return self.parameters.get(name) or self.axes.get(name) or self.column(name).unit
 
     def blocks(
         self, names: Sequence[str], along: Sequence[str] = ()
@@ -396,22 +362,17 @@ class Sweep:
         DeclarationError
             If there is no such design.
         """
-        places = dict(zip(self.dimensions, self._place(number), strict=True))
-        with self.opened() as file:
-            return {
-                name: float(_taken(file["grid"][name], places.get(name, number)))
-                for name in self.parameters
-            }
+        return self.values(number, [*self.parameters])
 
     def values(self, number: int, names: str | Sequence[str]) -> dict[str, float]:
-        """Return columns of a design.
+        """Return columns or parameters of a design.
 
         Parameters
         ----------
         number : int
             Number of the design, from 0.
         names : str or sequence of str
-            Names of columns.
+            Their names.
 
         Returns
         -------
@@ -425,18 +386,15 @@ class Sweep:
         DeclarationError
             For a column with axes of its own, and if there is no such design.
         """
-        names, place = names_in(names), self._place(number)
+        names, dims = names_in(names), tuple(self.dimensions.values())
         self.check_columns(names)
-        with self.opened() as file:
-            return {name: _taken(file[name.replace(":", "/")], place).item() for name in names}
-
-    def _place(self, number: int) -> tuple[int, ...]:
-        dims = tuple(self.dimensions.values())
         if not isinstance(number, (int, np.integer)) or not 0 <= number < math.prod(dims):
             raise DeclarationError(
                 f"design {number}: expected a number from 0 to {math.prod(dims) - 1}"
             )
-        return tuple(int(i) for i in np.unravel_index(number, dims))
+        places = dict(zip(self.dimensions, map(int, np.unravel_index(number, dims)), strict=True))
+        with self.opened() as file:
+            return {name: self._read(file, name, places).item() for name in names}
 
     def counts(self) -> dict[int, int]:
         """Number of designs with each status, by its number; ``statuses`` has the words."""
@@ -473,27 +431,16 @@ class Sweep:
                 "to_xarray needs xarray; install it with: pip install xarray"
             ) from None
         kept = [self.column(name) for name in (self.columns if names is None else names_in(names))]
-        data = {
-            k.name: (
-                (*self.dimensions, *k.axes),
-                self[k.name],
-                {"units": k.unit, "long_name": k.long_name},
-            )
-            for k in kept
-        }
+        over = {axis for column in kept for axis in column.axes}
+        units = dict.fromkeys(self.dimensions, "1") | dict(self.parameters)
+        units |= {axis: unit for axis, unit in self.axes.items() if axis in over}
         coordinates = {
-            name: (name if name in self.dimensions else DESIGN, self[name], {"units": unit})
-            for name, unit in self.parameters.items()
+            name: (self._axes(name), self[name], {"units": unit}) for name, unit in units.items()
         }
-        if DESIGN in self.dimensions:
-            coordinates[DESIGN] = (
-                DESIGN,
-                self.chosen.get(DESIGN, np.arange(self.dimensions[DESIGN])),
-                {"units": "1"},
-            )
-        for axis, unit in self._units.items():
-            if any(axis in k.axes for k in kept):
-                coordinates[axis] = (axis, self[axis], {"units": unit})
+        data = {}
+        for column in kept:
+            words = {"units": column.unit, "long_name": column.long_name}
+            data[column.name] = (self._axes(column.name), self[column.name], words)
         return xarray.Dataset(data, coordinates, {"case": self.case})
 
     @cached_property
@@ -519,129 +466,89 @@ class Sweep:
             For other axes, and for an axis with the name of a parameter.
         """
         for axis in along:
-            if axis not in self._over:
-                raise UnknownNameError("axis", axis, self._over)
+            if axis not in self.axes:
+                raise UnknownNameError("axis", axis, self.axes)
             if axis in self.parameters:
                 raise DeclarationError(
                     f"parameter '{axis}' has the name of an axis: rows cannot go along both"
                 )
-        if unknown := [
-            name for name in names if name not in (*self.parameters, *self.columns, *along)
-        ]:
-            raise self._unknown(unknown)
+        self._check_known(names, [*self.parameters, *self.columns, *along])
         for name in names:
-            if name in self.parameters or name in along:
-                continue
-            axes = self.column(name).axes
+            axes = self.columns[name].axes if name in self.columns else ()
             if axes and axes != tuple(along):
                 raise DeclarationError(
                     f"column '{name}' has a value for every {' and '.join(axes)}, not one a design"
                 )
 
-    @cached_property
-    def meanings(self) -> Meanings:
-        """Meanings of columns and axes, by their names."""
-        times = self.identity["t"]
-        joint = times[3] if len(times) > 3 else ""
-        shared = not joint and not any(isinstance(bound, str) for bound in times[:2])
-        axis = next(
-            (name for name in (OVER, CYCLE) if name in self._over), "t" if shared else CYCLE
-        )
-        return Meanings.of(self.description, axis, joint)
+    def _check_known(self, names: Sequence[str], among: Collection[str]) -> None:
+        """Raise for names that are not ``among`` some of a sweep's."""
+        unknown = [name for name in names if name not in among]
+        for axis in (name for name in unknown if name in self.axes):
+            column = next(name for name, kept in self.columns.items() if axis in kept.axes)
+            raise DeclarationError(
+                f"'{axis}' is no column but an axis: it needs a column over {axis}, as {column} is"
+            )
+        if unknown:
+            raise UnknownNameError(
+                "column",
+                unknown,
+                [*self.parameters, *self.columns],
+                f"`lagrange-casadi info {self.path}`",
+            )
 
-    @cached_property
-    def _units(self) -> dict[str, str]:
-        """The units of the axes of columns, those of instants first."""
-        return {axis: self.meanings.of_axis(axis)[0] for axis in ("t", OVER, CYCLE, "xi")}
+    def _axes(self, name: str) -> tuple[str, ...]:
+        """All axes of a parameter, an axis or a column, those of the designs first."""
+        if name in self.parameters:
+            return (name if name in self.dimensions else DESIGN,)
+        if name in self.axes or name in self.dimensions:
+            return (name,)
+        return (*self.dimensions, *self.column(name).axes)
 
-    @cached_property
-    def _over(self) -> dict[str, str]:
-        """The axes of columns, each with a column over it."""
-        return {axis: kept.name for kept in list(self.columns.values())[::-1] for axis in kept.axes}
+    def _read(self, file: h5py.File, name: str, where: Mapping[str, int | slice]) -> Values:
+        """A parameter, an axis or a column, at places along some of its axes.
 
-    def _unknown(self, names: Sequence[str]) -> DeclarationError:
-        """Names that are no column's."""
-        for name in names:
-            if name in self._over:
-                return DeclarationError(
-                    f"'{name}' is no column but an axis: it needs a column over {name}, as"
-                    f" {self._over[name]} is"
-                )
-        return UnknownNameError(
-            "column",
-            names,
-            [*self.parameters, *self.columns],
-            f"`lagrange-casadi info {self.path}`",
-        )
+        Raises :class:`StoreError` that names what is damaged.
+        """
+        place = f"grid/{name}" if name in self.parameters else name.replace(":", "/")
+        try:
+            return np.asarray(
+                file[place][tuple(where.get(axis, slice(None)) for axis in self._axes(name))]
+            )
+        except (OSError, RuntimeError) as error:
+            raise StoreError(f"{self.path}: {name}: damaged: {one_line(error)}") from None
 
     def _blocks(
         self, names: Sequence[str], along: Sequence[str]
     ) -> Iterator[tuple[npt.NDArray[np.int64], dict[str, Values]]]:
         dims = tuple(self.dimensions.values())
         with self.opened() as file:
-            places = (
-                dict(
-                    zip(
-                        along,
-                        np.meshgrid(*(_taken(file[axis]) for axis in along), indexing="ij"),
-                        strict=True,
-                    )
-                )
-                if along
-                else {}
-            )
-            lengths = next((place.shape for place in places.values()), ())
-            rows = math.prod(lengths)
+            lengths = {axis: file[axis].size for axis in along}
+            rows = math.prod(lengths.values())
             for start, stop, where in slabs(dims, chunk_of(dims, _BLOCK // rows)):
+                places = {
+                    axis: place if isinstance(place, slice) else slice(place, place + 1)
+                    for axis, place in zip(self.dimensions, where, strict=True)
+                }
                 numbers = np.arange(start, stop)
-                remaining = self._left(numbers)
-                shape = (numbers[remaining].size, *lengths)
+                left = self._left(numbers)
+                shape = {a: len(range(n)[places[a]]) for a, n in self.dimensions.items()}
+                shape |= lengths
                 found = {}
                 for name in names:
-                    if name in places:
-                        values = places[name][None]
-                    elif name in self.parameters:
-                        values = _along(
-                            file["grid"][name], name, list(self.dimensions), dims, where
-                        )[remaining]
-                    else:
-                        values = _taken(file[name.replace(":", "/")], where)
-                        values = values.reshape(
-                            numbers.size, *(lengths if self.columns[name].axes else ())
-                        )[remaining]
-                    values = values.reshape(*values.shape, *(1,) * (len(shape) - values.ndim))
-                    found[name] = np.broadcast_to(values, shape).reshape(-1)
-                yield np.repeat(numbers[remaining], rows), found
+                    values, axes = self._read(file, name, places), self._axes(name)
+                    own = [length if axis in axes else 1 for axis, length in shape.items()]
+                    whole = np.broadcast_to(values.reshape(own), [*shape.values()])
+                    found[name] = whole.reshape(numbers.size, rows)[left].ravel()
+                yield np.repeat(numbers[left], rows), found
 
     def _left(self, numbers: npt.NDArray[np.int64]) -> slice | npt.NDArray[np.bool_]:
         """Selected designs."""
         if not self.chosen:
             return slice(None)
-        places = dict(
-            zip(
-                self.dimensions,
-                np.unravel_index(numbers, tuple(self.dimensions.values())),
-                strict=True,
-            )
-        )
-        kept: npt.NDArray[np.bool_] = np.all(
-            [np.isin(places[axis], chosen) for axis, chosen in self.chosen.items()], axis=0
-        )
-        return kept
-
-    def _axis(self, parameter: str) -> str:
-        return parameter if parameter in self.dimensions else DESIGN
-
-    def _cut(self, dataset: h5py.Dataset, axes: Sequence[str]) -> Values:
-        """Selected part of a dataset: evenly spaced numbers are read, else the box around them, cut
-        in memory.
-        """
-        numbers = [self.chosen.get(axis) for axis in axes]
-        values = _taken(dataset, tuple(_box(n) for n in numbers))
-        for axis, n in enumerate(numbers):
-            if n is not None and n.size != values.shape[axis]:
-                values = np.take(values, n - n[0], axis=axis)
-        return values
+        places = np.unravel_index(numbers, tuple(self.dimensions.values()))
+        by_axis = dict(zip(self.dimensions, places, strict=True))
+        kept = [np.isin(by_axis[axis], chosen) for axis, chosen in self.chosen.items()]
+        return np.asarray(np.logical_and.reduce(kept))
 
     def opened(self) -> AbstractContextManager[h5py.File]:
         """Open its file to read. Raises what :meth:`open` does."""
@@ -654,18 +561,8 @@ def is_sweep(path: str | Path) -> bool:
     return kind_of(path) == SWEEP
 
 
-def _taken(dataset: h5py.Dataset, where: int | slice | tuple[int | slice, ...] = ()) -> Values:
-    """Contents of a dataset. Raises :class:`StoreError` that names its column."""
-    try:
-        return np.asarray(dataset[where])
-    except (OSError, RuntimeError) as error:
-        name = dataset.name.strip("/").removeprefix("grid/").replace("/", ":")
-        raise StoreError(f"{dataset.file.filename}: {name}: damaged: {one_line(error)}") from None
-
-
-def _box(numbers: npt.NDArray[np.int64] | None) -> slice:
-    if numbers is None:
-        return slice(None)
+def _box(numbers: npt.NDArray[np.int64]) -> slice:
+    """Numbers that are evenly spaced, or the box around others."""
     steps = np.unique(np.diff(numbers))
     return slice(int(numbers[0]), int(numbers[-1]) + 1, int(steps[0]) if steps.size == 1 else 1)
 
@@ -690,27 +587,6 @@ def names_in(given: str | Sequence[str]) -> list[str]:
     if found is None:
         raise DeclarationError(f"columns: expected a name, or a list of names, got {shown(given)}")
     return found
-
-
-def _along(
-    dataset: h5py.Dataset,
-    name: str,
-    axes: list[str],
-    dims: tuple[int, ...],
-    where: tuple[int | slice, ...],
-) -> Array:
-    """A parameter's values of the designs of a slab, flat."""
-    if name not in axes:
-        return _taken(dataset, where[0])
-    axis = axes.index(name)
-    both = zip(where, dims, strict=True)
-    kept = [
-        len(range(*place.indices(length))) if isinstance(place, slice) else 1
-        for place, length in both
-    ]
-    shape = [1] * len(dims)
-    shape[axis] = kept[axis]
-    return np.broadcast_to(np.reshape(_taken(dataset, where[axis]), shape), kept).ravel()
 
 
 def _opened(path: str | Path, verified: VerifiedFile | None) -> AbstractContextManager[h5py.File]:

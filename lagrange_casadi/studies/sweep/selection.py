@@ -13,9 +13,9 @@ import numpy.typing as npt
 
 from ...base.arguments import LATER
 from ...base.arrays import Array
-from ...base.units import Number, typed
-from ...base.units import number as read_number
+from ...base.units import Number
 from ...errors import DeclarationError, NumberError, shown
+from .axes import numbers_in
 
 _NEAR = 1e-9
 
@@ -40,16 +40,16 @@ def matches(name: str, there: Array, wanted: Selected, unit: str) -> npt.NDArray
         isinstance(wanted, np.ndarray) and wanted.ndim == 1
     ):
         each = wanted
-    typed_values = [typed(number) for number in each]
-    for in_unit in (given_unit for _, given_unit in typed_values if given_unit not in ("", unit)):
+    try:
+        found, in_unit = numbers_in(each)
+    except NumberError:
+        found, in_unit = (math.nan,), ""
+    if in_unit not in ("", unit):
         other = "angles" if in_unit == "rad" else f"numbers [{in_unit}]"
         raise DeclarationError(
             f"select: {name}: expected numbers [{unit}], not {other}, got {shown(wanted)}"
         )
-    try:
-        numbers = np.array([read_number(value, finite=False) for value, _ in typed_values])
-    except NumberError:
-        numbers = np.array([np.nan])
+    numbers = np.array(found)
     pair = isinstance(wanted, tuple)
     if not numbers.size or np.isnan(numbers).any() or (pair and numbers.size != 2):
         raise DeclarationError(

@@ -4,8 +4,8 @@ parameters, by what names.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from typing import TypeVar
+from collections.abc import Mapping, Sequence
+from itertools import product
 
 import numpy as np
 
@@ -13,9 +13,8 @@ from ...base.quantities import Output
 from ...errors import DeclarationError, NoDesignError, UnknownNameError
 from ...studies.sweep.axes import DESIGN
 from ...studies.sweep.reading import Sweep
-from .designs import Along, Front, Peaks, Scatter, Spec
-
-_Page = TypeVar("_Page")
+from .designs import Along, Front, Peaks, Spec
+from .panels import varied
 
 _INTERVALS, _ROWS, _ACROSS = 9, 4, 3
 _TOGETHER = {"effort": "effort", "load": "loads", "multiplier": "multipliers", "motion": "motion"}
@@ -23,10 +22,9 @@ _TOGETHER = {"effort": "effort", "load": "loads", "multiplier": "multipliers", "
 
 def default_plots(
     sweep: Sweep,
-    *,
-    over: Sequence[str] = (),
-    at: Mapping[str, float] | None = None,
-    against: Sequence[tuple[str, str]] = (),
+    over: Sequence[str],
+    at: Mapping[str, float],
+    against: Sequence[tuple[str, str]],
 ) -> tuple[Spec, ...]:
     """The usual drawings of a sweep: over the one or two parameters named, or the first ones that
     vary, the others ``at`` values.
@@ -37,7 +35,6 @@ def default_plots(
     vary, is in ``over`` twice or in ``at`` as well, for a value that no design has, and where
     nothing can be drawn.
     """
-    at = dict(at or {})
     names = _over(sweep, tuple(over), at)
     counts = sweep.counts()
     if not counts.get(0):
@@ -49,22 +46,14 @@ def default_plots(
         )
     listed = DESIGN in sweep.dimensions
     specs: list[Spec] = []
+    free = [name for name in varied(sweep.select(**at)) if name not in names]
+    family = free[0] if free and len(names) == 1 and not listed else ""
+    rows, across = (_ROWS, _ACROSS) if listed else (_INTERVALS, 2)
     for group, columns in _groups(sweep).items() if names else ():
-        if listed:
-            pages = [
-                (some, few) for some in _pages(columns, _ROWS) for few in _pages(names, _ACROSS)
-            ]
-            specs += [
-                Scatter(f"peak_{group}{page}", some, few, at)
-                for page, (some, few) in _numbered(pages)
-            ]
-        else:
-            free = [name for name in varied(sweep) if name not in names and name not in at]
-            family = free[0] if free and len(names) == 1 else ""
-            specs += [
-                Peaks(f"peak_{group}{page}", some, names, family, at)
-                for page, some in _numbered(_pages(columns, _INTERVALS))
-            ]
+        pages = [*product(_pages(columns, rows), _pages(names, across))]
+        for k, (some, few) in enumerate(pages, 1):
+            name = f"peak_{group}_{k}" if len(pages) > 1 else f"peak_{group}"
+            specs.append(Peaks(name, some, few, family, at))
     links = dict.fromkeys(output.part for output in _of_kind(sweep, "peak_at").values())
     specs += [
         Along(f"along_{link}", link, (names or tuple(sweep.dimensions))[0], at)
@@ -100,11 +89,6 @@ def default_plots(
     return tuple(specs)
 
 
-def varied(sweep: Sweep) -> list[str]:
-    """The parameters that are not the same in all designs."""
-    return [name for name in sweep.parameters if np.ptp(sweep[name]) > 0.0]
-
-
 def _over(sweep: Sweep, over: tuple[str, ...], at: Mapping[str, float]) -> tuple[str, ...]:
     """The parameters to draw over; none where nothing varies."""
     for name in (*over, *at):
@@ -136,9 +120,16 @@ def _over(sweep: Sweep, over: tuple[str, ...], at: Mapping[str, float]) -> tuple
 def _groups(sweep: Sweep) -> dict[str, list[str]]:
     """The columns that are drawn together, by what the file's name says."""
     groups: dict[str, list[str]] = {}
-    space = sweep.description.space
+    moment = "moment" if sweep.description.space else "mz"
+    reactions = {"resultant": "reactions", moment: "reaction_moments"}
     for name, output in _of_kind(sweep, "peak").items():
-        if group := _group(output, space):
+        if output.group == "section":
+            group = f"section_{output.part}"
+        elif output.group == "reaction":
+            group = reactions.get(output.member, "")
+        else:
+            group = _TOGETHER.get(output.group, "")
+        if group:
             groups.setdefault(group, []).append(name)
     return groups
 
@@ -147,15 +138,6 @@ def _of_kind(sweep: Sweep, kind: str) -> dict[str, Output]:
     """The columns of a kind, and what they are of."""
     named = ((name, *name.split(":", 1)) for name in sweep.columns if ":" in name)
     return {name: Output.of(of) for name, prefix, of in named if prefix == kind}
-
-
-def _group(output: Output, space: bool) -> str:
-    if output.group == "section":
-        return f"section_{output.part}"
-    if output.group == "reaction":
-        moment = "moment" if space else "mz"
-        return {"resultant": "reactions", moment: "reaction_moments"}.get(output.member, "")
-    return _TOGETHER.get(output.group, "")
 
 
 def usual_pair(sweep: Sweep, at: Mapping[str, float]) -> list[tuple[str, str]]:
@@ -180,8 +162,3 @@ def _pages(items: Sequence[str], most: int) -> list[tuple[str, ...]]:
     """Split items into as few even parts as hold no more than ``most``."""
     count = -(-len(items) // most)
     return [tuple(part) for part in np.array_split(np.array(items, object), count)]
-
-
-def _numbered(pages: Sequence[_Page]) -> Iterator[tuple[str, _Page]]:
-    """Pages, and the end of their names: none of a single one."""
-    return ((f"_{k}" if len(pages) > 1 else "", page) for k, page in enumerate(pages, 1))

@@ -10,12 +10,10 @@ import dataclasses
 import json
 import math
 import os
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from ...base.arrays import Array
 from ...engine.derive import compile_scene
@@ -30,7 +28,8 @@ from ...studies.sweep.axes import DESIGN
 from ...studies.sweep.best import best
 from ...studies.sweep.meanings import STATUS
 from ...studies.sweep.reading import Sweep
-from ..charts.usual_designs import usual_pair, varied
+from ..charts.panels import varied
+from ..charts.usual_designs import usual_pair
 from . import Live, assembled, live_digest, page, with_motion, write_page
 from .arrays import Arrays
 from .live import run_of
@@ -97,7 +96,7 @@ def _page(sweep: Sweep, scene: Scene | None, command: str) -> str:
         )
     pair = next(iter(usual_pair(sweep, {})), tuple(names[:2]))
     front = [design.number for design in best(sweep, minimise=pair)] if len(pair) == 2 else []
-    arrays, numbers = Arrays(), _shown(sweep, len(names), front)
+    arrays, values = Arrays(), _shown(sweep, [*sweep.parameters, *names, STATUS], front)
     content: dict[str, Any] = {
         "case": sweep.case,
         "parameters": [
@@ -125,15 +124,14 @@ def _page(sweep: Sweep, scene: Scene | None, command: str) -> str:
         "note": _NO_SCENE,
         "frame": None if scene is None else _frame(sweep, scene, front, command),
     }
-    values = _values(sweep, [*sweep.parameters, *names, STATUS], numbers)
     for one in (*content["parameters"], *content["columns"]):
         one["values"] = arrays.add(values[one["name"]])
     content["designs"] = {
-        "shown": int(numbers.size),
+        "shown": values[DESIGN].size,
         "total": sweep.size,
         "grid": DESIGN not in sweep.dimensions,
-        "numbers": arrays.add(numbers.astype(float)),
-        "status": arrays.add(values[STATUS].astype(float)),
+        "numbers": arrays.add(values[DESIGN]),
+        "status": arrays.add(values[STATUS]),
     }
     content |= {"arrays": arrays.places, "numbers": arrays.block()}
     others = [live_digest()] if scene is not None else []
@@ -143,25 +141,19 @@ def _page(sweep: Sweep, scene: Scene | None, command: str) -> str:
     )
 
 
-def _shown(sweep: Sweep, many: int, front: list[int]) -> npt.NDArray[np.int64]:
-    """The designs that are shown, by number: all, or evenly spread ones and those of the front."""
-    most = max(_LEAST, MOST // (many + len(sweep.parameters) + 2))
-    found = np.concatenate([numbers for numbers, _ in sweep.blocks([STATUS])])
-    if found.size <= most:
-        return found
-    return np.unique(
-        np.concatenate([found[:: math.ceil(found.size / most)], np.array(front, np.int64)])
-    )
-
-
-def _values(sweep: Sweep, names: list[str], wanted: npt.NDArray[np.int64]) -> dict[str, Array]:
-    """Columns of some designs, by name."""
-    parts: dict[str, list[npt.NDArray[Any]]] = {name: [] for name in names}
+def _shown(sweep: Sweep, names: list[str], front: list[int]) -> dict[str, Array]:
+    """Columns of the designs that are shown, by name, and their numbers: all, or evenly spread ones
+    and those of the front.
+    """
+    stride = math.ceil(sweep.size / max(_LEAST, MOST // (len(names) + 1)))
+    before, parts = 0, []
     for numbers, values in sweep.blocks(names):
-        there = np.isin(numbers, wanted)
-        for name in names:
-            parts[name].append(np.asarray(values[name][there], float))
-    return {name: np.concatenate(blocks) for name, blocks in parts.items()}
+        places = before + np.arange(numbers.size)
+        there = (places % stride == 0) | np.isin(numbers, front)
+        parts.append([column[there] for column in (numbers, *values.values())])
+        before += numbers.size
+    columns = (np.concatenate(blocks).astype(float) for blocks in zip(*parts, strict=True))
+    return dict(zip((DESIGN, *names), columns, strict=True))
 
 
 def _frame(sweep: Sweep, scene: Scene, front: list[int], command: str) -> str:
@@ -177,28 +169,17 @@ def _frame(sweep: Sweep, scene: Scene, front: list[int], command: str) -> str:
         raise DeclarationError(f"{sweep.path}: no design has a result: there is nothing to show")
     asked, design = sweep.identity["t"], sweep.design(first)
     wanted = with_motion(_names(_wanted(sweep)))
-    timing, data = scene.timing(), compile_scene(scene, wanted, parameters=design).data
-    if json.loads(json.dumps(timing.words(data.symbols))) != asked:
+    program = compile_scene(scene, wanted, parameters=design)
+    own = json.loads(json.dumps(scene.timing().words(program.data.symbols)))
+    words: dict[str, Any] = {}
+    if own != asked:
         if any(isinstance(bound, str) for bound in (*asked[:2], *asked[4:])):
             raise DeclarationError(
                 f"{sweep.path}: its instants are not those of the scene: {asked}"
             )
-        timing = (
-            scene.timing(over=(asked[3], *asked[:3]))
-            if len(asked) > 3
-            else scene.timing(t=tuple(asked))
-        )
-    words: dict[str, Any] = (
-        {"over": (timing.joint, *_bounds(asked))} if timing.joint else {"t": _bounds(asked)}
-    )
-    if any(isinstance(bound, str) for bound in asked[:2]):
-        words = {}
-    live = Live.of(scene, timing, wanted, command, design)
+        words = {"over": (asked[3], *asked[:3])} if len(asked) > 3 else {"t": tuple(asked)}
+    live = Live.of(scene, scene.timing(**words), wanted, command, design)
     return page(evaluate(scene, parameters=design, wanted=wanted, elastic=False, **words), live)
-
-
-def _bounds(asked: Sequence[float]) -> tuple[float, ...]:
-    return tuple(asked[:3])
 
 
 def _wanted(sweep: Sweep) -> Wanted:
