@@ -8,6 +8,7 @@ from lagrange_casadi.base.interpret import interpret, numpy_arithmetic
 from lagrange_casadi.base.methods import METHODS as METHODS_METHODS
 from lagrange_casadi.base.quantities import Output
 from lagrange_casadi.base.status import Status
+from lagrange_casadi.base.tables import PLANE, SPACE
 from lagrange_casadi.base.threads import in_threads
 from lagrange_casadi.engine import assembly, blocks, codegen, loops
 from lagrange_casadi.engine.codegen import compiler, library
@@ -27,6 +28,7 @@ from lagrange_casadi.model.stated import Stated
 from lagrange_casadi.results.elastic.compliance import Compliance, nodes
 from lagrange_casadi.results.elastic.deflection import deflection
 from lagrange_casadi.results.store import opening
+from lagrange_casadi.results.strength import fatigue
 from lagrange_casadi.results.strength.member import Member
 from lagrange_casadi.results.verification.certificate import certify
 from lagrange_casadi.results.verification.reference import arithmetic, reference

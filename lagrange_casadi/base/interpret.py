@@ -274,8 +274,8 @@ def _remainder(x: Array, y: float) -> Operand:
     """C's remainder, which is exact: every difference is of numbers within a factor of two."""
     remainder, y = np.abs(np.fmod(x, 2 * y)), np.abs(y)
     above = 2 * remainder > y
-    remainder = remainder - y * above
-    remainder = remainder - y * (above & (2 * remainder >= y))
+    remainder = np.where(above, remainder - y, remainder)
+    remainder = np.where(above & (2 * remainder >= y), remainder - y, remainder)
     return np.where(np.signbit(x), -remainder, remainder)
 
 

@@ -116,7 +116,7 @@ class Line:
         self.shape = (count, n)
         way = np.ones(paths.shape)
         if n > 1:
-            way = np.diff(paths, append=2 * paths[..., -1:] - paths[..., -2:-1])
+            way = np.diff(paths)[..., np.minimum(np.arange(n), n - 2)]
             rests = ~(way != 0.0).any(axis=1)
             came = np.maximum.accumulate(np.where(rests, -1, np.arange(n)), axis=1)
             came = np.where(came < 0, (~rests).argmax(axis=1)[:, None], came)

@@ -11,9 +11,8 @@ import pytest
 from design_rows import DENSITIES, alone, assert_refined, loaded, peaks_of
 from internals import Status
 from mechanisms import crank_and_rod, crank_slider, four_bar, pendulum
-from numpy.polynomial import Polynomial
 
-from lagrange_casadi import Scene, SpatialMechanism, density, evaluate, prepare, refine
+from lagrange_casadi import Scene, evaluate, prepare, refine
 from lagrange_casadi.motion import polynomial
 
 STEP = 0.04
@@ -192,81 +191,6 @@ def test_any_density_and_any_station(matter):
             value, t, _ = found[name]
             there = alone(scene, p[row], (t, t, 1), xi=(0, 1, 4001))
             assert abs(value) >= np.abs(there.array(name)).max() * (1 - 1e-13)
-
-
-def shaped():
-    """A thick shaft that is wound up from rest, under loads along it whose shapes have any roots,
-    a force at any place, and a pull at its tip.
-    """
-    m = SpatialMechanism("shaped")
-    m.set_gravity(0.0, 0.0, 0.0)
-    names = ("a", "b", "c", "place", "pull", "speeding")
-    a, b, c, place, pull, speeding = (m.parameter(name, 0.5) for name in names)
-    thick = density.thick(density.polynomial(2.0, 1.0), yy=0.3, zz=0.1)
-    shaft = m.link("shaft", length=1.0, density=thick)
-    m.revolute("O", m.ground, shaft, axis=(0.0, 0.0, 1.0))
-    m.line_load(
-        "along",
-        shaft,
-        x=lambda u: 90 * (u - a) * (u - b),
-        y=lambda u: 90 * (u - a) * (u - b) * (u - c),
-        z=lambda u: 90 * (u - b) * (u - c),
-    )
-    m.force("beside", shaft.at(place), z=3.0)
-    m.force("tip", shaft.tip, x=pull, y=pull, z=pull)
-    return Scene(m, {"O": polynomial(0.0, 0.0, speeding / 2)}, ["section:shaft"], t=(0, 0, 1))
-
-
-def inside(q, tip):
-    """Force and moment beyond a place from what acts along a beam of 1 m and at its tip."""
-    force = tip + q.integ()(1.0) - q.integ()
-    return force, force.integ()(1.0) - force.integ()
-
-
-@pytest.mark.parametrize("backend", ["c", "lanes"])
-def test_any_load_along_a_link(backend):
-    """Nothing on a fine grid is beyond the peak, and what has a peak comes to it: by integrals of
-    polynomials.
-    """
-    draw, x, u = np.random.default_rng(5), Polynomial([0.0, 1.0]), np.linspace(0.0, 1.0, 20_001)
-    a, close = draw.uniform(-0.1, 1.1, 500), 10 ** draw.uniform(-2, -0.3, 500)
-    rest = draw.uniform([-0.1, 0, -9, -3], [1.1, 1, 9, 3], (500, 4))
-    p = np.column_stack([a, a + close, rest])
-    designs = prepare(shaped(), backend=backend)
-    outcome = designs.designs(p)
-    assert outcome.status.tolist() == [0] * 500
-    for row, (a, b, c, place, pull, speeding) in enumerate(p):
-        axial, _ = inside(90 * (x - a) * (x - b), pull)
-        inertia = (2.0 + x) * speeding * x
-        y, about_z = inside(90 * (x - a) * (x - b) * (x - c) - inertia, pull)
-        z, about_y = inside(90 * (x - b) * (x - c), pull)
-        told = {
-            "axial": axial(u),
-            "shear_y": y(u),
-            "shear_z": z(u) + 3.0 * (u < place),
-            "bending_y": about_y(u) + 3.0 * np.maximum(place - u, 0.0),
-            "bending_z": about_z(u) - 0.3 * speeding * (1 - u),
-        }
-        for size in ("shear", "bending"):
-            told[size] = np.hypot(told[f"{size}_y"], told[f"{size}_z"])
-        found = peaks_of(designs, outcome, row)
-        for name, values in told.items():
-            peak, largest = abs(found[f"section:shaft:{name}"][0]), np.abs(values).max()
-            assert largest * (1 - 1e-12) <= peak <= largest * (1 + 1e-6) + 1e-3, (row, name)
-
-
-@pytest.mark.parametrize("backend", ["lanes", "c"])
-def test_of_peaks_as_large_the_first_is_told(backend):
-    """Else rounding would choose between tops and troughs of many turns, and their sign; and
-    what is zero throughout peaks at the first instant.
-    """
-    scene = pendulum(polynomial(0.1, 3.0), t=(0, 6.0, 91), wanted=["effort", "motion"])
-    designs = prepare(scene, backend=backend)
-    found = peaks_of(designs, designs.designs([[]]), 0)
-    value, t, _ = found["effort:pin"]
-    assert value == pytest.approx(-1.2 * 9.81 * 0.25, rel=1e-12)
-    assert t == pytest.approx((math.pi - 0.1) / 3.0, abs=1e-6)
-    assert found["motion:pin_acceleration"][:2] == (0.0, 0.0)
 
 
 def turned(scene, start, count):

@@ -1,5 +1,5 @@
 """C that is printed of CasADi's functions: its bits are those of CasADi's virtual machine, and no
-compiler warns of it.
+compiler warns of it. And NumPy's arithmetic: its numbers are those, too.
 """
 
 import ctypes
@@ -10,7 +10,8 @@ import casadi as ca
 import numpy as np
 import pytest
 from compiled import cc
-from internals import print_functions
+from internals import interpret, numpy_arithmetic, print_functions
+from operations import EACH, X, Y
 from outside import doubled
 
 from lagrange_casadi.errors import DeclarationError
@@ -97,3 +98,17 @@ def test_what_has_no_c_is_named(make, says):
         DeclarationError, match=rf"function 'f' has no C: {says}; evaluate with backend 'vm'"
     ):
         print_functions({"f": ca.Function("f", [x], [make(x)])}, "double", prefix="table")
+
+
+@pytest.mark.parametrize("name", EACH)
+def test_numpy_has_the_numbers_of_the_virtual_machine(name):
+    """Also of what is nothing, has no end, and is as far from two whole multiples."""
+    draw = np.random.default_rng(5)
+    y = np.concatenate([np.repeat(NUMBERS, len(NUMBERS)), draw.normal(size=600)])
+    x = np.concatenate([np.tile(NUMBERS, len(NUMBERS)), draw.normal(size=600) * 9])
+    x[-200:] = draw.integers(-9, 10, 200) * y[-200:] / 2
+    function = ca.Function("f", [X, Y], [EACH[name]])
+    with np.errstate(all="ignore"):
+        found = interpret(function, [[x], [y]], numpy_arithmetic())[0][0]
+    expected = function(x[None], y[None]).full()[0]
+    np.testing.assert_allclose(np.broadcast_to(found, x.shape), expected, rtol=1e-15, atol=1e-300)

@@ -12,8 +12,6 @@ import numpy as np
 import pytest
 from internals import codegen, compiler
 
-pytestmark = pytest.mark.quick
-
 search = codegen.search
 Kind, Listed = search.Kind, search.Listed
 
@@ -234,7 +232,7 @@ def largest(curve):
     return best
 
 
-@pytest.mark.parametrize("together", [64, 2])
+@pytest.mark.parametrize("together", [pytest.param(64, marks=pytest.mark.quick), 2])
 @pytest.mark.parametrize("name", KINDS)
 def test_the_largest_is_found_in_as_few_times(name, together, monkeypatch):
     monkeypatch.setattr(search, "_TOGETHER", together)
@@ -260,7 +258,7 @@ def sizes_of(curve, t, sign):
     return sign * curve.at(t) - (2 * instants.min() - instants.max())
 
 
-@pytest.mark.parametrize("sign", [0, 1, -1])
+@pytest.mark.parametrize("sign", [pytest.param(0, marks=pytest.mark.quick), 1, -1])
 @pytest.mark.parametrize("kind", [smooth, pole, root, rate])
 def test_local_peaks_are_listed(kind, sign):
     """All that are two steps or more from larger ones, down to a share of the largest: as many as
@@ -287,7 +285,7 @@ def test_local_peaks_are_listed(kind, sign):
             assert sizes_of(curve, there[:, 1], sign)[0] >= sizes[k] * (1 - 1e-9)
 
 
-@pytest.mark.parametrize("speed", [7.0, 31.0, 55.0])
+@pytest.mark.parametrize("speed", [pytest.param(7.0, marks=pytest.mark.quick), 31.0, 55.0])
 def test_of_tops_as_large_the_first_is_told(speed):
     """Whatever rounding says of tops and troughs."""
     for phase in np.linspace(0.0, math.pi, 24, endpoint=False):

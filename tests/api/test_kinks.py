@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from outside import doubled
 
 from lagrange_casadi import Mechanism, Scene, elements, evaluate, export, prepare, sweep, table
 from lagrange_casadi.errors import AssemblyError, DeclarationError
@@ -54,6 +55,7 @@ SMOOTH = {
     "the same where it is kept from noise": (
         Y - ca.if_else(ca.fabs(X) < 1e-3, 0.5 - X**2 / 24, (1 - ca.cos(X)) / X**2)
     ),
+    "waves as fast as the instants, of another program": Y - ca.sin(100 * doubled(X)),
     "a bump": Y - ca.if_else(X > 0.5, ca.exp(-1 / (X - 0.5)), 0),
     "a size of what only touches zero": Y - ca.fabs(ca.sin(7 * X + 0.0652521) + 1),
     "a corner that is rounded": Y - ca.sqrt((X - 0.3) ** 2 + 1e-9),
@@ -70,6 +72,7 @@ BROKEN = {
     "a table within": (Y - ca.sin(table(ca.cos(X) + Y, [0.0, 0.5, 1.0], [0.0, 0.1, 0.4])), "slope"),
     "CasADi's own": (Y - ca.pw_lin(X, ca.DM([0, 1, 2]), ca.DM([0, 1, 4])), "slope"),
     "a size": (Y - ca.fabs(X), "slope"),
+    "a size, of another program": (Y - ca.fabs(doubled(X - 0.333)), "slope"),
     "the larger one": (Y - ca.fmax(X, Y * T), "slope"),
     "the smaller one": (Y - ca.fmin(X, 0.3), "slope"),
     "a piece too steep": (Y - ca.if_else(X < 1, X, 1 + 1.0001 * (X - 1)), "slope"),

@@ -3,6 +3,7 @@ cycles, and what is refused of them.
 """
 
 import math
+import re
 
 import casadi as ca
 import numpy as np
@@ -245,6 +246,9 @@ def test_smoothing_takes_the_noise_out_of_accelerations(here, smoothing, points)
     assert off[0] > 2.0 * np.abs(clean[2]).max()
     assert off[1] < min(0.01 * off[0], 0.02 * np.abs(clean[2]).max())
     assert "smoothed by 0.00" in smooth.description
+    at_most = re.search(r"at most (\S+) deg from them", smooth.description)[1]
+    apart = np.abs(np.degrees(derivatives(smooth, t)[0]) - noisy).max()
+    assert float(at_most) == pytest.approx(apart, rel=1e-2)
 
 
 def test_units_of_a_file_are_those_of_a_motion_too(here):

@@ -120,6 +120,8 @@ LEAVES = "; beyond the end of the link the joint's force acts on that end"
         (slotted(), ["all"], "joint 'S' leaves link 'b' at t = 0 s (xi/l from 0.6379 to 1.263)"),
         (bracket(), ["effort"], None),
         (bracket(reach=0.2), ["all"], None),
+        # Beyond both ends, but by rounding.
+        (bracket(reach=0.25 + 1e-11), ["all"], None),
     ],
 )
 def test_it_is_said_which_joint_leaves_when_and_how_far(scene, wanted, says, tmp_path):

@@ -1,5 +1,5 @@
-"""A result of the plane with a wrong sign, or a wrong size, fails its certificate: whatever holds,
-loads, couples or rubs.
+"""A result with a wrong sign, or a wrong size, fails its certificate: whatever holds, loads,
+couples or rubs, in the plane and in space.
 """
 
 import numpy as np
@@ -8,6 +8,7 @@ from declarations import declaration
 from every_load import every_joint_and_load
 from internals import certify
 from random_mechanisms import KINDS, draw
+from spatial_solutions import scene_of
 
 from lagrange_casadi import evaluate
 
@@ -60,3 +61,15 @@ def test_whatever_can_be_declared_is_noticed(kind):
     grid = (start, stop, 5 if start < stop else 1)
     keywords = {"t": grid, "parameters": drawn.keywords.get("parameters")}
     assert missed(drawn.scene(), FORCES, **keywords) == []
+
+
+DRAWN = [("rsur", 0), ("loop", 0), ("anyhow", 0), ("anyhow", 1), ("anyhow", 2)]
+
+
+@pytest.mark.parametrize(("name", "seed"), DRAWN)
+def test_whatever_is_in_space_is_noticed(name, seed):
+    """Loops closed by balls and joints of two axes; and bodies on any joints, with springs,
+    equations, and loads along links.
+    """
+    _, scene = scene_of(name, seed)
+    assert missed(scene, (*GROUPS, "law"), t=(*scene.t[:2], 3)) == []

@@ -292,6 +292,18 @@ def in_space(kind):
     return Scene(m, motion, ["effort", "motion", "friction"], t=(0, 1, 2))
 
 
+def arm(count):
+    """Links one after another, with friction in each joint, that do not move."""
+    m = Mechanism("arm")
+    parent = m.ground
+    for k in range(count):
+        link = m.link(f"link{k}", length=0.1, mass=1.0)
+        m.friction(f"rub{k}", m.revolute(f"J{k}", parent, link), mu=0.1, radius=0.01)
+        parent = link.tip
+    motion = {name: polynomial(0.1) for name in m.coordinates}
+    return Scene(m, motion, ["effort", "motion", "friction"], t=(0, 1, 2))
+
+
 @pytest.mark.parametrize(
     ("scene", "joint", "why"),
     [
@@ -305,6 +317,7 @@ def in_space(kind):
             "C:turn_1",
             "friction 'rub_ball' may hold its joint in more than one direction",
         ),
+        (arm(11), "J3", "11 frictions are at rest, at most 10 are supported"),
     ],
 )
 def test_what_is_not_exact_is_not_told(scene, joint, why):

@@ -75,7 +75,7 @@ def tabulate(
         kept = (
             np.maximum(np.abs(values).max(axis=-1), np.abs(between).max(axis=-1)) > cycle.rounding
         )
-        if 8 * (nodes + 5) * np.count_nonzero(kept) > LARGEST:
+        if 8 * nodes * np.count_nonzero(kept) > LARGEST:
             if best is None:
                 raise DeclarationError(
                     f"table: {nodes} nodes take more than {LARGEST // 10**6} MB; expected fewer, or"
