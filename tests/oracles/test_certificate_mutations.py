@@ -32,7 +32,9 @@ def missed(scene, groups=GROUPS, **keywords):
     for output, values in solution.outputs.items():
         if output.group not in groups or output.member == "loss" or not solution.determined(output):
             continue
-        if not np.nanmax(np.abs(values)) > 0.05 * largest[output.group, solution.unit(output)]:
+        size = np.nanmax(np.abs(values))
+        # Angles of joints that only slide are zeros with rounding.
+        if not size > max(0.05 * largest[output.group, solution.unit(output)], 1e-12):
             continue
         # A motion run backwards needs the same forces, where none depends on rates.
         for factor in (
@@ -63,7 +65,7 @@ def test_whatever_can_be_declared_is_noticed(kind):
     assert missed(drawn.scene(), FORCES, **keywords) == []
 
 
-DRAWN = [("rsur", 0), ("loop", 0), ("anyhow", 0), ("anyhow", 1), ("anyhow", 2)]
+DRAWN = [("rsur", 0), ("loop", 0), ("loop", 1), ("anyhow", 0), ("anyhow", 1), ("anyhow", 2)]
 
 
 @pytest.mark.parametrize(("name", "seed"), DRAWN)
