@@ -334,11 +334,13 @@ def by_last_name(_app, env, node, shown):
     if node.get("refdomain") != "py":
         return None
     domain = env.get_domain("py")
+    target = node["reftarget"].lstrip(".")
+    # What the command line reads has the module, which pages do not show.
+    public = f"lagrange_casadi.{target.rpartition('.')[2]}"
     found = {
         entry.node_id: entry
-        for _, entry in domain.find_obj(
-            env, None, None, node["reftarget"].lstrip("."), None, 1
-        )
+        for _, entry in domain.find_obj(env, None, None, target, None, 1)
+        or domain.find_obj(env, None, None, public, None, 0)
     }
     if len(found) != 1:
         return None

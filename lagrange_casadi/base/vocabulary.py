@@ -26,10 +26,12 @@ Beyond = Literal["hold", "line"]
 BEYONDS: tuple[Beyond, ...] = ("hold", "line")
 """Ways of a table to go on beyond its ends: with the value there, or in a straight line."""
 
-CRITERIA = ("goodman", "gerber", "soderberg", "morrow", "findley")
+Criterion = Literal["goodman", "gerber", "soderberg", "morrow", "findley"]
+CRITERIA: tuple[Criterion, ...] = ("goodman", "gerber", "soderberg", "morrow", "findley")
 """Treatments of a mean stress in fatigue."""
 
-YIELDING = ("von_mises", "tresca")
+Yielding = Literal["von_mises", "tresca"]
+YIELDING: tuple[Yielding, ...] = ("von_mises", "tresca")
 """Stresses that yield."""
 
 POINTS = 11
@@ -50,5 +52,6 @@ TIME_LIMIT = 60.0
 SIMPLE = "four_bar"
 """The case that another one begins as."""
 
-LOAD_FORMATS = ("json", "csv", "inp", "beam")
+LoadFormat = Literal["json", "csv", "inp", "beam"]
+LOAD_FORMATS: tuple[LoadFormat, ...] = ("json", "csv", "inp", "beam")
 """Formats of load cases for finite elements."""

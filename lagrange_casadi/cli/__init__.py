@@ -21,9 +21,9 @@ from ..base.interrupts import SENTENCE, STATUS, interrupts, keep_status
 from ..base.standard_streams import lead_nowhere
 from ..errors import LagrangeCasadiError, PostureError, UnknownNameError, one_line
 from ..version import __version__
-from .commands import GROUPS
+from .commands import GROUPS, PLACES
 from .echo import echo
-from .help import write_commands
+from .help import command, write_commands
 
 _NAME = "lagrange-casadi"
 _COMPLETE = "_LAGRANGE_CASADI_COMPLETE"
@@ -33,6 +33,8 @@ _OPTIONS = {
     "resume=True": "--resume",
     "force=True": "--force",
     "many=True": "--yes",
+    "accept_inertias=True": "--accept-inertias",
+    "consistent=True": "--consistent",
     "which `load` reads": "which the commands info, plot and check read",
     "which `Sweep.open` reads": "which the commands table, best, info, plot and check read",
 }
@@ -59,6 +61,14 @@ class _Unread(Exception):  # noqa: N818 - it is no error
 
 
 class _Commands(click.Group):
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return sorted(PLACES)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name in PLACES:
+            self.commands.setdefault(cmd_name, command(PLACES[cmd_name]))
+        return self.commands.get(cmd_name)
+
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         write_commands(GROUPS, formatter)
 
@@ -74,15 +84,14 @@ class _Commands(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        known = ctx.resilient_parsing or args[:1] == [] or args[0] in self.commands
+        known = ctx.resilient_parsing or args[:1] == [] or args[0] in PLACES
         if not (known or args[0].startswith("-")):
-            raise UnknownNameError("command", args[0], self.commands)
+            raise UnknownNameError("command", args[0], PLACES)
         return super().resolve_command(ctx, args)
 
 
 @click.group(
     cls=_Commands,
-    commands=tuple(command for group in GROUPS.values() for command in group),
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 @click.version_option(__version__, prog_name=_NAME)

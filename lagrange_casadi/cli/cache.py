@@ -8,8 +8,19 @@ from ..studies.sweep.axes import counted
 from .echo import echo
 
 
-def cache(clear: bool) -> None:
-    """See :func:`.commands.cache`."""
+def cache(
+    *,
+    clear: bool = False,
+) -> None:
+    """Show the cache of graphs and compiled libraries, or empty it.
+
+    It lists the folder, its size, and the limit of that.
+
+    Parameters
+    ----------
+    clear
+        Remove all graphs and libraries from the cache.
+    """
     place, most = kept.place(), kept.limit()
     try:
         entries = list(kept.entries(place).values()) if place.exists() else []

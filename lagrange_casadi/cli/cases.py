@@ -14,12 +14,24 @@ from pathlib import Path
 from ..base.folders import filling
 from ..base.shipped_cases import shipped_cases
 from ..base.vocabulary import SIMPLE
-from ..errors import DeclarationError, ModelFileError, PathError, UnknownNameError
+from ..errors import PathError, UnknownNameError
 from .echo import echo
+from .options import refuse
 
 
-def cases(copy: Path | None) -> None:
-    """See :func:`.commands.cases`."""
+def cases(
+    *,
+    copy: Path | None = None,
+) -> None:
+    """List the cases that come with the package, or copy them.
+
+    The name of each is a CASE for the other commands, as in run four_bar.
+
+    Parameters
+    ----------
+    copy : FOLDER
+        Copy all of them into this new folder.
+    """
     found = shipped_cases()
     if not found:
         raise PathError("the cases were not installed with the package: they are in its repository")
@@ -47,20 +59,36 @@ def _sentence(file: Path) -> str:
     return (ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or "").partition("\n")[0]
 
 
-def new(folder: Path, like: str | None, source: Path | None, accept_inertias: bool) -> None:
-    """See :func:`.commands.new`."""
-    if like is not None and source is not None:
-        raise DeclarationError("--like and --from exclude each other")
+def new(
+    folder: Path,
+    *,
+    like: str | None = None,
+    source: Path | None = None,
+    accept_inertias: bool = False,
+) -> None:
+    """Begin a case of your own in a new FOLDER.
+
+    It is a copy of one that comes with the package, under the folder's name, or a model of another
+    program that is written as a case.
+
+    Parameters
+    ----------
+    folder : FOLDER
+    like : NAME
+        Copy this case; the command cases lists all.
+    source : FILE
+        Begin with a model of another program: .json, .asmt, .urdf, .sdf or .xml (MuJoCo).
+    accept_inertias
+        Take moments of inertia that no body has as FILE gives them.
+    """
+    refuse(
+        (like is not None and source, "--like and --from exclude each other"),
+        (accept_inertias and not source, "--accept-inertias needs --from FILE"),
+    )
     if source is not None:
         from ..interop.formats import case_of
 
-        try:
-            files = {"case.py": case_of(source, accept_inertias=accept_inertias).encode()}
-        except ModelFileError as error:
-            words = str(error).replace("accept_inertias=True", "--accept-inertias")
-            raise ModelFileError(words) from None
-    elif accept_inertias:
-        raise DeclarationError("--accept-inertias needs --from FILE")
+        files = {"case.py": case_of(source, accept_inertias=accept_inertias).encode()}
     else:
         files = _copied(SIMPLE if like is None else like, folder)
     if os.path.lexists(folder):

@@ -5,8 +5,6 @@ from __future__ import annotations
 import subprocess
 from pathlib import Path
 
-import click
-
 from ..base.apart import LostError, run_apart
 from ..base.vocabulary import TIME_LIMIT
 from ..errors import StoreError
@@ -17,6 +15,7 @@ from ..studies.optimise.file import check_optimum, is_optimum
 from ..studies.sweep import is_sweep
 from ..studies.sweep.checking import check_sweep, flaws, progress, unfinished
 from .echo import echo
+from .options import refuse
 
 _VARIABLES = {"HDF5_PLUGIN_PRELOAD": "::"}
 """Environment by which HDF5 loads no filters from outside."""
@@ -26,15 +25,32 @@ _LINES, _LENGTH = 100, 1000
 """Findings that are reported at most, and characters of each."""
 
 
-def check(file: Path, untrusted: bool, time_limit: float | None) -> int:
-    """See :func:`.commands.check`."""
-    if time_limit is not None and not untrusted:
-        raise click.UsageError("--time-limit goes with --untrusted")
+def check(
+    file: Path,
+    *,
+    untrusted: bool = False,
+    time_limit: float | None = None,
+) -> int:
+    """Check that FILE.h5 is whole and consistent.
+
+    The exit status is 0 if it is, else 1.
+
+    Parameters
+    ----------
+    file : FILE.h5|FILE.h5.parts
+    untrusted
+        Read the file in a process of its own: forged files may crash or stall HDF5.
+    time_limit : SECONDS
+        Limit the time of --untrusted [s]; default: 60.
+    """
     seconds = TIME_LIMIT if time_limit is None else time_limit
-    if not 0.0 < seconds <= _LONGEST:
-        raise click.UsageError(
-            f"--time-limit: expected seconds above 0, up to {_LONGEST:g}, got {seconds:g}"
-        )
+    refuse(
+        (time_limit is not None and not untrusted, "--time-limit goes with --untrusted"),
+        (
+            not 0.0 < seconds <= _LONGEST,
+            f"--time-limit: expected seconds above 0, up to {_LONGEST:g}, got {seconds:g}",
+        ),
+    )
     findings = _findings_apart(file, seconds) if untrusted else _findings(file)
     for finding in findings:
         echo(f"{file}: {finding}", err=True)

@@ -26,28 +26,64 @@ from ..studies.evaluate import evaluate
 from ..views.charts.duty import plot_duty
 from ..views.shapes.pictures import check_picture
 from .echo import echo
+from .options import refuse
 
 _BAR = 40
 
 
 def drive(
     case: Path,
-    motors: Path | None,
-    drives: Sequence[str],
-    ratios: tuple[float, ...],
-    lead: float | None,
-    efficiency: float,
-    inertia: float,
-    plot: Path | None,
+    *,
+    motors: Path | None = None,
+    drives: Sequence[str] = (),
+    ratios: tuple[float, ...] = (),
+    lead: float | None = None,
+    efficiency: float = 1.0,
+    inertia: float = 0.0,
+    plot: Path | None = None,
     **given: Any,
 ) -> None:
-    """See :func:`.commands.drive`."""
-    if lead is not None and not 0.0 < lead < math.inf:
-        raise click.UsageError(f"--lead: expected a positive length [m], got {lead:g}")
-    if not 0.0 <= inertia < math.inf:
-        raise click.UsageError(
-            f"--inertia: expected a number that is not negative [kg m^2], got {inertia:g}"
-        )
+    """Choose the smallest motor that suits each drive of CASE.
+
+    It lists the speeds, torques and power that a cycle demands, and the reserves of the motor.
+
+    Parameters
+    ----------
+    case : CASE
+    motors : FILE.csv|NAME
+        Choose from this catalogue, or by name from a class of motors: servo, induction; default:
+        motors.csv next to the case.
+    drives : JOINT
+        Choose a motor for this drive. Default: all drives.
+    ratios : NUMBER,...
+        Set the gear ratio, turns of the motor per turn of the drive; the best of several is
+        taken. Default: 1.
+    lead : LENGTH
+        Set the travel per turn [m] of the screw or belt of a sliding drive.
+    efficiency : NUMBER
+        Set the efficiency of the gearbox, from 0 to 1.
+    inertia : NUMBER
+        Add this moment of inertia to that of the motor's rotor [kg m^2].
+    parameters
+        As of :func:`.studies.evaluate.evaluate`.
+    t
+        As of :func:`.studies.evaluate.evaluate`: Set the instants [s] over a whole cycle, both ends
+        included; default: those of the case.
+    over
+        As of :func:`.studies.evaluate.evaluate`.
+    plot : FILE.png
+        Draw torque over speed into this file, .png, .pdf or .svg.
+    """
+    refuse(
+        (
+            lead is not None and not 0.0 < lead < math.inf,
+            f"--lead: expected a positive length [m], got {lead}",
+        ),
+        (
+            not 0.0 <= inertia < math.inf,
+            f"--inertia: expected a number that is not negative [kg m^2], got {inertia:g}",
+        ),
+    )
     loaded = load_case(case)
     scene = loaded.scene
     beside = loaded.path.parent / "motors.csv"
@@ -56,11 +92,13 @@ def drive(
     if unknown := [name for name in drives if name not in valid]:
         raise UnknownNameError("drive", unknown, valid)
     chosen = tuple(dict.fromkeys(drives)) or valid
+    refuse(
+        (
+            plot and len(chosen) > 1,
+            f"--plot: expected one drive, by --drive; there are {', '.join(chosen)}",
+        )
+    )
     if plot is not None:
-        if len(chosen) > 1:
-            raise click.UsageError(
-                f"--plot: expected one drive, by --drive; there are {', '.join(chosen)}"
-            )
         check_picture(plot)
     solution = evaluate(scene, wanted=certified_outputs(scene.outputs), **given)
     lines = [

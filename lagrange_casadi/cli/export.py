@@ -6,25 +6,52 @@ import shlex
 from pathlib import Path
 from typing import Any
 
-import click
-
 from ..interop.exports import export as write
 from ..studies.case import load_case
 from .echo import echo
+from .options import refuse
 
 
 def export(
     case: Path,
-    out: Path | None,
-    model: Path | None,
-    name: str | None,
-    fmu: bool,
-    fmu_by: str | None,
+    *,
+    out: Path | None = None,
+    model: Path | None = None,
+    name: str | None = None,
+    fmu: bool = False,
+    fmu_by: str | None = None,
     **given: Any,
 ) -> None:
-    """See :func:`.commands.export`."""
-    if fmu_by and not fmu:
-        raise click.UsageError("--fmu-by goes with --fmu")
+    """Write CASE as C for other programs.
+
+    The folder stands alone: it has the library, a self-test and an example.
+
+    Parameters
+    ----------
+    case : CASE
+    out : DIR
+        Write into this folder.
+    model : FILE.json
+        Write the mechanism as data for other programs: bodies, joints, motions.
+    name : NAME
+        As of :func:`.interop.exports.folder.export`.
+    parameters, wanted, precision, newton, table
+        As of :func:`.interop.exports.folder.export`.
+    largest : BYTES
+        As of :func:`.interop.exports.folder.export`.
+    fmu
+        Also write DIR/CASE.fmu, a unit of FMI 2.0 for simulation tools; needs FMPy and a C
+        compiler.
+    fmu_by : time|COORDINATE
+        With --fmu, put the case's motion inside: the input is the time, or the place of this
+        coordinate, as a crank's angle.
+    control, structured_text, wasm, force
+        As of :func:`.interop.exports.folder.export`.
+    """
+    refuse(
+        (fmu_by and not fmu, "--fmu-by goes with --fmu"),
+        (not (out or model), "Missing option '--out' or '--model'."),
+    )
     loaded = load_case(case)
     if model is not None:
         from ..interop.formats import save_model
@@ -32,8 +59,6 @@ def export(
         save_model(loaded.scene, model, given["parameters"])
         echo(f"wrote {model}")
     if out is None:
-        if model is None:
-            raise click.UsageError("Missing option '--out' or '--model'.")
         return
     made = write(
         loaded.scene,

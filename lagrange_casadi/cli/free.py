@@ -22,7 +22,7 @@ from ..studies.forward.running import free as run
 from ..views.charts.free_cycle import plot_cycle
 from ..views.shapes.pictures import check_picture
 from .echo import echo
-from .options import HDF5, target
+from .options import HDF5, refuse, target
 
 LAWS: dict[str, tuple[Callable[..., Law], int]] = {
     "torque": (torque, 1),
@@ -35,35 +35,75 @@ LAWS: dict[str, tuple[Callable[..., Law], int]] = {
 
 def free(
     case: Path,
-    drive: str | None,
-    geared: float,
-    inertia: float,
-    start: str | None,
-    steady: bool,
-    fluctuation: float | None,
-    cycle: float,
-    t: EvenPoints | None,
-    out: Path | None,
-    plot: Path | None,
+    *,
+    drive: str | None = None,
+    geared: float = 1.0,
+    load: float = 0.0,
+    inertia: float = 0.0,
+    start: str | None = None,
+    steady: bool = False,
+    fluctuation: float | None = None,
+    cycle: float = 1.0,
+    t: EvenPoints | None = None,
+    out: Path | None = None,
+    plot: Path | None = None,
     **given: Any,
 ) -> None:
-    """See :func:`.commands.free`."""
-    if fluctuation is not None and inertia:
-        raise click.UsageError("--fluctuation finds the flywheel; expected it without --inertia")
-    if fluctuation is not None and t is not None:
-        raise click.UsageError("--fluctuation computes a steady cycle; expected it without --t")
-    if drive is None and geared != 1.0:
-        raise click.UsageError("--geared goes with --drive")
-    if not math.isfinite(given["load"]):
-        raise click.UsageError(f"--load: expected a finite number, got {given['load']:g}")
-    if not 0.0 < cycle < math.inf:
-        raise click.UsageError(f"--cycle: expected a positive number of turns, got {cycle:g}")
+    """Compute the motion of CASE under the torques of a motor, its loads and its weight.
+
+    All forces are those of this motion. CASE has one degree of freedom; the motion that it
+    declares is used for the start only.
+
+    lagrange-casadi free punch_press --drive induction=200,0.2,157 --geared 15 --fluctuation 0.05
+
+    Parameters
+    ----------
+    case : CASE
+    drive : LAW=NUMBER,...
+        Drive it by torque=TORQUE [N m], power=POWER [W], dc=STALL_TORQUE,NO_LOAD_SPEED or
+        induction=BREAKDOWN_TORQUE,BREAKDOWN_SLIP,SYNCHRONOUS_SPEED [rad/s]. Default: nothing; of
+        a steady cycle the torque that keeps the mean speed.
+    geared : NUMBER
+        Set the gear ratio, turns of the motor per turn of the drive.
+    load : NUMBER
+        Apply this resisting torque [N m].
+    inertia : NUMBER
+        Put a flywheel of this inertia on the drive [kg m^2].
+    start : COORDINATE,RATE
+        Set the initial coordinate and rate [rad, rad/s or m, m/s]; default: those of the case.
+    steady
+        As of :func:`.studies.forward.running.free`.
+    fluctuation : NUMBER
+        Find the flywheel with which the steady cycle has this coefficient of fluctuation.
+    cycle : TURNS
+        Set the turns after which the machine repeats.
+    count : NUMBER
+        As of :func:`.studies.forward.running.free`.
+    parameters, t, wanted
+        As of :func:`.studies.forward.running.free`.
+    out
+        Write the run to this HDF5 file; default: <case>_free.h5.
+    plot : FILE.png
+        Draw torque and speed over the drive's coordinate into this file, .png, .pdf or .svg.
+    """
+    sized = fluctuation is not None
+    refuse(
+        (sized and inertia, "--fluctuation finds the flywheel; expected it without --inertia"),
+        (sized and t, "--fluctuation computes a steady cycle; expected it without --t"),
+        (drive is None and geared != 1.0, "--geared goes with --drive"),
+        (not math.isfinite(load), f"--load: expected a finite number, got {load:g}"),
+        (
+            not 0.0 < cycle < math.inf,
+            f"--cycle: expected a positive number of turns, got {cycle:g}",
+        ),
+    )
     if plot is not None:
         check_picture(plot)
     loaded = load_case(case)
     out = target("--out", out, f"{loaded.name}_free.h5", HDF5)
     check_target(out)
     given |= {
+        "load": load,
         "drive": None if drive is None else _law(drive).geared(geared),
         "start": None if start is None else _numbers("--start", start, 2),
         "cycle": math.tau * cycle,

@@ -5,9 +5,14 @@ Help never cuts a description.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import re
+from collections.abc import Mapping
+from importlib import import_module
 
 import click
+
+from .options import option
+from .signatures import parameters, summary
 
 _MACHINE = (
     "backend",
@@ -28,23 +33,17 @@ _MACHINE = (
 """Options that say how results are computed, by name."""
 
 
-Body = Callable[..., int | None]
-"""The work of a command with its options; a number that it returns is the exit status."""
-
-
 class Command(click.Command):
     """A command whose help has the options of the machine in a group of their own.
 
-    Its callback takes nothing and returns its :data:`Body`, which it imports. What it was asked for
-    is noted in the context's ``obj``, for what follows an error.
+    What it was asked for is noted in the context's ``obj``, for what follows an error.
     """
 
     def invoke(self, ctx: click.Context) -> object:
         """Run the command."""
         if ctx.obj is not None:
             ctx.obj |= ctx.params
-        assert self.callback is not None
-        return self.callback()(**ctx.params)
+        return super().invoke(ctx)
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the options in two groups."""
@@ -59,22 +58,30 @@ class Command(click.Command):
                     formatter.write_dl(records)
 
 
-def command(imports: Callable[[], Body]) -> Command:
-    """Declare a command: of the function's name, described by its docstring, to do what it
-    returns.
+def command(place: str) -> Command:
+    """Make a command of MODULE.FUNCTION of this package, which is imported when it is run.
+
+    The command has the function's name, is described by the function's docstring, and has its
+    parameters as options. A number that the function returns is the exit status.
     """
-    return click.command(cls=Command)(imports)
+    module, _, name = place.partition(".")
+
+    def run(**given: object) -> object:
+        return getattr(import_module(f".{module}", __package__), name)(**given)
+
+    # Lines of examples are kept.
+    says = re.sub(r"\n\n(?=lagrange-casadi )", "\n\n\b\n", summary(f"cli.{place}"))
+    options = [*map(option, parameters(f"cli.{place}").values())]
+    return Command(name, callback=run, params=options, help=says)
 
 
-def write_commands(
-    groups: Mapping[str, tuple[click.Command, ...]], formatter: click.HelpFormatter
-) -> None:
+def write_commands(groups: Mapping[str, tuple[str, ...]], formatter: click.HelpFormatter) -> None:
     """Write each group of commands below its name, with the first sentence of each one's help."""
-    for name, commands in groups.items():
+    for name, places in groups.items():
         with formatter.section(name):
-            formatter.write_dl([(str(one.name), _sentence(one)) for one in commands])
+            formatter.write_dl([(place.partition(".")[2], _sentence(place)) for place in places])
 
 
-def _sentence(one: click.Command) -> str:
+def _sentence(place: str) -> str:
     """The first paragraph of a command's help."""
-    return " ".join((one.help or "").partition("\n\n")[0].split())
+    return " ".join(summary(f"cli.{place}").partition("\n\n")[0].split())

@@ -9,6 +9,7 @@ from typing import Any
 
 import click
 
+from ..base.table_file import aligned
 from ..results.store.opening import IDENTIFICATION
 from ..results.store.runs import check_target
 from ..studies.case import load_case
@@ -25,17 +26,57 @@ from .options import HDF5, target
 def identify(
     case: Path,
     data: Path,
-    names: Mapping[str, str],
-    noise: Mapping[str, float],
-    counts_per_turn: Sequence[tuple[str, float]],
-    trim: float,
-    validate: Path | None,
-    out: Path | None,
-    figure: Path | None,
-    report: Path | None,
+    *,
+    names: Mapping[str, str] = {},
+    noise: Mapping[str, float] = {},
+    counts_per_turn: Sequence[tuple[str, float]] = (),
+    trim: float = 0.0,
+    validate: Path | None = None,
+    out: Path | None = None,
+    figure: Path | None = None,
+    report: Path | None = None,
     **given: Any,
 ) -> None:
-    """See :func:`.design_commands.identify`."""
+    """Find parameters of CASE from motion and forces that were measured.
+
+    The first line of DATA.csv has names and units of columns: t [s], the coordinates of all drives,
+    as O [deg], and forces, as effort:O [N m], reaction:A:fx [N], section:rod:axial@0.5 [N]. The
+    command prints combinations of parameters that the data determine, with standard errors, and the
+    values as options --set.
+
+    lagrange-casadi identify cases/slider_crank run.csv --unknown m3 --noise 'effort:O=0.05'
+
+    Parameters
+    ----------
+    case : CASE
+    data : DATA.csv
+    unknown : NAME,...
+        As of :func:`.studies.identification.identification.identify`.
+    parameters
+        As of :func:`.studies.identification.identification.identify`.
+    names : NAME=HEAD
+        As of :func:`.studies.identification.measurements.read_measurements`.
+    noise : NAME=NUMBER
+        As of :func:`.studies.identification.measurements.read_measurements`.
+    prior : NAME=NUMBER
+        As of :func:`.studies.identification.identification.identify`.
+    counts_per_turn : NUMBER|NAME=NUMBER
+        As of :func:`.studies.identification.measurements.read_measurements`.
+    robust, consistent
+        As of :func:`.studies.identification.identification.identify`.
+    cutoff : HZ
+        As of :func:`.studies.identification.identification.identify`.
+    trim : SECONDS
+        As of :func:`.studies.identification.identification.identify`.
+    validate : OTHER.csv
+        Compare this other record with the model that was found.
+    out
+        Write to this HDF5 file; default: <case>_identified.h5.
+    figure : FILE
+        Draw measured and model to this .png, .pdf or .svg.
+    report : FILE.html
+        Write a page with all tables and pictures.
+    """
     loaded = load_case(case)
     out = target("--out", out, f"{loaded.name}_identified.h5", HDF5)
     check_target(out, IDENTIFICATION)
@@ -79,11 +120,12 @@ def _lines(found: Identification, second: Comparison | None) -> Iterator[str]:
         f"{found.name}: {len(found.base)} combinations of {len(found.values)} parameters from"
         f" {found.measurements}, condition {found.condition:.3g}, {found.rounds} steps"
     )
-    width = max(len(one.words) for one in found.base)
-    yield f"  {'combination':<{width}} {'value':>12} {'error':>10} {'t':>8}"
-    for one in found.base:
-        numbers = f"{one.value:>12.6g} {one.error:>10.3g} {one.t:>8.3g}"
-        yield f"  {one.words:<{width}} {numbers} {one.unit}"
+    rows = [
+        [one.words, f"{one.value:.6g}", f"{one.error:.3g}", f"{one.t:.3g}", one.unit]
+        for one in found.base
+    ]
+    for line in aligned(["combination", "value", "error", "t", ""], rows, left=(0, 4)):
+        yield f"  {line}"
     for note in found.notes:
         yield f"  {note}"
     for title, compared in (("record", found.comparison), ("validation", second)):

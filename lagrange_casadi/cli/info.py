@@ -6,8 +6,6 @@ import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-import click
-
 from ..engine.derive import compile_scene
 from ..engine.model_data import template
 from ..engine.scene_lines import scene_lines
@@ -23,17 +21,30 @@ from ..studies.sweep.checking import identity_of, progress, unfinished
 from ..studies.sweep.meanings import in_words
 from ..studies.sweep.plan import Identity
 from .echo import echo
-from .options import HDF5
+from .options import HDF5, refuse
 from .report import Rows, asked_line
 from .strength_lines import not_evaluated_lines
 
 
-def info(target: Path, wanted: Sequence[str] | None) -> None:
-    """See :func:`.commands.info`."""
+def info(
+    target: Path,
+    *,
+    wanted: Sequence[str] | None = None,
+) -> None:
+    """Describe a case, or the file of a run or a sweep.
+
+    For a case it lists parts, drives, loads, posture, wanted outputs and the number of
+    instructions. A sweep need not be finished.
+
+    Parameters
+    ----------
+    target : CASE|FILE.h5|FILE.h5.parts
+    wanted
+        Count the instructions of these outputs; default: those of the case.
+    """
     folder = unfinished(target)
     if folder or target.suffix in HDF5:
-        if wanted:
-            raise click.UsageError("--want goes with a case, not with a file")
+        refuse((wanted, "--want goes with a case, not with a file"))
         if folder:
             _describe_sweep(identity_of(folder))
             echo(progress(folder))

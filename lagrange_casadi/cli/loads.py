@@ -8,11 +8,9 @@ from dataclasses import astuple
 from pathlib import Path
 from typing import Any
 
-import click
-
 from ..base.files import check_writable
 from ..base.table_file import TableFile
-from ..base.vocabulary import LOAD_FORMATS
+from ..base.vocabulary import LOAD_FORMATS, LoadFormat
 from ..errors import DeclarationError
 from ..interop.load_cases import LoadCase, link_load_cases, write_load_cases, write_spectrum
 from ..interop.load_cases.beam_model import modelled
@@ -21,24 +19,57 @@ from ..results.verification.certificate import certified_outputs, refuse_failed,
 from ..studies.case import load_case
 from ..studies.evaluate import evaluate
 from .echo import echo
+from .options import refuse
 
 
 def loads(
     case: Path,
-    links: Sequence[str],
+    *,
+    links: Sequence[str] = (),
     out: Path,
-    every: bool,
-    formats: Sequence[str],
-    nodes: Mapping[str, str],
-    spectra: Sequence[str],
-    classes: int,
-    bearings: Sequence[str],
-    exponent: float,
+    every: bool = False,
+    formats: Sequence[LoadFormat] = (),
+    nodes: Mapping[str, str] = {},
+    spectra: Sequence[str] = (),
+    classes: int = 64,
+    bearings: Sequence[str] = (),
+    exponent: float = 3.0,
     **given: Any,
 ) -> None:
-    """See :func:`.commands.loads`."""
-    if not (links or spectra or bearings):
-        raise click.UsageError("expected --link, --spectrum or --bearing")
+    """Write loads on links of CASE for finite elements, and load spectra.
+
+    Each load case has the forces and moments on the link, its acceleration and gravity, on the
+    link's own axes. These are in equilibrium.
+
+    Parameters
+    ----------
+    case : CASE
+    links : NAME
+        Write the load cases of this link, rigid body or point mass.
+    out : DIR
+        Write into this folder.
+    parameters, t, over
+        As of :func:`.studies.evaluate.evaluate`.
+    every
+        Write a load case for every instant; default: for those at which a section force or a
+        stress of the link, or a reaction on it, is largest.
+    formats
+        Write this format. inp is included by input files of CalculiX and Abaqus; beam is a model
+        that CalculiX runs. Default: all.
+    nodes : JOINT=NAME
+        Name the node set, or the number, of the node in your mesh that takes a joint's load;
+        LINK=NAME names the element set.
+    spectra : NAME
+        Write the rainflow matrix of a quantity, as reaction:A:fx, section:rod:bending@0.5 or
+        stress:rod@0.5.
+    classes : CLASSES
+        Set the classes of --spectrum, 0 for every cycle as it is.
+    bearings : JOINT
+        Write equivalent loads and the speed of this joint for catalogues of bearings.
+    exponent : P
+        Set the exponent of --bearing: 3 for balls, 10/3 for rollers.
+    """
+    refuse((not (links or spectra or bearings), "expected --link, --spectrum or --bearing"))
     check_writable(out, folder=True)
     scene, chosen = load_case(case).scene, tuple(dict.fromkeys(links))
     inside = {*chosen, *(re.split("[:@]", f"{name}:")[1] for name in spectra)}
@@ -68,7 +99,7 @@ def loads(
     echo(summary(solution.certificate))
 
 
-def _formats(cases: Sequence[LoadCase]) -> list[str]:
+def _formats(cases: Sequence[LoadCase]) -> Sequence[LoadFormat]:
     """Return all formats that the links have; say why there is no model of a beam."""
     others = [name for name in LOAD_FORMATS if name != "beam"]
     if any(case.rod is None for case in cases):
@@ -79,4 +110,4 @@ def _formats(cases: Sequence[LoadCase]) -> list[str]:
     except DeclarationError as error:
         echo(f"format beam is left out: {error}")
         return others
-    return [*LOAD_FORMATS]
+    return LOAD_FORMATS

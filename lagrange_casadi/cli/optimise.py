@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import signal
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -22,13 +22,48 @@ from .progress import bar_of
 
 def optimise(
     case: Path,
+    *,
     minimise: Sequence[str],
-    dask: str | None,
-    out: Path | None,
-    figure: Path | None,
+    over: Mapping[str, tuple[float | str, float | str]],
+    dask: str | None = None,
+    out: Path | None = None,
+    figure: Path | None = None,
     **given: Any,
 ) -> int:
-    """See :func:`.commands.optimise`."""
+    """Find the design of CASE with the least peak or mean.
+
+    Limits hold over the whole motion. For several terms it finds their Pareto front: designs of
+    which none is better in all terms. A search that was stopped keeps the best design so far, and
+    continues with --resume.
+
+    Parameters
+    ----------
+    case : CASE
+    minimise : TERM
+        As of :func:`.studies.optimise.search.optimise`.
+    over : NAME=LEAST:LARGEST
+        As of :func:`.studies.optimise.search.optimise`.
+    subject_to : 'TERM<=NUMBER'
+        As of :func:`.studies.optimise.search.optimise`.
+    starts : NUMBER
+        As of :func:`.studies.optimise.search.optimise`.
+    screen : NUMBER
+        As of :func:`.studies.optimise.search.optimise`.
+    points : NUMBER
+        As of :func:`.studies.optimise.search.optimise`.
+    transmission : SINE
+        As of :func:`.studies.optimise.search.optimise`.
+    parameters, t, backend
+        As of :func:`.studies.optimise.search.optimise`.
+    dask : ADDRESS
+        Search on the cluster of this Dask scheduler, as tcp://HOST:8786.
+    resume, force
+        As of :func:`.studies.optimise.search.optimise`.
+    out
+        Write history and result to this HDF5 file; default: <case>_optimum.h5 here.
+    figure
+        Draw the history into this file; default: <case>_optimum.png here.
+    """
     loaded = load_case(case)
     out = target("--out", out, f"{loaded.name}_optimum.h5", HDF5)
     check_writable(out, hdf5=True)
@@ -43,7 +78,7 @@ def optimise(
             )
             bar.update()
 
-        given |= {"out": out, "executor": executor, "progress": progress}
+        given |= {"over": over, "out": out, "executor": executor, "progress": progress}
         found: Optimum | Front
         if len(minimise) == 1:
             found = search(loaded, minimise=minimise[0], **given)

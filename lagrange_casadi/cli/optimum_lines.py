@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 
+from ..base.table_file import aligned
 from ..studies.optimise import Front, Optimum
+from ..studies.optimise.front import FrontPoint
 
 _RELAXED = " per SI unit by which it is relaxed"
 
@@ -67,25 +69,9 @@ def front_lines(front: Front) -> Iterator[str]:
     if front.stopped:
         yield "stopped: the front so far; --resume continues"
     heads = [f"{term} [{unit}]" for term, unit in zip(front.minimised, front.units, strict=True)]
-    widths = [max(12, len(head)) for head in heads]
-    gains = [f"gain by {term.name}" for term in others]
-    yield "  " + "  ".join(
-        [f"{head:>{width}}" for head, width in zip(heads, widths, strict=True)] + gains + ["at"]
-    )
-    for point in front.points:
-        cells = [
-            f"{value:>{width}.6g}" for value, width in zip(point.objectives, widths, strict=True)
-        ]
-        cells += [
-            f"{trade:>{len(gain)}.4g}" for trade, gain in zip(point.trades, gains, strict=True)
-        ]
-        optimum = point.optimum
-        marks = (
-            ""
-            if optimum.converged
-            else f"  {optimum.start.ending if optimum.feasible else 'beyond a limit'}"
-        )
-        yield f"  {'  '.join(cells)}  {_design(optimum.values, 6)}{marks}"
+    heads += [*(f"gain by {term.name}" for term in others), "at", ""]
+    lines = aligned(heads, [*map(_cells, front.points)], left=(len(heads) - 2, len(heads) - 1))
+    yield from (f"  {line}" for line in lines)
     for point in front.points:
         for limit in point.optimum.limits:
             excess = limit.constraint.excess(limit.value)
@@ -97,6 +83,18 @@ def front_lines(front: Front) -> Iterator[str]:
     )
     for note in front.notes:
         yield f"  note: {note}"
+
+
+def _cells(point: FrontPoint) -> list[str]:
+    """A row of the table of a front: objectives, gains, the design, and why it is no optimum."""
+    optimum = point.optimum
+    ending = optimum.start.ending if optimum.feasible else "beyond a limit"
+    return [
+        *(f"{value:.6g}" for value in point.objectives),
+        *(f"{trade:.4g}" for trade in point.trades),
+        _design(optimum.values, 6),
+        "" if optimum.converged else ending,
+    ]
 
 
 def _second(found: Optimum) -> str:

@@ -5,17 +5,18 @@ from __future__ import annotations
 import math
 import os
 import re
-from collections.abc import Callable, Collection, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Collection, Mapping, Sequence
+from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, get_args
 
 import click
 
+from ..base import vocabulary
 from ..base.numerals import real, whole
-from ..base.vocabulary import BACKENDS, COMPILED, PRECISIONS
+from ..base.space import MOST_THREADS
 from ..errors import DeclarationError
-from .help import Body
+from .signatures import Parameter
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
@@ -31,12 +32,9 @@ BOUNDS = "NAME=LEAST:LARGEST"
 HDF5 = (".h5", ".hdf5")
 """Endings of the files of results."""
 
-_COMMA = f"{__name__}.decimal_comma"
-"""The flag in a context's notes, which is read before the file that it is about."""
-
 AXIS = "NAME=START:STOP:COUNT[:log]|NAME=VALUE,..."
 
-Number = TypeVar("Number")
+Value = TypeVar("Value")
 Kind: TypeAlias = "click.ParamType[Any] | Callable[[str], object]"
 """Reader of an option's value."""
 
@@ -77,36 +75,50 @@ PATH = _Path(path_type=Path)
 CASE = _Case(path_type=Path)
 
 
+def _reads(what: str) -> Callable[[Callable[[str], Value]], Callable[[str], Value]]:
+    """Make a reader say what was expected in place of a text that cannot be read."""
+
+    def decorate(read: Callable[[str], Value]) -> Callable[[str], Value]:
+        @wraps(read)
+        def reader(text: str) -> Value:
+            try:
+                return read(text)
+            except ValueError:
+                raise click.BadParameter(f"expected {what}, got '{text}'") from None
+
+        return reader
+
+    return decorate
+
+
+@_reads("START:STOP:COUNT, as in 0:0.08:801")
 def even_points(text: str) -> EvenPoints:
     """START:STOP:COUNT, both ends included; START and STOP may have a unit, as 80ms."""
-    with _expected("START:STOP:COUNT, as in 0:0.08:801", text):
-        start, stop, count = text.split(":")
-        return _value(start), _value(stop), whole(count)
+    start, stop, count = text.split(":")
+    return _value(start), _value(stop), whole(count)
 
 
+@_reads(f"{OVER}, as in O=0:720deg:721")
 def steps_over(text: str) -> Over:
     """JOINT=START:STOP:COUNT; which units START and STOP may have is the joint's affair."""
-    with _expected(f"{OVER}, as in O=0:720deg:721", text):
-        joint, steps = _named(text)
-        start, stop, count = steps.split(":")
-        return joint, _value(start), _value(stop), whole(count)
+    joint, steps = _named(text)
+    start, stop, count = steps.split(":")
+    return joint, _value(start), _value(stop), whole(count)
 
 
+@_reads(
+    "NAME=START:STOP:COUNT, NAME=START:STOP:COUNT:log or NAME=VALUE,VALUE,..., as in l=0.1:0.4:31"
+)
 def axis(text: str) -> tuple[str, Axis]:
     """NAME=START:STOP:COUNT, NAME=START:STOP:COUNT:log or NAME=VALUE,VALUE,...; numbers may have a
     unit, as 30deg.
     """
     from ..studies.sweep import Range, Values
 
-    with _expected(
-        "NAME=START:STOP:COUNT, NAME=START:STOP:COUNT:log or NAME=VALUE,VALUE,..., as in"
-        " l=0.1:0.4:31",
-        text,
-    ):
-        name, words = _named(text)
-        parts = words.split(":")
-        if len(parts) not in (1, 3, 4):
-            raise ValueError(text)
+    name, words = _named(text)
+    parts = words.split(":")
+    if len(parts) not in (1, 3, 4):
+        raise ValueError(text)
     try:
         if len(parts) == 1:
             return name, Values(
@@ -127,26 +139,26 @@ def axis(text: str) -> tuple[str, Axis]:
         raise click.BadParameter(f"{name}: {error}") from None
 
 
+@_reads("a length [m], as in 0.005 or 5mm")
 def length(text: str) -> float:
     """A length, which may have a unit, as 5mm."""
     from ..base.units import number
 
-    with _expected("a length [m], as in 0.005 or 5mm", text):
-        return number(_value(text), "m", finite=False)
+    return number(_value(text), "m", finite=False)
 
 
+@_reads("NAME=VALUE with a number in SI units, as in l=0.25 or phi=30deg")
 def setting(text: str) -> tuple[str, float | str]:
     """NAME=VALUE; a value with a unit remains a text, and is checked later."""
-    with _expected("NAME=VALUE with a number in SI units, as in l=0.25 or phi=30deg", text):
-        name, word = _named(text)
-        return name, _value(word)
+    name, word = _named(text)
+    return name, _value(word)
 
 
+@_reads("NUMBER or NAME=NUMBER, as in 4096 or O=4096")
 def counts(text: str) -> tuple[str, float]:
     """NAME=NUMBER; or NUMBER, which is for all names, as the empty one."""
-    with _expected("NUMBER or NAME=NUMBER, as in 4096 or O=4096", text):
-        name, word = _named(text) if "=" in text else ("", text)
-        return name, real(word)
+    name, word = _named(text) if "=" in text else ("", text)
+    return name, real(word)
 
 
 def place(text: str) -> tuple[str, float | str]:
@@ -157,30 +169,18 @@ def place(text: str) -> tuple[str, float | str]:
     return name, value
 
 
-def pair(text: str) -> tuple[str, str]:
-    """NAME=NAME."""
-    with _expected("NAME=NAME", text):
-        return _named(text)
-
-
-def tolerance(text: str) -> tuple[str, str]:
-    """NAME=VALUE; the parameter's unit decides which values are allowed."""
-    with _expected("NAME=VALUE, as in l=0.1mm or m1=1%", text):
-        return _named(text)
-
-
+@_reads(f"{BOUNDS}, as in l=0.15:0.4")
 def bounds(text: str) -> tuple[str, tuple[float | str, float | str]]:
     """NAME=LEAST:LARGEST; numbers may have a unit, as 30deg."""
-    with _expected(f"{BOUNDS}, as in l=0.15:0.4", text):
-        name, words = _named(text)
-        low, high = (_value(word) for word in words.split(":"))
-        return name, (low, high)
+    name, words = _named(text)
+    low, high = (_value(word) for word in words.split(":"))
+    return name, (low, high)
 
 
+@_reads("a number of nodes or an accuracy, as in 128 or 1e-6")
 def table(text: str) -> float:
     """A number of nodes, or an accuracy."""
-    with _expected("a number of nodes or an accuracy, as in 128 or 1e-6", text):
-        return int(text) if re.fullmatch(r"[0-9]+", text) else real(text)
+    return int(text) if re.fullmatch(r"[0-9]+", text) else real(text)
 
 
 def share(text: str) -> float:
@@ -233,15 +233,6 @@ def target(option: str, given: Path | None, usual: str, endings: Collection[str]
     return path
 
 
-@contextmanager
-def _expected(what: str, text: str) -> Iterator[None]:
-    """Say what was expected in place of a text that cannot be read."""
-    try:
-        yield
-    except ValueError:
-        raise click.BadParameter(f"expected {what}, got '{text}'") from None
-
-
 def _named(text: str) -> tuple[str, str]:
     """Split NAME=WORDS. Raises ``ValueError`` if one of them is missing."""
     name, words = (part.strip() for part in text.partition("=")[::2])
@@ -257,7 +248,7 @@ def _value(word: str) -> Any:
     return word if typed(word)[1] else real(word)
 
 
-def _read(read: Callable[[str], Number], what: str, word: str, words: str) -> Number:
+def _read(read: Callable[[str], Value], what: str, word: str, words: str) -> Value:
     """A number among words. Raises :class:`DeclarationError` that names it."""
     try:
         return read(word)
@@ -267,252 +258,151 @@ def _read(read: Callable[[str], Number], what: str, word: str, words: str) -> Nu
         ) from None
 
 
-def _together(*options: Option) -> Option:
-    """Several options as one."""
+_READERS: Mapping[str, Kind] = {
+    EVEN_POINTS: even_points,
+    OVER: steps_over,
+    AXIS: axis,
+    BOUNDS: bounds,
+    "NAME=VALUE": setting,
+    "NAME=NUMBER": place,
+    "NAME=TOLERANCE": _reads("NAME=VALUE, as in l=0.1mm or m1=1%")(_named),
+    "NAME=HEAD": _reads("NAME=NAME")(_named),
+    "JOINT=NAME": _reads("NAME=NAME")(_named),
+    "NUMBER|NAME=NUMBER": counts,
+    "NODES|ACCURACY": table,
+    "LENGTH": length,
+    "SHARE": share,
+    "N": click.IntRange(1),
+    "THREADS": click.IntRange(1, MOST_THREADS),
+    "BYTES": click.IntRange(0),
+    "CLASSES": click.IntRange(0),
+    "Path": PATH,
+    "int": int,
+    "Count": int,
+    "Starts": int,
+    "float": float,
+    "Positive": float,
+    "NotNegative": float,
+}
+"""Readers of values, by what stands for them in the help, else by their type."""
 
-    def decorate(command: Declared) -> Declared:
-        for option in reversed(options):
-            command = option(command)
-        return command
+_LISTS = {"OUTPUT": separated, "NAME,...": separated, "NUMBER,...": ratios}
+"""Readers of all values of an option, by what stands for one of them."""
 
-    return decorate
+_SPELLED = {
+    "parameters": "--set",
+    "wanted": "--want",
+    "many": "--yes",
+    "within": "--tolerance",
+    "names": "--column",
+    "columns": "--column",
+    "links": "--link",
+    "drives": "--drive",
+    "ratios": "--ratio",
+    "formats": "--format",
+    "nodes": "--node",
+    "spectra": "--spectrum",
+    "bearings": "--bearing",
+    "source": "--from",
+    "yield_criterion": "--yielding",
+}
+"""Options that are called other than the parameters."""
 
+_SYNTAX = {
+    "parameters": "NAME=VALUE",
+    "t": EVEN_POINTS,
+    "xi": EVEN_POINTS,
+    "over": OVER,
+    "wanted": "OUTPUT",
+    "newton": "STEPS",
+    "table": "NODES|ACCURACY",
+    "flags": "FLAGS",
+    "threads": "THREADS",
+    "workers": "THREADS",
+    "csv": "FILE.csv|FILE.xlsx",
+}
+"""Words that stand for the values of parameters that several commands have."""
 
-def _names(name: str, into: str) -> list[str]:
-    """An option's name, and that of its argument if it has another one."""
-    return [name, into] if into else [name]
-
-
-def value(
-    name: str,
-    kind: Kind,
-    metavar: str,
-    says: str,
-    *,
-    default: float | None = None,
-    shown: bool = True,
-) -> Option:
-    """A value of a kind; help shows its default if it has one and that is to be ``shown``."""
-    return click.option(
-        name,
-        type=kind,
-        metavar=metavar,
-        default=default,
-        show_default=shown and default is not None,
-        help=says,
-    )
-
-
-def several(
-    name: str,
-    metavar: str | None,
-    says: str,
-    *,
-    kind: Kind | None = None,
-    into: str = "",
-    required: bool = False,
-    callback: Callable[..., Any] | None = None,
-) -> Option:
-    """Values of an option that is repeatable, for the argument ``into``."""
-    return click.option(
-        *_names(name, into),
-        type=kind,
-        multiple=True,
-        required=required,
-        callback=callback,
-        metavar=metavar,
-        help=says,
-    )
+_TWICE = {
+    "grid": "parameter '{}' is swept twice",
+    "at": "a parameter stays at one value, got two for '{}'",
+    "over": "parameter '{}' is listed twice",
+    "within": "parameter '{}' is listed twice",
+    "names": "'{}' is read from two columns",
+    "noise": "column '{}' has two",
+    "nodes": "'{}' is named twice",
+}
+"""Complaints about a name that has two values; others are set twice."""
 
 
-def named(
-    name: str,
-    metavar: str,
-    says: str,
-    *,
-    kind: Kind,
-    into: str,
-    required: bool = False,
-    twice: str = "parameter '{}' is set twice",
-) -> Option:
-    """Pairs NAME=... of an option that is repeatable, for the argument ``into``, a mapping.
+def _mapping(
+    _context: click.Context, option: click.Parameter, pairs: Sequence[tuple[str, object]]
+) -> dict[str, object]:
+    """Values by names, of an option that is repeatable."""
+    found: dict[str, object] = {}
+    for one, value in pairs:
+        if one in found:
+            twice = _TWICE.get(str(option.name), "parameter '{}' is set twice")
+            raise click.UsageError(f"{option.opts[0]}: {twice.format(one)}")
+        found[one] = value
+    return found
 
-    ``twice`` is what is said of a name that has two.
+
+def _spelled(name: str) -> str:
+    """The option of a parameter."""
+    return _SPELLED.get(name, f"--{name.replace('_', '-')}")
+
+
+def option(parameter: Parameter) -> click.Parameter:
+    """The argument of a command, or its option, for a parameter.
+
+    What must be named in Python is an option; it is a switch if it is a bool, and repeatable if it
+    is a sequence or a mapping.
     """
-
-    def mapping(
-        _context: click.Context, _option: click.Parameter, pairs: Sequence[tuple[str, object]]
-    ) -> dict[str, object]:
-        found: dict[str, object] = {}
-        for one, value in pairs:
-            if one in found:
-                raise click.UsageError(f"{name}: {twice.format(one)}")
-            found[one] = value
-        return found
-
-    return several(name, metavar, says, kind=kind, into=into, required=required, callback=mapping)
-
-
-def choice(name: str, words: Sequence[str], default: str, says: str, *, into: str = "") -> Option:
-    """One of some words, for the argument ``into``."""
-    return click.option(
-        *_names(name, into),
-        type=click.Choice(words),
+    name, kind = parameter.name, parameter.kind
+    says = re.sub(r"``(\w+)``", lambda one: _spelled(one[1]), parameter.says).replace("``", "")
+    says = says.replace("scene", "case")  # which has the scene
+    metavar = parameter.metavar or _SYNTAX.get(name) or None
+    many = re.search(r"(Sequence|Mapping|tuple)\[|^Outputs", kind) is not None
+    if parameter.positional:
+        path = CASE if "CASE" in (metavar or name.upper()) else PATH
+        return click.Argument([name], type=path, metavar=metavar, nargs=-1 if many else 1)
+    spelled = _spelled(name)
+    if kind == "bool":
+        return click.Option([spelled, name], is_flag=True, help=says)
+    if kind == "bool | None":
+        return click.Option([f"{spelled}/--no-{name}", name], default=None, help=says)
+    base = re.findall(r"\w+", kind.replace("Annotated", "").replace("Sequence", ""))[0]
+    words = get_args(getattr(vocabulary, base, None))
+    default = None if many else parameter.value
+    says = f"{says} Repeatable." if many else says
+    return click.Option(
+        [spelled, name],
+        type=click.Choice(words) if words else _READERS.get(metavar or "", _READERS.get(base)),
+        nargs=len((metavar or name).split()),
+        multiple=many,
+        required=parameter.default is None,
+        callback=_mapping if "Mapping" in kind else _LISTS.get(metavar or ""),
+        metavar=metavar,
         default=default,
-        show_default=True,
+        show_default=bool(default),
         help=says,
     )
 
 
-def flag(name: str, says: str, *, into: str = "") -> Option:
-    """A switch, for the argument ``into``."""
-    return click.option(*_names(name, into), is_flag=True, help=says)
+def refuse(*misuses: tuple[object, str]) -> None:
+    """Raise ``click.UsageError`` for the first of some misuses that is true."""
+    for found, words in misuses:
+        if found:
+            raise click.UsageError(words)
 
 
-def file(name: str, says: str, *, metavar: str | None = None, required: bool = False) -> Option:
-    """The path of a file or folder."""
-    return click.option(name, type=PATH, metavar=metavar, required=required, help=says)
+def table_file(place: Path | None, decimal_comma: bool) -> TableFile | None:
+    """The table that ``--csv`` names, with the marks of ``--decimal-comma``."""
+    from ..base.table_file import TableFile
 
-
-_BACKEND = choice(
-    "--backend",
-    BACKENDS,
-    "auto",
-    "Evaluate with SIMD in C++ (lanes), with C, or with CasADi's virtual machine (vm).",
-)
-
-backend_of_designs = choice(
-    "--backend", COMPILED, "auto", "Evaluate designs with SIMD in C++ (lanes), or with C."
-)
-
-
-_PRECISION = choice(
-    "--precision", PRECISIONS, "double", "Compute in double or in single precision."
-)
-_NEWTON = value(
-    "--newton",
-    int,
-    "STEPS",
-    "Close iterated loops by this number of Newton steps from the instant before; default: until"
-    " they close.",
-)
-_TABLE = value(
-    "--table",
-    table,
-    "NODES|ACCURACY",
-    "Interpolate outputs in a table over one turn, with this number of nodes or this accuracy.",
-)
-_FLAGS = click.option(
-    "--flags",
-    default="",
-    metavar="FLAGS",
-    help="Pass these further flags to the compiler, as one word.",
-)
-
-Declared = Callable[[], Body] | click.Command
-"""A command in the making: its function, or what options have made of it."""
-
-Option = Callable[[Declared], Declared]
-
-
-def settings_by(
-    says: str = "Set a parameter, in SI units or with a unit, as l=0.25 or phi=30deg; repeatable.",
-) -> Option:
-    """Values of parameters: ``parameters``."""
-    return named("--set", "NAME=VALUE", says, kind=setting, into="parameters")
-
-
-def instants(
-    says: str = "Set the instants [s], both ends included; default: those of the case.",
-) -> Option:
-    """Instants by their times: ``t``."""
-    return value("--t", even_points, EVEN_POINTS, says)
-
-
-def wanted(
-    says: str = "Compute these outputs: effort, reaction:JOINT, section:LINK, motion, a kind such"
-    " as section, or all; repeatable. Default: those of the case.",
-) -> Option:
-    """Names of outputs: ``wanted``, None if there are none."""
-    return several("--want", "OUTPUT", says, into="wanted", callback=separated)
-
-
-def table_file(says: str) -> Option:
-    """Place of a table, ``csv``, and the marks in it."""
-
-    def remember(context: click.Context, _option: click.Parameter, comma: bool) -> None:
-        context.meta[_COMMA] = comma
-
-    def read(
-        context: click.Context, _option: click.Parameter, path: Path | None
-    ) -> TableFile | None:
-        from ..base.table_file import TableFile
-
-        if path is not None:
-            table = TableFile(path, context.meta[_COMMA])
-            table.check()
-            return table
-        if context.meta[_COMMA]:
-            raise click.UsageError("--decimal-comma goes with --csv FILE.csv")
-        return None
-
-    return _together(
-        click.option(
-            "--csv",
-            type=PATH,
-            callback=read,
-            metavar="FILE.csv|FILE.xlsx",
-            help=f"{says} A name that ends in .xlsx makes a workbook.",
-        ),
-        click.option(
-            "--decimal-comma",
-            is_flag=True,
-            is_eager=True,
-            expose_value=False,
-            callback=remember,
-            help="With --csv: write commas in numbers, and semicolons between cells.",
-        ),
-    )
-
-
-over = value(
-    "--over",
-    steps_over,
-    OVER,
-    "Set the instants as equal steps of a driven joint's coordinate [rad or m, or with a unit, as"
-    " 720deg], in place of --t.",
-)
-"""Instants by a drive."""
-
-at_values = _together(settings_by(), instants(), over)
-"""Values of parameters, and instants by their times or by a drive."""
-
-
-def resumable(what: str) -> Option:
-    """Continuation of ``what`` may have been stopped, or a new start."""
-    return _together(
-        flag("--resume", f"Continue a {what} that was stopped; start it if there is none."),
-        flag("--force", "Start anew and replace the file."),
-    )
-
-
-def conditions(rows: str) -> Option:
-    """Conditions on ``rows``: ``where``."""
-    return several(
-        "--where",
-        "NAME<NUMBER",
-        f"Choose only {rows} that satisfy this: <, <=, >, >=, == or !=, in SI units; repeatable.",
-    )
-
-
-method = _together(_BACKEND, _PRECISION, _NEWTON, _TABLE, _FLAGS)
-"""The options of a :class:`.EvaluationMethod`."""
-
-method_of_designs = _together(backend_of_designs, _PRECISION, _NEWTON, _FLAGS)
-"""The options of a method that evaluates designs."""
-
-arithmetic = _together(_PRECISION, _NEWTON, _TABLE)
-"""Options that do not concern the compiler."""
-
-
-svg = flag("--svg", "Draw figures as SVG, in place of PNG.")
+    refuse((decimal_comma and not place, "--decimal-comma goes with --csv FILE.csv"))
+    table = None if place is None else TableFile(place, decimal_comma)
+    if table:
+        table.check()
+    return table

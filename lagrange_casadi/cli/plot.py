@@ -28,14 +28,34 @@ _UNDRAWN = "cannot be drawn"
 
 def plot(
     file: Path,
+    *,
     out: Path,
-    over: Sequence[str],
-    at: Mapping[str, float | str],
-    against: Sequence[tuple[str, str]],
-    si: bool,
-    svg: bool,
+    over: Sequence[str] = (),
+    at: Mapping[str, float | str] = {},
+    against: Sequence[tuple[str, str]] = (),
+    si: bool = False,
+    svg: bool = False,
 ) -> None:
-    """See :func:`.commands.plot`."""
+    """Draw the figures of the run or sweep FILE.h5.
+
+    A run has the figures of its case, a sweep has its peaks over parameters.
+
+    Parameters
+    ----------
+    file : FILE
+    out
+        Draw into this folder.
+    over : NAME
+        For a sweep: draw over this parameter, for maps over two; for a list of designs, over any.
+    at : NAME=NUMBER
+        For a sweep: keep another parameter at this value, or choose designs of a list.
+    against : COLUMN COLUMN
+        For a sweep: draw the Pareto front of these two columns or parameters.
+    si
+        Draw axes in SI units without prefixes, in place of kN and mm.
+    svg
+        Draw figures as SVG, in place of PNG.
+    """
     check_writable(out, folder=True)
     MANIFEST.check(out)
     if is_sweep(file):

@@ -1,4 +1,4 @@
-"""``lagrange-casadi report``: a page that shows a run in a browser."""
+"""Pages of runs, cases, two of them, and sweeps."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ from ..views.report.instants import shown_instants
 from ..views.report.live import run_of
 from ..views.report.of_sweep import is_of, write_sweep_report
 from .echo import echo, say_step
-from .options import HDF5
+from .options import HDF5, refuse
 from .strength_lines import not_evaluated_lines
 
 _UNSHOWN = "cannot be shown"
 
 
-def report(
+def write(
     targets: Sequence[Path],
     out: Path | None,
     beside: Mapping[str, float | str],
@@ -40,38 +40,41 @@ def report(
     live: bool,
     **given: Any,
 ) -> None:
-    """See :func:`.commands.report`."""
+    """See :func:`.page.report`."""
     target, *others = targets
     file = target.suffix in HDF5
-    if (live or any(given.values())) and all(one.suffix in HDF5 for one in targets):
-        raise click.UsageError(
-            "--set, --t, --over, --want and --live go with a case, not with a file"
-        )
-    if out and out.suffix.lower() not in ENDINGS:
-        raise click.UsageError(f"--out {out}: expected a name that ends in {' or '.join(ENDINGS)}")
-    if case and (others or not (file and is_sweep(target))):
-        raise click.UsageError("--case goes with a sweep's file")
-    if len(others) > 1:
-        raise click.UsageError("expected one or two of FILE.h5 and CASE")
+    refuse(
+        (
+            (live or any(given.values())) and all(one.suffix in HDF5 for one in targets),
+            "--set, --t, --over, --want and --live go with a case, not with a file",
+        ),
+        (
+            out and out.suffix.lower() not in ENDINGS,
+            f"--out {out}: expected a name that ends in {' or '.join(ENDINGS)}",
+        ),
+        (
+            case and (others or not (file and is_sweep(target))),
+            "--case goes with a sweep's file",
+        ),
+        (len(others) > 1, "expected one or two of FILE.h5 and CASE"),
+        (live and (others or beside), "--live goes with one case, and not with --beside"),
+        (beside and (others or file), "--beside goes with one case"),
+    )
     if others or beside:
-        if live:
-            raise click.UsageError("--live goes with one case, and not with --beside")
         _of_two(targets, out, beside, given)
         return
-    if file:
-        out = out or Path(f"{target.stem}.html")
-        check_writable(out)
-        if is_sweep(target):
-            _of_sweep(target, out, case)
-            return
+    loaded = None if file else load_case(target)
+    out = out or Path(f"{loaded.name if loaded else target.stem}.html")
+    check_writable(out)
+    if loaded is None and is_sweep(target):
+        _of_sweep(target, out, case)
+        return
+    if loaded is None:
         solution = load(target)
         with reported_as(_UNSHOWN, target):
             write_report(solution, out)
     else:
-        loaded = load_case(target)
         scene = loaded.scene
-        out = out or Path(f"{loaded.name}.html")
-        check_writable(out)
         given["wanted"] = with_motion(given["wanted"] or scene.wanted)
         engine = None
         if live:
@@ -104,8 +107,6 @@ def _of_two(
 ) -> None:
     """Write the page of two runs, or of a case and the design ``beside`` it."""
     first, *others = targets
-    if beside and (others or first.suffix in HDF5):
-        raise click.UsageError("--beside goes with one case")
     name = "_and_".join(one.stem for one in targets) if others else f"{first.stem}_beside"
     out = out or Path(f"{name}.html")
     check_writable(out)

@@ -39,7 +39,7 @@ from ..studies.sensitivities import Changes, sensitivities
 from ..views.shapes.index import MANIFEST
 from .drawing import draw_with_progress
 from .echo import echo
-from .options import HDF5, target
+from .options import HDF5, refuse, table_file, target
 from .report import Rows, card, ratio
 from .strength_lines import evaluated, not_evaluated_lines, strength_cards, strength_lines, worst
 
@@ -53,29 +53,74 @@ _BLOCK = 1024
 
 def run(
     case: Path,
-    wanted: Sequence[str] | None,
-    out: Path | None,
-    figures: Path | None,
-    no_figures: bool,
-    svg: bool,
-    csv: TableFile | None,
-    grids: bool | None,
-    refine_peaks: bool,
-    elastic: bool,
-    no_certificate: bool,
-    verbose: bool,
+    *,
+    wanted: Sequence[str] | None = None,
+    out: Path | None = None,
+    figures: Path | None = None,
+    no_figures: bool = False,
+    svg: bool = False,
+    csv: Path | None = None,
+    decimal_comma: bool = False,
+    grids: bool | None = None,
+    refine_peaks: bool = False,
+    elastic: bool = False,
+    no_certificate: bool = False,
+    verbose: bool = False,
     **given: Any,
 ) -> None:
-    """See :func:`.commands.run`."""
-    if figures and no_figures:
-        raise click.UsageError("--figures and --no-figures exclude each other")
-    if svg and no_figures:
-        raise click.UsageError("--svg and --no-figures exclude each other")
+    """Compute efforts, reactions and section forces of CASE.
+
+    CASE is a folder with a case.py, a Python file, or a name that the command cases lists. The
+    largest values are listed, all results are written to an HDF5 file, and figures are drawn.
+
+    Parameters
+    ----------
+    case : CASE
+    parameters, t, over, xi
+        As of :func:`.studies.evaluate.evaluate`.
+    wanted
+        As of :func:`.studies.evaluate.evaluate`: Compute these outputs: effort, reaction:JOINT,
+        section:LINK, motion, sensitivity:PARAMETER, a kind such as section, or all; default: those
+        of the case.
+    backend, precision, newton, table, flags
+        As of :class:`.engine.instants.evaluation_method.EvaluationMethod`.
+    threads
+        As of :func:`.studies.evaluate.evaluate`.
+    out
+        Write the results to this HDF5 file; default: <case>.h5 here.
+    figures
+        Draw the figures into this folder; default: <case>_figures here.
+    no_figures
+        Draw no figures.
+    svg
+        Draw figures as SVG, in place of PNG.
+    csv
+        Also write the results as CSV, one row per instant. A name that ends in .xlsx makes a
+        workbook.
+    decimal_comma
+        As of :func:`.cli.table.best`.
+    grids
+        Store section forces at all ratios xi/l beside their laws, of all links or of none;
+        default: of all but pieces of bent bars.
+    refine_peaks
+        Search for the listed peaks between the instants too.
+    elastic
+        Determine statically indeterminate forces by the elasticity of the links' beams.
+    no_certificate
+        Do not check the results by an independent balance of forces.
+    verbose
+        List all quantities, with strength and deflection in full.
+    """
+    refuse(
+        (figures and no_figures, "--figures and --no-figures exclude each other"),
+        (svg and no_figures, "--svg and --no-figures exclude each other"),
+    )
+    table = table_file(csv, decimal_comma)
     loaded = load_case(case)
     scene, usual = loaded.scene, Path(f"{loaded.name}.h5")
     out = target("--out", out, str(usual), HDF5)
     folder = None if no_figures else figures or Path(f"{loaded.name}_figures")
-    _check_places(out, folder, csv)
+    _check_places(out, folder, table)
     if refine_peaks:
         peak_search()  # so that a compiler that lacks is named at once
     solution = evaluate(
@@ -87,9 +132,11 @@ def run(
     )
     place = folder or (Path(f"{loaded.name}_figures") if out == usual else None)
     replaced, before, drawn = out.exists(), figures_in(place), set[str]()
-    heads = columns(solution, solution.sensitivities) if csv else {}
+    heads = columns(solution, solution.sensitivities) if table else {}
     written = (
-        csv.written([TIME, *heads], _rows([solution.t, *heads.values()])) if csv else nullcontext()
+        table.written([TIME, *heads], _rows([solution.t, *heads.values()]))
+        if table
+        else nullcontext()
     )
     with written, MANIFEST.filling(folder) if folder else nullcontext() as draft:
         if folder and draft:
@@ -121,10 +168,10 @@ def run(
     rest.append(
         f"wrote {out}"
         + (f" and the figures in {folder}/" if folder else "")
-        + (f", and {csv.path}" if csv else "")
+        + (f", and {csv}" if csv else "")
     )
     capacity = None if verbose else max(_SCREEN - len(head) - len(rest) - 1, _FEWEST)
-    piped = csv is not None and is_standard_output(csv.path)
+    piped = csv is not None and is_standard_output(csv)
     echo(*head, *rows.table(capacity), *rest, err=piped)
     refuse_failed(solution, f"{out} is marked as not certified")
 

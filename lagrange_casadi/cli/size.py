@@ -9,6 +9,7 @@ from typing import Any
 
 import click
 
+from ..base.vocabulary import Criterion, Yielding
 from ..model.beams.profiles import read_profiles
 from ..studies.case import load_case
 from ..studies.sizing import Sized
@@ -19,15 +20,35 @@ from .strength_lines import evaluated, safety_lines
 
 def size(
     case: Path,
-    profiles: Path | None,
-    safety: float,
-    deflection: float | None,
-    links: Sequence[str],
-    criterion: str,
-    yield_criterion: str,
+    *,
+    profiles: Path | None = None,
+    safety: float = 2.0,
+    deflection: float | None = None,
+    links: Sequence[str] = (),
+    criterion: Criterion = "goodman",
+    yield_criterion: Yielding = "von_mises",
     **given: Any,
 ) -> None:
-    """See :func:`.commands.size`."""
+    """Choose the lightest safe profile for each link of CASE.
+
+    The loads follow the masses of the chosen profiles.
+
+    Parameters
+    ----------
+    case : CASE
+    profiles : FILE.csv|NAME
+        Choose from this table: a column name, and one column per dimension [m]; or by name from a
+        standard one: IPE, HEA, HEB, CHS, SHS, RHS, SHS_cold, RHS_cold, flat, round. Default:
+        profiles.csv next to the case.
+    safety : FACTOR
+        As of :func:`.studies.sizing.size`.
+    deflection : SHARE
+        As of :func:`.studies.sizing.size`.
+    links : LINK
+        As of :func:`.studies.sizing.size`.
+    criterion, yield_criterion, parameters, t, over
+        As of :func:`.studies.sizing.size`.
+    """
     loaded = load_case(case)
     beside = loaded.path.parent / "profiles.csv"
     if profiles is None and not beside.is_file():

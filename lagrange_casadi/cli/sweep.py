@@ -7,8 +7,6 @@ from contextlib import closing
 from pathlib import Path
 from typing import Any
 
-import click
-
 from ..base.status import Status
 from ..errors import CertificateError
 from ..model.notes import drawing_notes
@@ -19,28 +17,66 @@ from ..studies.sweep.axes import counted, grouped
 from ..studies.sweep.notes import fatigue_notes, resting_note, turning_note
 from .echo import echo
 from .executor import executor_at
-from .options import HDF5, target
+from .options import HDF5, refuse, target
 from .progress import shown
 
 
 def sweep(
     case: Path,
-    axes: Mapping[str, Axis],
-    designs: Path | None,
-    quiet: bool,
-    dask: str | None,
-    out: Path | None,
+    *,
+    grid: Mapping[str, Axis] = {},
+    designs: Path | None = None,
+    quiet: bool = False,
+    dask: str | None = None,
+    out: Path | None = None,
     **given: Any,
 ) -> None:
-    """See :func:`.commands.sweep`."""
-    if bool(axes) == bool(designs):
-        raise click.UsageError(
-            "expected either --grid, as in --grid l=0.1:0.4:31, or --designs FILE.csv"
+    """Compute CASE for each design of a grid or a list.
+
+    CASE is a folder with a case.py, a Python file, or a name that the command cases lists. One HDF5
+    file stores, for each design, the peaks of the outputs with their times and places, and the
+    means of efforts. A sweep that was stopped continues with --resume. The commands best, table and
+    plot read the file.
+
+    lagrange-casadi sweep cases/slider_crank --grid l=0.12:0.4:57 --grid m3=0.1,0.5
+    lagrange-casadi best slider_crank_sweep.h5 --minimise peak:section:rod:bending
+
+    Parameters
+    ----------
+    case : CASE
+    grid : NAME=START:STOP:COUNT[:log]|NAME=VALUE,...
+        Sweep a parameter over a range or a list of values, in SI units or with a unit; the last
+        varies fastest.
+    designs : FILE.csv
+        Sweep the designs of a list: one row of parameter names, then one row per design.
+    parameters, t, over, xi
+        As of :func:`.studies.sweep.sweeping.sweep`.
+    wanted
+        As of :func:`.studies.sweep.sweeping.sweep`: Compute these outputs, as info CASE lists them;
+        all leaves out the motion.
+    keep, peaks, fluctuation, backend, precision, newton
+        As of :func:`.studies.sweep.sweeping.sweep`.
+    flags, workers
+        As of :func:`.studies.sweep.sweeping.sweep`.
+    dask : ADDRESS
+        Evaluate on the cluster of this Dask scheduler, as tcp://HOST:8786.
+    resume, force, many
+        As of :func:`.studies.sweep.sweeping.sweep`.
+    quiet
+        Show no progress.
+    out
+        Write the sweep to this HDF5 file; default: <case>_sweep.h5 here.
+    """
+    refuse(
+        (
+            bool(grid) == bool(designs),
+            "expected either --grid, as in --grid l=0.1:0.4:31, or --designs FILE.csv",
         )
+    )
     loaded = load_case(case)
     scene = loaded.scene
     out = target("--out", out, f"{loaded.name}_sweep.h5", HDF5)
-    swept = read_designs(designs, scene.parameters) if designs else axes
+    swept = read_designs(designs, scene.parameters) if designs else grid
     with executor_at(dask) as executor, closing(shown(quiet)) as progress:
         found = carry_out(loaded, swept, out=out, executor=executor, progress=progress, **given)
     _report(found)

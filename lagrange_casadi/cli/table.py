@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ..base.streams import is_standard_output
-from ..base.table_file import TableFile, aligned, head
+from ..base.table_file import aligned, head
 from ..errors import NoDesignError
 from ..studies.sweep import Sweep, chosen
 from ..studies.sweep import best as find
@@ -18,14 +18,44 @@ from ..studies.sweep.axes import DESIGN, counted, grouped
 from ..studies.sweep.best import conditions_in, counts, missed, with_errors
 from ..studies.sweep.meanings import STATUS, in_words
 from .echo import echo
+from .options import table_file
 
 _WIDE = 6
 _LISTED = 6
 _WIDTH = 10
 
 
-def best(file: Path, where: Sequence[str], csv: TableFile | None, **given: Any) -> None:
-    """See :func:`.commands.best`."""
+def best(
+    file: Path,
+    *,
+    where: Sequence[str] = (),
+    csv: Path | None = None,
+    decimal_comma: bool = False,
+    **given: Any,
+) -> None:
+    """List the best designs of the sweep FILE.h5.
+
+    Peaks are compared by their size, whatever their sign.
+
+    Parameters
+    ----------
+    file : FILE.h5
+    minimise : COLUMN
+        As of :func:`.studies.sweep.best.best`.
+    maximise : COLUMN
+        As of :func:`.studies.sweep.best.best`.
+    where : NAME<NUMBER
+        As of :func:`.studies.sweep.best.best`.
+    count : N
+        As of :func:`.studies.sweep.best.best`.
+    columns : COLUMN
+        As of :func:`.studies.sweep.best.best`.
+    csv
+        Also write the designs as CSV. A name that ends in .xlsx makes a workbook.
+    decimal_comma
+        With --csv: write commas in numbers, and semicolons between cells.
+    """
+    written = table_file(csv, decimal_comma)
     sweep = Sweep.open(file)
     found = find(sweep, where=where, **given)
     if not found:
@@ -34,19 +64,44 @@ def best(file: Path, where: Sequence[str], csv: TableFile | None, **given: Any) 
             f"{file}: no design has a result and meets the conditions: of {counted(sweep.size)},"
             f" {satisfied} meet them, {with_result} of these with a result{missed(sweep, where)}"
         )
-    names, piped = list(found[0].values), csv is not None and is_standard_output(csv.path)
+    names, piped = list(found[0].values), csv is not None and is_standard_output(csv)
     if not piped:
         _show(sweep, names, [(design.number, list(design.values.values())) for design in found])
-    if csv:
+    if written:
         rows = ([design.number, *design.values.values()] for design in found)
-        csv.write([DESIGN, *_heads_of(sweep, names)], rows)
-        echo(f"wrote {csv.path}: {counted(len(found))}", err=piped)
+        written.write([DESIGN, *_heads_of(sweep, names)], rows)
+        echo(f"wrote {csv}: {counted(len(found))}", err=piped)
 
 
 def table(
-    file: Path, where: Sequence[str], columns: Sequence[str], rows: int, csv: TableFile | None
+    file: Path,
+    *,
+    where: Sequence[str] = (),
+    columns: Sequence[str] = (),
+    rows: int = 20,
+    csv: Path | None = None,
+    decimal_comma: bool = False,
 ) -> None:
-    """See :func:`.commands.table`."""
+    """List the designs of the sweep FILE.h5, or write them as CSV.
+
+    A row is a design; for columns with a value at each xi or t, it is a design at one of these.
+
+    Parameters
+    ----------
+    file : FILE.h5
+    where : NAME<NUMBER
+        Choose only rows that satisfy this: <, <=, >, >=, == or !=, in SI units.
+    columns : COLUMN
+        List this column. Default: the main peaks.
+    rows : N
+        List this number of rows.
+    csv
+        Write all rows as CSV; default: all columns without axes. A name that ends in .xlsx makes
+        a workbook.
+    decimal_comma
+        As of :func:`.cli.table.best`.
+    """
+    written = table_file(csv, decimal_comma)
     sweep = Sweep.open(file)
     along = sweep.axes_of([*columns, *(condition.name for condition in conditions_in(where))])
     single = [name for name, kept in sweep.columns.items() if not kept.axes]
@@ -65,9 +120,9 @@ def table(
     if first is None:
         raise NoDesignError(f"{file}: no {what} meets the conditions{missed(sweep, where, along)}")
     found = chain([first], found)
-    if csv:
-        count = csv.write(_heads_of(sweep, names), (values for _, values in found))
-        echo(f"wrote {csv.path}: {counted(count, what)}", err=is_standard_output(csv.path))
+    if written:
+        count = written.write(_heads_of(sweep, names), (values for _, values in found))
+        echo(f"wrote {csv}: {counted(count, what)}", err=is_standard_output(written.path))
     elif _show(sweep, names, islice(found, min(rows, sys.maxsize))) == rows:
         satisfied, with_result = counts(sweep, where, along)
         if satisfied > rows:

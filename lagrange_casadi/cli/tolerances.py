@@ -9,11 +9,12 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
-from ..base.table_file import Cell, TableFile
+from ..base.table_file import Cell, aligned
 from ..studies.case import load_case
-from ..studies.tolerances import Spreads
+from ..studies.tolerances import Spread, Spreads
 from ..studies.tolerances import tolerances as spreads
 from .echo import echo
+from .options import table_file
 
 _FEW = 3
 """Parameters that are named for each peak."""
@@ -21,41 +22,65 @@ _FEW = 3
 
 def tolerances(
     case: Path,
+    *,
     within: Mapping[str, str],
-    csv: TableFile | None,
+    csv: Path | None = None,
+    decimal_comma: bool = False,
     **given: Any,
 ) -> None:
-    """See :func:`.commands.tolerances`."""
+    """Compute the scatter of the peaks of CASE within tolerances.
+
+    It lists the share of each tolerance in the scatter.
+
+    Parameters
+    ----------
+    case : CASE
+    within : NAME=TOLERANCE
+        As of :func:`.studies.tolerances.tolerances`.
+    parameters, t, over, wanted
+        As of :func:`.studies.tolerances.tolerances`.
+    samples : NUMBER
+        As of :func:`.studies.tolerances.tolerances`.
+    backend
+        As of :func:`.studies.tolerances.tolerances`.
+    csv
+        Write the peaks as CSV, one row per quantity. A name that ends in .xlsx makes a workbook.
+    decimal_comma
+        As of :func:`.cli.table.best`.
+    """
+    table = table_file(csv, decimal_comma)
     found = spreads(load_case(case).scene, within, **given)
     _print(found)
-    if csv:
-        csv.write(*_rows(found))
-        echo(f"wrote {csv.path}")
+    if table:
+        table.write(*_rows(found))
+        echo(f"wrote {csv}")
 
 
 def _print(found: Spreads) -> None:
-    width = max(len(name) for name in found.peaks)
     failed = f", {found.failed} of them without a result" if found.failed else ""
     echo(
         f"{found.case}: {found.drawn} designs drawn{failed}; sigma and worst to first order, the"
         " rest of what was drawn"
     )
-    heads = {"nominal": 11, "+- worst": 10, "sigma": 10, "drawn": 10, "least": 11, "largest": 11}
-    echo(
-        f"  {'peak of':<{width}} {' '.join(f'{head:>{size}}' for head, size in heads.items())} "
-        " due to"
+    heads = ["peak of", "nominal", "+- worst", "sigma", "drawn", "least", "largest", "due to"]
+    lines = aligned(heads, [_cells(spread) for spread in found.peaks.values()], left=(0, 7))
+    echo(*(f"  {line}" for line in lines))
+
+
+def _cells(spread: Spread) -> list[str]:
+    """A row of the table: the spread of a peak, and the parameters to which most of it is due."""
+    due = (
+        f"{name} {100 * share:.0f}%"
+        for name, share in list(spread.shares.items())[:_FEW]
+        if share >= 0.005
     )
-    for spread in found.peaks.values():
-        due = ", ".join(
-            f"{name} {100 * share:.0f}%"
-            for name, share in list(spread.shares.items())[:_FEW]
-            if share >= 0.005
-        )
-        echo(
-            f"  {spread.quantity:<{width}} {spread.nominal:>11.5g} {spread.worst:>10.3g}"
-            f" {spread.sigma:>10.3g} {spread.deviation:>10.3g} {spread.low:>11.5g}"
-            f" {spread.high:>11.5g}  {due}"
-        )
+    return [
+        spread.quantity,
+        f"{spread.nominal:.5g}",
+        *(f"{size:.3g}" for size in (spread.worst, spread.sigma, spread.deviation)),
+        *(f"{end:.5g}" for end in (spread.low, spread.high)),
+        ", ".join(due),
+    ]
 
 
 def _rows(found: Spreads) -> tuple[list[str], list[list[Cell]]]:

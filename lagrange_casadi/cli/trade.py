@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ..base.files import check_writable, writing
+from ..base.table_file import aligned
 from ..engine.instants.evaluation_method import EvaluationMethod
 from ..errors import DeclarationError
 from ..studies.case import load_case
@@ -22,12 +23,28 @@ from .progress import bar_of
 
 def trade(
     case: Path,
-    accuracy: float | None,
-    out: Path | None,
-    figure: Path | None,
+    *,
+    accuracy: float | None = None,
+    out: Path | None = None,
+    figure: Path | None = None,
     **given: Any,
 ) -> None:
-    """See :func:`.commands.trade`."""
+    """Measure time and error of each evaluation method on CASE.
+
+    Methods differ in backend, precision, Newton steps, tables and compiler flags.
+
+    Parameters
+    ----------
+    case : CASE
+    parameters, t, over, wanted
+        As of :func:`.studies.evaluate.evaluate`.
+    accuracy : ERROR
+        Recommend the fastest method whose error, over the peak, is within this number.
+    out
+        Write the numbers to this JSON file; default: <case>_trade.json here.
+    figure
+        Draw time over error into this file; default: <case>_trade.png here.
+    """
     if accuracy is not None and not 0.0 < accuracy < math.inf:
         raise DeclarationError(f"accuracy: expected a finite number above 0, got {accuracy!r}")
     loaded = load_case(case)
@@ -57,7 +74,6 @@ def trade(
 
 
 def _print(found: Trade) -> None:
-    width = max(len(one.method.options) for one in found.measurements)
     default = next(
         (one.seconds for one in found.measurements if one.method == EvaluationMethod("lanes")),
         found.measurements[0].seconds,
@@ -67,18 +83,21 @@ def _print(found: Trade) -> None:
         f" errors at {found.compared} instants, relative to each quantity's peak; * nothing is"
         " faster and more accurate; times within 20 % are held to be equal"
     )
-    echo(
-        f"  {'method':<{width}} {'ns/instant':>11} {'instructions':>12} {'x lanes':>8}"
-        f" {'largest':>9} {'median':>9}   worst quantity"
-    )
-    for one in found.measurements:
-        mark = "*" if one in found.front else " "
-        note = f"; {one.note}" if one.note else ""
-        echo(
-            f"{mark} {one.method.options:<{width}} {1e9 * one.seconds:>11.4g}"
-            f" {one.instructions:>12} {one.seconds / default:>8.2f}"
-            f" {one.largest:>9.1e} {one.median:>9.1e}   {one.worst}{note}"
-        )
+    heads = ["", "method", "ns/instant", "instructions", "x lanes", "largest", "median"]
+    rows = [
+        [
+            "*" if one in found.front else "",
+            one.method.options,
+            f"{1e9 * one.seconds:.4g}",
+            str(one.instructions),
+            f"{one.seconds / default:.2f}",
+            f"{one.largest:.1e}",
+            f"{one.median:.1e}",
+            f"{one.worst}; {one.note}" if one.note else one.worst,
+        ]
+        for one in found.measurements
+    ]
+    echo(*aligned([*heads, "worst quantity"], rows, left=(0, 1, 7)))
     for options, reason in found.refused.items():
         echo(f"  {options}: {reason}")
     if found.peaks:
@@ -86,21 +105,31 @@ def _print(found: Trade) -> None:
             "how far peaks of forces fall short, by instants of the cycle; refined: between them,"
             " as by run --refine-peaks"
         )
-        echo(
-            f"  {'instants':>8} {'worst':>9} {'median':>9} {'refined worst':>14}"
-            f" {'refined median':>15}"
-        )
-    for row in found.peaks:
-        sampled, refined = (
-            f"{row.sampled_worst:>9.1e} {row.sampled_median:>9.1e}",
-            f"{row.refined_worst:>14.1e} {row.refined_median:>15.1e}",
-        )
-        echo(f"  {row.count:>8} {sampled} {refined}")
+        heads = ["instants", "worst", "median", "refined worst", "refined median"]
+        rows = [
+            [
+                str(row.count),
+                *(
+                    f"{error:.1e}"
+                    for error in (
+                        row.sampled_worst,
+                        row.sampled_median,
+                        row.refined_worst,
+                        row.refined_median,
+                    )
+                ),
+            ]
+            for row in found.peaks
+        ]
+        echo(*(f"  {line}" for line in aligned(heads, rows)))
     if found.searches:
         echo(
             "peaks of designs, all of them; error of the worst quantity, and its bound, relative to"
             " its peak"
         )
-        echo(f"  {'peaks':<8} {'ns/instant':>11} {'error':>9} {'bound':>9}")
-    for cost in found.searches:
-        echo(f"  {cost.peaks:<8} {1e9 * cost.seconds:>11.4g} {cost.error:>9.1e} {cost.bound:>9.1e}")
+        rows = [
+            [cost.peaks, f"{1e9 * cost.seconds:.4g}", f"{cost.error:.1e}", f"{cost.bound:.1e}"]
+            for cost in found.searches
+        ]
+        lines = aligned(["peaks", "ns/instant", "error", "bound"], rows, left=(0,))
+        echo(*(f"  {line}" for line in lines))

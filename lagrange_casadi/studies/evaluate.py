@@ -46,20 +46,34 @@ def evaluate(
     scene
         The scene.
     parameters
-        Values that replace defaults, by name; for a parameter in rad also a text such as
-        ``"30 deg"``. The scene is not compiled again for them if the defaults can be assembled.
-    t, xi
-        Start, stop and count of the instants [s] and of the section ratios xi/l.
+        Set a parameter, in SI units or with a unit, as l=0.25 or phi=30deg.
+
+        Values by names of parameters, instead of their defaults; one in rad may be a text, as ``"30
+        deg"``. The scene is not compiled again for them if the defaults can be assembled.
+    t
+        Set the instants [s], both ends included; default: those of the scene.
+
+        Start, stop and count.
+    xi
+        Set the ratios xi/l at which sections are stored, within 0 (base) and 1 (tip); default:
+        those of the scene.
     over
-        Instants in equal steps of a driven coordinate, in place of ``t``: see :class:`.Scene`.
+        Set the instants as equal steps of a driven joint's coordinate [rad or m, or with a unit, as
+        720deg], in place of ``t``.
+
+        Joint, start, stop and count: see :class:`.Scene`.
     wanted
-        Output names; with ``sensitivity`` or ``sensitivity:PARAMETER`` among them also the
-        derivatives of all others by all parameters or by some: see :class:`.Derivatives`.
+        Compute these outputs: effort, reaction:JOINT, section:LINK, motion, a kind such as section,
+        or all; default: those of the scene.
+
+        With ``sensitivity`` or ``sensitivity:PARAMETER`` among them also the derivatives of all
+        others by all parameters or by some: see :class:`.Derivatives`.
     backend, precision, newton, table, flags
         Method of evaluation: see :class:`.EvaluationMethod`.
     threads
-        Number of threads that share the instants; default: one a core. The result does not depend
-        on it.
+        Use this number of threads; default: one per core.
+
+        The result does not depend on it.
     certificate
         Check the solution by :mod:`.certificate`, as far as the wanted outputs allow, and estimate
         its errors by :mod:`.accuracy`.

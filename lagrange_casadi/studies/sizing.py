@@ -125,16 +125,25 @@ def size(
     profiles
         The profiles, as of :func:`.read_profiles`.
     safety
-        Least factor of safety against yielding, buckling and fatigue.
+        Demand this factor of safety at least.
+
+        It is against yielding, buckling and fatigue.
     links
-        Names of the links to size; default: all whose dimensions are parameters of the profiles.
+        Size this link; default: all that profiles fit.
+
+        Names of links whose dimensions are parameters of the profiles.
     parameters, t, over
-        As in :func:`.evaluate`.
-    criterion, yield_criterion
-        Criteria of fatigue and of yielding, as in :func:`.strength.safety`.
+        As of :func:`.studies.evaluate.evaluate`.
+    criterion
+        Count mean stress in fatigue by this criterion.
+    yield_criterion
+        Compare this equivalent stress with the yield strength.
+
+        Both as in :func:`.strength.safety`.
     deflection
-        Largest deflection across a link over its length, as 1/500; default: no limit. With it the
-        factors of safety are :class:`StiffSafety`.
+        Limit the deflection across a link over its length, as 1/500; default: no limit.
+
+        With it the factors of safety are :class:`StiffSafety`.
 
     Returns
     -------

@@ -120,11 +120,17 @@ def tolerances(
     scene
         The scene.
     within
-        Tolerances by parameter, plus or minus, as ``{"l": "0.1mm"}``.
-    parameters, wanted, t, over, backend
-        As in :func:`.evaluate`.
+        Set the tolerance of a parameter, plus or minus this value [SI unit, unit or %].
+
+        Tolerances by parameter, as ``{"l": "0.1mm"}``.
+    parameters, wanted, t, over
+        As of :func:`.studies.evaluate.evaluate`.
+    backend
+        As of :func:`.studies.sweep.sweeping.sweep`.
     samples
-        Number of designs whose parameters are drawn uniformly and independently.
+        Draw this number of designs at random.
+
+        Parameters are drawn uniformly and independently.
 
     Returns
     -------

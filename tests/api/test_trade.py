@@ -29,7 +29,7 @@ def measured(tmp_path_factory):
         patch.chdir(folder)
         patch.setattr("lagrange_casadi.studies.trade.QUIET", 2)
         lines: list[str] = []
-        patch.setattr("lagrange_casadi.cli.trade.echo", lines.append)
+        patch.setattr("lagrange_casadi.cli.trade.echo", lambda *told: lines.extend(told))
         assert command(f"{ASKED} --accuracy 1e-9") == 0
     return json.loads((folder / "slider_crank_trade.json").read_text()), lines, folder
 

@@ -212,7 +212,7 @@ def main_options(command):
     from lagrange_casadi import cli
 
     group = next(value for value in vars(cli).values() if isinstance(value, click.Group))
-    return group.commands[command].params
+    return group.get_command(click.Context(group), command).params
 
 
 @pytest.fixture(scope="module")

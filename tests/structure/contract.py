@@ -14,6 +14,7 @@ from typing import Any
 import every_way
 import h5py
 import mechanisms
+from click import Context
 from click.testing import CliRunner
 
 from lagrange_casadi import errors, evaluate, export, save, sweep
@@ -70,7 +71,7 @@ def _members(kind: type) -> Iterator[str]:
 
 def helps() -> Iterator[str]:
     """What ``--help`` of the program and of every command shows."""
-    for words in ([], *([name] for name in sorted(program.commands))):
+    for words in ([], *([name] for name in program.list_commands(Context(program)))):
         asked = [*words, "--help"]
         yield " ".join(["$ lagrange-casadi", *asked])
         shown = CliRunner().invoke(program, asked, prog_name="lagrange-casadi", terminal_width=100)

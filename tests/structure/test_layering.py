@@ -94,10 +94,14 @@ def test_what_is_compiled_is_not_declared_again():
                 assert node.attr == "scene", f"{name}:{node.lineno}"
 
 
+TABLES = ("base.methods", "cli.help")
+"""Modules that import what they read in a table."""
+
+
 @pytest.mark.quick
 def test_only_the_table_of_methods_names_what_is_above():
     """A method of the table answers from a module that is there, and each is asked for by the
-    module that has it.
+    module that has it. Commands have a table of their own.
     """
     asked: dict[str, str] = {}
     for name, path in modules().items():
@@ -107,7 +111,7 @@ def test_only_the_table_of_methods_names_what_is_above():
                 (word,) = (argument.value for argument in node.args)
                 asked[word] = name
             last = getattr(called, "attr", getattr(called, "id", ""))
-            if last.endswith(("import_module", "__import__")) and name != "base.methods":
+            if last.endswith(("import_module", "__import__")) and name not in TABLES:
                 assert ast.unparse(node.args[0]).startswith("'distributed"), f"{name}:{node.lineno}"
     assert asked.keys() == METHODS.keys()
     for answer in METHODS.values():
@@ -126,17 +130,14 @@ def test_only_the_table_of_methods_names_what_is_above():
 
 
 def for_users() -> set[str]:
-    """Functions and classes that the façade or a command imports."""
-    facade = nodes_of(PACKAGE / "__init__.pyi")
-    files = [modules()[f"cli.{name}"] for name in ("commands", "design_commands")]
-    commands = (node for path in files for node in nodes_of(path))
-    imports = [*((node, "") for node in facade), *((node, "cli.") for node in commands)]
+    """Functions and classes that the façade imports, and commands."""
+    commands = re.findall(r'"(\w+\.\w+)"', modules()["cli.commands"].read_text())
     return {
-        f"{package}{node.module}.{alias.name}"
-        for node, package in imports
+        f"{node.module}.{alias.name}"
+        for node in nodes_of(PACKAGE / "__init__.pyi")
         if isinstance(node, ast.ImportFrom) and node.level == 1
         for alias in node.names
-    }
+    } | {f"cli.{place}" for place in commands}
 
 
 @pytest.mark.quick

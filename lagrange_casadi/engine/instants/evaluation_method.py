@@ -46,22 +46,29 @@ class EvaluationMethod:
     Parameters
     ----------
     backend
-        ``lanes`` compiles with a C++ compiler for SIMD: several instants at once, each in a lane of
-        the vector registers. ``c`` compiles with a C compiler for one instant at a time; ``vm``
-        runs in CasADi's virtual machine. ``auto`` takes the first of them that there is a compiler
+        Evaluate with SIMD in C++ (lanes), with C, or with CasADi's virtual machine (vm).
+
+        ``lanes`` evaluates several instants at once, each in a lane of the vector registers, ``c``
+        and ``vm`` one instant at a time. ``auto`` takes the first of them that there is a compiler
         for, and warns where there is none.
     precision
-        ``double``, or ``single``: then no operation is on doubles. Phases are kept in pairs of
-        numbers, so that many turns cost no digits.
+        Compute in double or in single precision.
+
+        In ``single`` no operation is on doubles. Phases are kept in pairs of numbers, so that many
+        turns cost no digits.
     newton
-        Of loops that have no closed form: None iterates them until they are closed. A number, at
-        most 1000, takes exactly so many steps of Newton's method, from the instant before; at the
-        first instant they are closed.
+        Close iterated loops by this number of Newton steps from the instant before; default: until
+        they close.
+
+        At most 1000; at the first instant loops are closed.
     table
-        A whole number of nodes, or a wanted accuracy below 1: outputs are read from a table over
-        the turn of the one drive.
+        Interpolate outputs in a table over one turn, with this number of nodes or this accuracy.
+
+        Nodes are a whole number, an accuracy is below 1; the turn is that of the one drive.
     flags
-        Further flags of the compiler, after the package's own.
+        Pass these further flags to the compiler, as one word.
+
+        They come after the package's own.
 
     Raises :class:`DeclarationError` for what does not go together.
     """

@@ -69,30 +69,38 @@ def export(
     out
         The folder.
     name
-        Name of the mechanism in C; default: its own.
+        Set the prefix of the names in C; default: the scene's name.
     parameters
-        Values that become the defaults; with ``table`` they are fixed.
+        Set the default of a parameter, as l=0.25 or phi=30deg.
+
+        With ``table`` they are fixed.
     wanted
-        Output names; default: the scene's.
+        As of :func:`.studies.evaluate.evaluate`.
     precision, newton, table
-        Method of evaluation in C: see :class:`.EvaluationMethod`.
+        As of :class:`.engine.instants.evaluation_method.EvaluationMethod`.
     largest
-        Bytes that a table may take; default: 16 MB, in single precision 64 kB.
+        Limit the size of a table [bytes]; default: 16 MB, in single precision 64 kB.
     force
-        Write into a folder that holds other files too, or files of an earlier export that were
-        changed since. Files of others are never touched; those of the earlier export that are no
-        longer written are removed, unless they were changed.
+        Write into a folder that holds other files as well; these are left as they are.
+
+        Files of an earlier export that were changed since may be there too. Those of the earlier
+        export that are no longer written are removed, unless they were changed.
     fmu
         Also write ``<prefix>.fmu``, a unit of FMI 2.0 whose inputs are the motion of the drives,
         and a script that tests it; with ``"time"`` the scene's motion is inside, and with the name
         of a coordinate, as ``"crank"``, its place is the input. Needs FMPy and a C compiler.
     wasm
-        Also write ``<prefix>.wasm``, with a wrapper in JavaScript, its types and
-        ``README.wasm.md``. Needs ziglang.
+        Also write ``<prefix>.wasm`` for web pages, with a wrapper in JavaScript; needs ziglang.
+
+        Its types and ``README.wasm.md`` are written as well.
     control
-        Also write ``<prefix>_control.hpp``, a class of C++ for controllers, and its test.
+        Also write ``<prefix>_control.hpp``, a class of C++ for controllers as ros2_control's.
+
+        Its test is written too.
     structured_text
-        Also write ``<prefix>.st``, function blocks of IEC 61131-3, and their test.
+        Also write ``<prefix>.st``, function blocks of IEC 61131-3 for PLCs.
+
+        Their test is written too.
 
     Returns
     -------

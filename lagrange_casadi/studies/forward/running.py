@@ -82,15 +82,21 @@ def free(
         Coordinate and rate of the joint at the start [rad and rad/s; m and m/s]; of a steady cycle
         where it begins, and a guess of the speed.
     t
-        Start, stop and count of the instants [s]; default: the scene's.
+        As of :func:`.studies.evaluate.evaluate`.
+
+        Start, stop and count.
     steady
-        Find the periodic cycle, and go round once, in ``count`` instants.
+        Find the steady cycle, and compute one period of it.
+
+        It has ``count`` instants.
     cycle
         Angle after which the machine repeats [rad]: one turn, or two for a four-stroke engine.
     count
-        Number of instants of a steady cycle, in even steps of time, first and last included.
+        Set the number of instants of a steady cycle.
+
+        They are in even steps of time, first and last included.
     parameters, wanted
-        As of :func:`.evaluate`.
+        As of :func:`.studies.evaluate.evaluate`.
     accuracy
         Relative error of a step of the integrator, 1e-13 to 1e-3.
 

@@ -192,24 +192,25 @@ def identify(
     measurements
         Coordinates of all driven joints, and forces or strains, over time.
     unknown
-        Names of parameters; by default all that the scene declares.
+        Find these parameters; default: all of the scene.
     parameters
-        Values of known parameters, and initial values of unknown parameters, instead of the
-        defaults.
+        Set a known parameter, or the first value of an unknown one, as l=0.25.
     prior
-        Standard deviations of unknown parameters about their initial values, such as from CAD, by
-        name. Each has the weight of one more measurement.
+        Set the standard deviation of the first value of a parameter.
+
+        It may come from CAD, and has the weight of one more measurement.
     robust
-        Weigh residuals by Huber's loss, so that outliers count less.
+        Reduce the weight of outliers, by Huber's loss.
     consistent
-        Find only positive masses, inertias that are possible for a body, and parameters within
-        their bounds.
+        Find positive masses, inertias that a body can have, and parameters in their bounds.
     cutoff
-        Frequency [Hz] at which a filter without delay halves the power of forces, measured and
-        modelled alike; by default nothing is filtered.
+        Filter forces without delay; half the power is left at this frequency [Hz].
+
+        Measured and modelled forces alike; default: nothing is filtered.
     trim
-        Time at both ends of the record that is left out [s], because smoothed accelerations are
-        inaccurate there.
+        Leave out this time at both ends of the record [s].
+
+        Smoothed accelerations are inaccurate there.
     backend
         As in :func:`.evaluate`.
 

@@ -253,14 +253,16 @@ def read_measurements(
         also stand in a line of their own below the names. Empty cells and ``nan`` are missing
         values. An angle that begins again after each turn is made to go on.
     names
-        Heads of the file, by the name that they are to have: ``{"J1": "position 1"}``. Columns
-        that are not named here keep theirs, if none has it. The name of the times is ``t``.
+        Read a drive's coordinate, or a force as effort:O, from the column of this head.
+
+        Heads of the file, by the name that they are to have: ``{"J1": "position 1"}``. Columns that
+        are not named here keep theirs, if none has it. The name of the times is ``t``.
     noise
-        Standard deviations by name, in the units of the file. Of a column in counts it is by
-        default that of rounding to whole counts, 0.29.
+        State the standard deviation of a column, in the unit of the file.
+
+        Of a column in counts it is by default that of rounding to whole counts, 0.29.
     counts_per_turn
-        Counts in one turn of the encoders of columns in counts: a number for all, or numbers by
-        name.
+        Set the counts in one turn of all encoders, or of a column's.
     time
         The head of the times.
 

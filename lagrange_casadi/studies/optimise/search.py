@@ -107,40 +107,54 @@ def optimise(
     scene
         A scene, or a case from :func:`.load_case`. Workers of a cluster do not need its file.
     minimise
-        ``peak:QUANTITY``, the largest magnitude of a quantity over the whole motion;
-        ``max:QUANTITY``, its largest value; ``mean:`` or ``rms:`` of an effort or an output;
-        ``fluctuation:effort:JOINT``, the fluctuation of energy of a drive [J]; or a parameter's
-        name. A list of them asks for a :class:`.Front`: designs of which none is better
-        in all of them.
+        Minimise peak:QUANTITY, max:, mean: or rms: of one, fluctuation:effort:JOINT, or a
+        parameter; of several, find the Pareto front.
+
+        ``peak:QUANTITY`` is the largest magnitude of a quantity over the whole motion,
+        ``max:QUANTITY`` its largest value; ``mean:`` and ``rms:`` are of an effort or an output;
+        ``fluctuation:effort:JOINT`` is the fluctuation of energy of a drive [J]. A list asks for a
+        :class:`.Front`: designs of which none is better in all of them.
     over
-        The parameters to choose, each with its lower and upper bound.
+        Choose this parameter between two bounds, in SI units or with a unit.
     subject_to
-        Constraints, as ``"peak:effort:O <= 12"``; ``min:QUANTITY`` is for lower limits. They hold
-        at all times of the motion, and along the whole link.
+        Keep within this limit, in SI units, as 'peak:effort:O<=12'.
+
+        ``min:QUANTITY`` is for lower limits. Limits hold at all times of the motion, and along the
+        whole link.
     starts
-        Number of designs from which the search starts: the best of designs spread evenly over the
-        bounds, with the parameters' own values among them. Or values of parameters for each start.
+        Start from this number of designs.
+
+        They are the best of designs spread evenly over the bounds, with the parameters' own values
+        among them. Or values of parameters for each start.
     screen
-        Number of designs among which the starts are chosen.
+        Choose the starts among this number of designs.
     points
-        Largest number of points of a front.
+        Find at most this number of points of a front.
     transmission
-        Least sine of a loop's transmission angle; for an iterated loop its volume.
+        Keep the sine of all transmission angles above this number.
+
+        Of an iterated loop it is a volume.
     t
-        Instants, as in :func:`.evaluate`; they may depend on parameters that are chosen.
+        As of :func:`.studies.evaluate.evaluate`.
+
+        Instants may depend on parameters that are chosen.
     parameters
-        Values of the parameters that are not chosen.
+        Set a parameter that is not chosen, as l=0.25 or phi=30deg.
     backend
-        Backend that evaluates designs, as in :func:`.evaluate`.
+        As of :func:`.studies.sweep.sweeping.sweep`.
     executor
         Executor whose workers run the starts: one of :mod:`concurrent.futures`, or a client of
         Dask.
     out
         The file to write. A folder beside it keeps finished runs until the search ends.
     resume
-        Continue a search that was stopped or killed.
+        Continue a search that was stopped; start it if there is none.
+
+        Finished runs of one that was killed are kept too.
     force
-        Start anew, replacing the file and the runs that are kept.
+        Start anew and replace the file.
+
+        The runs that are kept are replaced too.
     progress
         Function that is called after each step with the number of the start, the objective and the
         largest violation of a limit.

@@ -107,14 +107,24 @@ def best(
     ----------
     sweep
         The sweep.
-    minimise, maximise
-        Names of columns, one or a list; one or two objectives in all.
+    minimise
+        Minimise this column; of two objectives, list their Pareto front.
+
+        A name or a list of them; one or two objectives in all.
+    maximise
+        Maximise this column.
+
+        A name or a list of them.
     where
-        Conditions on columns, as ``"peak:effort:O<12"``, in the columns' units.
+        Choose only designs that satisfy this: <, <=, >, >=, == or !=, in SI units.
+
+        Conditions on columns, as ``"peak:effort:O<12"``.
     count
-        Number of designs; default: 1, or the whole front.
+        List this number of designs; default: the best one, or the whole front.
     columns
-        Other columns of which each design has the value.
+        List this column too.
+
+        Names of columns of which each design has the value.
 
     Returns
     -------

@@ -66,36 +66,46 @@ def sweep(
     out
         The file; default: a temporary one, removed with the result.
     parameters
-        Values of parameters that are not swept.
-    t, over, wanted
-        As in :func:`.evaluate`; ``all`` leaves out the motion, unless it is named too. With
-        ``over``, or with bounds of ``t`` that are expressions of parameters, every design has its
-        own times.
+        Set a parameter that is not swept, as l=0.25 or phi=30deg.
+    t, over
+        As of :func:`.studies.evaluate.evaluate`.
+
+        With ``over``, or with bounds of ``t`` that are expressions of parameters, every design has
+        its own times.
+    wanted
+        As in :func:`.evaluate`; ``all`` leaves out the motion, unless it is named too.
     xi
-        Ratios xi/l at which section forces are kept too: at each the value of largest magnitude
-        over the instants.
+        Also store the peak over time of the section forces at each of these ratios xi/l.
+
+        Start, stop and count. Of each force the value of largest magnitude over the instants.
     keep
-        ``peaks``; with ``laws`` also the section laws over time; with ``histories`` also all
-        outputs over time.
+        Store for each design its peaks only, its section laws as well, or all outputs over time as
+        well.
     peaks
-        ``exact``, sought between the instants; or ``sampled``, those of the instants, each with an
-        error in ``peak_error:QUANTITY``.
+        Search for peaks between the instants, or take those of the instants, each with an error.
+
+        The error of what is sampled is in ``peak_error:QUANTITY``.
     fluctuation
-        Also keep the fluctuation of energy of each drive [J], in ``fluctuation:effort:JOINT``: the
-        largest swing of the work of its effort beyond that of the mean effort, which a flywheel
-        takes up.
-    backend, precision, newton, flags
-        Method of evaluation: see :class:`.EvaluationMethod`.
+        Store the fluctuation of energy of each drive as well, for which a flywheel is sized.
+
+        It is in ``fluctuation:effort:JOINT`` [J]: the largest swing of the work of its effort
+        beyond that of the mean effort.
+    backend
+        Evaluate designs with SIMD in C++ (lanes), or with C.
+    precision, newton, flags
+        As of :class:`.engine.instants.evaluation_method.EvaluationMethod`.
     workers
-        Number of threads that share the designs, by default one a core; or of blocks that an
-        executor is given at a time, by default 128.
+        Use this number of threads, or send a cluster this number of blocks at a time; default: one
+        per core, or 128.
     executor
         Executor whose workers evaluate instead: one of :mod:`concurrent.futures`, or a client of
         Dask.
-    resume, force
-        Continue an earlier sweep into ``out``, or replace what is there.
+    resume
+        Continue a sweep that was stopped; start it if there is none.
+    force
+        Start anew and replace the file.
     many
-        Confirm a sweep of more than 10^9 designs.
+        Allow more than 10^9 designs.
     progress
         Function that is called with the name of the present step (``designs``, after an interrupt
         ``stopping``, then ``file``), the amount that is done, and the total.
