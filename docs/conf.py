@@ -47,6 +47,7 @@ UNLISTED = [
         "Deflection",
         "Derivatives",
         "Design",
+        "Executor",
         "Expression",
         "Figure",
         "Listed",
