@@ -296,7 +296,7 @@ def _array(value: object) -> Any:
 
 
 def _whole(value: object) -> Any:
-    return int(value) if is_whole(value) and abs(value) < 2**63 else None
+    return int(value) if is_whole(value) else None
 
 
 def _pair(value: object) -> Any:

@@ -283,7 +283,7 @@ Solution Keep Duty Spec Cycle Event Flywheel FreeMotion Law Identification
 
 INNER = """
 direction
-multiplier output check_ending analysed mapped needs rows parameter_constraints refined instants timetable block scale outside at_number made_of
+multiplier output check_ending analysed mapped needs rows parameter_constraints refined instants timetable block scale outside made_of
 at ends tails cell_at whole holds excess of_parameters unit __getitem__ __call__ largest
 grid size draw needs count index curvature copy
 """.split()  # noqa: E501
