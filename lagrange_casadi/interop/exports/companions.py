@@ -6,8 +6,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..portable.contract import CORNERS, REST, Contract, Member
-from ..portable.golden import RATIOS
+from ..portable.contract import CORNERS, Contract, Member
+from ..portable.golden import RATIOS, remainder
 from ..portable.sections import comparisons
 from ..portable.slopes import in_readme, selftest_function, selftest_numbers
 from ..portable.source import Source
@@ -104,8 +104,8 @@ def _mapped(c: Contract) -> str:
 
 def _selftest(source: Source, words: dict[str, str]) -> str:
     g, c = source.golden, source.contract
-    coordinates = {m.source: k for k, m in enumerate(c.inputs)}
-    times = [(t, _rest(t) if c.rests else 0.0) for t in g.times]
+    places = {m.name: k for k, m in enumerate(c.inputs)}
+    rests = remainder(g.times) if c.rests else np.zeros_like(g.times)
     return template(
         "selftest.c",
         **words,
@@ -115,7 +115,7 @@ def _selftest(source: Source, words: dict[str, str]) -> str:
         n_links=len(c.links),
         n_ratios=len(RATIOS),
         steps=g.steps,
-        times=number_rows(times),
+        times=number_rows(zip(g.times, rests, strict=True)),
         inputs=number_rows(g.inputs),
         inputs_off=numbers(g.inputs_off),
         outputs=number_rows(g.outputs),
@@ -125,7 +125,7 @@ def _selftest(source: Source, words: dict[str, str]) -> str:
         given="\n".join(
             f"  inputs->{m.name} = ({c.prefix}_real) row[{k}];" for k, m in enumerate(c.inputs)
         ),
-        taken_inputs="\n".join(_taken(c, m, coordinates) for m in c.inputs if not m.rest_of),
+        taken_inputs="\n".join(_taken(c, m, places) for m in c.inputs if not m.rest_of),
         taken_outputs="\n".join(
             f'  compare("{m.name}", row[{k}], (double) outputs->{m.name}, outputs_off[{k}],'
             f" {int(m.wrapped)});"
@@ -152,20 +152,12 @@ def _selftest(source: Source, words: dict[str, str]) -> str:
     )
 
 
-def _rest(t: float) -> float:
-    return float(t - float(np.float32(t)))
-
-
-def _taken(c: Contract, m: Member, coordinates: dict[str, int]) -> str:
-    k = coordinates[m.source]
-    rest = coordinates.get(f"{REST}{m.source}")
-    value, given = f"(double) inputs.{m.name}", f"inputs_at[k][{k}]"
-    if rest is not None:
-        value, given = (
-            f"{value} + (double) inputs.{c.inputs[rest].name}",
-            f"{given} + inputs_at[k][{rest}]",
-        )
-    return f'    compare("motion: {m.name}", {given}, {value}, inputs_off[{k}], 0);'
+def _taken(c: Contract, m: Member, places: dict[str, int]) -> str:
+    parts = c.parts_of(m.source)
+    given = " + ".join(f"inputs_at[k][{places[part]}]" for part in parts)
+    value = " + ".join(f"(double) inputs.{part}" for part in parts)
+    off = f"inputs_off[{places[m.name]}]"
+    return f'    compare("motion: {m.name}", {given}, {value}, {off}, 0);'
 
 
 def _forces(source: Source) -> str:

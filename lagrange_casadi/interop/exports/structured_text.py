@@ -47,9 +47,6 @@ _WRITTEN = {
 
 _FINITE = ("IF NOT (y[n] - y[n] = 0.0) THEN", "valid := FALSE;", "END_IF;")
 
-_COUNTERS = ("which", "division", "j", "i", "m", "least", "first", "last")
-"""Whole numbers of the rule of dead centres."""
-
 _LEAST = 1e-37
 """Outputs below it are compared with zero: matiec reads numbers of LREAL in the range of REAL."""
 
@@ -123,13 +120,11 @@ class _Block:
             start = f" := [{', '.join(map(_number, self.source.guess))}]" if name == "z" else ""
             yield f"{name} : ARRAY[0..{size - 1}] OF LREAL{start};"
         if "z" in self.arrays:
-            yield from ("k : DINT;", "size : LREAL;", "before : LREAL;")
+            yield "k : DINT;\nsize : LREAL;\nbefore : LREAL;"
         if "square" in self.arrays:
-            zeros = ", ".join(map(_number, self.source.exported.zeros))
-            yield f"zero : ARRAY[0..{len(self.source.exported.zeros) - 1}] OF LREAL := [{zeros}];"
-            yield from (f"{name} : LREAL;" for name in ("low", "high", "order", "same"))
-            yield from (f"{name} : BOOL;" for name in ("begun", "crossed", "touches", "open"))
-            yield from (f"{name} : DINT;" for name in _COUNTERS)
+            zeros = [_number(zero) for zero in self.source.exported.zeros]
+            words = {"last": len(zeros) - 1, "zeros": ", ".join(zeros)}
+            yield template("structured_registers.st", **words).rstrip()
         for numbers, name in self.tables.items():
             yield from _table(name, numbers)
 
@@ -162,14 +157,12 @@ class _Block:
             f" - {turn} * LC_FLOOR({now} / {turn} + 0.5)" if turning else ""
             for now, turning in zip(z, newton.turning, strict=True)
         ]
-        body = [f"IF NOT (size < {rule['done']}) THEN", "before := size;"]
-        body += self.call("loops", within="k")
-        body += [*map("{0} := {0} + {1};".format, z, c), "END_IF;"]
+        step = ["before := size;", *self.step()]
         yield template(
             "structured_loops.st",
             **rule,
             begin="\n".join(map("{} := {};".format, z, stood)),
-            iterate="\n".join(_loop("n", 1, int(exported.rule["steps"]), body)),
+            iterate="\n".join(_iterated("n", int(exported.rule["steps"]), rule["done"], step)),
             keep="\n".join(map("{} := {}{};".format, stood, z, whole)),
             slow=_number(Status.SLOW),
         ).rstrip()
@@ -190,42 +183,43 @@ class _Block:
         own = self.vectors
         self.vectors = own | {"moment": place, "rate": gone[1:]}
         self.vectors |= {"acceleration": ["0.0"] * drives, "parameters": own["parameters"]}
-        end = _number(POINTS - 1)
-        point = [f"part[j] := low + (high - low) * DINT_TO_LREAL(j) / {end};"]
-        point += map("{0} := {1} - {2};".format, gone, moment, stood)
-        point += map("{0} := {1} + part[j] * {2};".format, place, stood, gone)
-        point += [*self.call("count")] if "count" in exported.functions else []
+        count = self.call("count") if "count" in exported.functions else ()
+        words = {
+            "gone": "\n".join(map("{0} := {1} - {2};".format, gone, moment, stood)),
+            "place": "\n".join(map("{0} := {1} + part[j] * {2};".format, place, stood, gone)),
+            "count": "\n".join(count),
+            "close": "",
+            "lost": "",
+        }
         if "loops" in exported.functions:
             done = _number(newton_rule("double", None)["done"])
-            point += [*map("{} := {};".format, own["z"], own["kept"]), "size := 1.0;"]
-            body = [f"IF NOT (size < {done}) THEN", *self.call("loops", within="k")]
-            body += [*map("{0} := {0} + {1};".format, own["z"], own["correction"]), "END_IF;"]
-            point += _loop("m", 1, NEWTON_STEPS, body)
-        point += self.call("closing")
-        width = 1 + drives
-        point += ["square[j] := squares[which];", "rate[j] := rates[which];"]
-        point += [f"rate[j] := rate[j] + (gone[0] - 1.0) * slopes[{width} * which];"]
-        point += _loop("i", 0, drives, [f"slope[{width} * j + i] := slopes[{width} * which + i];"])
-        point += ["IF square[j] < -zero[which] THEN", "crossed := TRUE;", "END_IF;"]
-        if "loops" in exported.functions:
-            point += [f"IF NOT (size < {done}) THEN", "square[j] := 0.0;", "END_IF;"]
-        point += ["IF square[j] < square[least] THEN", "least := j;", "END_IF;"]
+            close = [*map("{} := {};".format, own["z"], own["kept"]), "size := 1.0;"]
+            words["close"] = "\n".join(close + _iterated("m", NEWTON_STEPS, done, self.step()))
+            words["lost"] = f"IF NOT (size < {done}) THEN\nsquare[j] := 0.0;\nEND_IF;"
+        words["closing"] = "\n".join(self.call("closing"))
         self.vectors = own
         each = template(
             "structured_centre.st",
+            **words,
             rounds=ROUNDS,
             end=POINTS - 1,
             far=_number(FAR),
             low=_number(TOUCHES[0]),
             high=_number(TOUCHES[1]),
-            slopes=width,
-            points="\n".join(_loop("j", 0, POINTS - 1, point)),
+            drives=drives,
+            slopes=1 + drives,
         )
+        lines = [line for line in each.splitlines() if line]
         yield template(
             "structured_between.st",
-            loops="\n".join(_loop("which", 0, many - 1, each.splitlines())),
+            loops="\n".join(_loop("which", 0, many - 1, lines)),
             keep="\n".join(map("{} := {};".format, stood, moment)),
         ).rstrip()
+
+    def step(self) -> list[str]:
+        """Return the statements of a step that closes loops."""
+        changes = map("{0} := {0} + {1};".format, self.vectors["z"], self.vectors["correction"])
+        return [*self.call("loops", within="k"), *changes]
 
     def call(self, name: str, within: str = "n") -> Iterator[str]:
         """Yield the instructions of a function, one statement each; ``within`` counts in tables."""
@@ -275,14 +269,15 @@ def _test(source: Source, given: Mapping[str, str], taken: Mapping[str, str]) ->
     inputs = ", ".join(f"{name} := drive.{name}" for name in given.values())
     share = f"DINT_TO_LREAL(n) / {_number(g.steps)}"
     step = f"t := SEL(n = {g.steps}, before + {share} * (times[k] - before), times[k]);"
-    body = [step, "drive(t := t);", f"unit({inputs});"]
-    body = [*_loop("n", 1, g.steps, body), "before := t;"]
-    body += ["IF NOT unit.valid THEN", "failed := failed + 1;", "END_IF;"]
-    for j, (m, off) in enumerate(zip(outputs, g.outputs_off, strict=True)):
-        gap = _turned(m, f"unit.{taken[m.name]} - golden[k * {len(outputs)} + {j}]")
-        body.append(f"IF NOT (ABS({gap}) <= {_number(max(off, _LEAST))}) THEN")
-        body += ["failed := failed + 1;", "END_IF;"]
-    return _loop("k", 0, g.times.size - 1, body)
+    moved = _loop("n", 1, g.steps, [step, "drive(t := t);", f"unit({inputs});"])
+    gaps = (
+        _turned(m, f"unit.{taken[m.name]} - golden[k * {len(outputs)} + {j}]")
+        for j, m in enumerate(outputs)
+    )
+    least = (_number(max(off, _LEAST)) for off in g.outputs_off)
+    near = (f"(ABS({gap}) <= {off})" for gap, off in zip(gaps, least, strict=True))
+    tests = (f"IF NOT {one} THEN\nfailed := failed + 1;\nEND_IF;" for one in ("unit.valid", *near))
+    return _loop("k", 0, g.times.size - 1, [*moved, "before := t;", *tests])
 
 
 def _turned(member: Member, value: str) -> str:
@@ -295,13 +290,18 @@ def _table(name: str, numbers: Iterable[float]) -> Iterator[str]:
     texts = [_number(one) for one in numbers]
     yield f"{name} : ARRAY[0..{len(texts) - 1}] OF LREAL := ["
     rows = (", ".join(texts[k : k + 6]) for k in range(0, len(texts), 6))
-    yield ",\n    ".join(f"  {row}" for row in rows) + "];"
+    yield ",\n  ".join(f"  {row}" for row in rows) + "];"
 
 
 def _loop(counter: str, first: int, last: int, body: Sequence[str]) -> list[str]:
     """Return a loop; of one turn its body alone, which matiec would leave out."""
     head = f"FOR {counter} := {first} TO {last} DO"
     return [f"{counter} := {first};", *body] if last == first else [head, *body, "END_FOR;"]
+
+
+def _iterated(counter: str, steps: int, done: str, step: Sequence[str]) -> list[str]:
+    """Return a loop of so many steps, which are left out once the size is small."""
+    return _loop(counter, 1, steps, [f"IF NOT (size < {done}) THEN", *step, "END_IF;"])
 
 
 def _number(value: float) -> str:

@@ -11,6 +11,7 @@ import math
 import re
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -300,16 +301,15 @@ def _tie_lines(places: Places, tie: Tie) -> Iterator[str]:
         x, y, _ = (places.short.direction(axis) for axis in frame.axes.T)
         at = places.written(places.short.place(frame.place))
         yield from Call(f"{names} = frame", [f"m, {places.variables[body]}", at, x, y]).lines()
-    counts = any(row.kind in ("slide and turn", "wheels") for row in tie.rows)
-    ends = (tie.parent, tie.child)
-    parent, child = (_turns_about(places, tie, body) if counts else "" for body in ends)
+    turns = partial(_turns_about, places, tie)
     for k, row in enumerate(tie.rows, 1):
         name, value = tie.name if len(tie.rows) == 1 else f"{tie.name}_{k}", row.value
         if row.kind == "slide and turn":
             known = near.relative(far)
             angle = about_z(known)
             value = _clean(float(known.place[row.i]) + row.factor * angle)
-            yield from _turn("turn", f"{child}{_minus(parent)}", _clean(angle), "x", "y", "u")
+            counted = turns(tie.child, 1.0) + turns(tie.parent, -1.0)
+            yield from _turn("turn", counted, _clean(angle), "x", "y", "u")
         elif row.kind == "wheels":
             away = f"(q - p) / {text_of(math.dist(near.place, far.place))}"
             first, second = (
@@ -317,9 +317,9 @@ def _tie_lines(places: Places, tie: Tie) -> Iterator[str]:
                 for at in (near.relative(far).place, far.relative(near).place)
             )
             value = second + row.factor * first
-            yield from _turn("first", _minus(parent), first, "x", "y", away)
+            yield from _turn("first", turns(tie.parent, -1.0), first, "x", "y", away)
             back = away.replace("q - p", "p - q")
-            yield from _turn("second", _minus(child), second, "u", "v", back)
+            yield from _turn("second", turns(tie.child, -1.0), second, "u", "v", back)
         yield from Call("m.constraint", [json.dumps(name), row.text + signed(-value)]).lines()
 
 
@@ -330,9 +330,9 @@ def _turn(name: str, counted: str, start: float, x: str, y: str, along: str) -> 
     return Call(f"{name} = turned", arguments).lines()
 
 
-def _turns_about(places: Places, tie: Tie, body: str) -> str:
-    """Return by how much a body of a tie has turned about z of its first frame, as the coordinate
-    of the joint on which it turns: of both on the same body.
+def _turns_about(places: Places, tie: Tie, body: str, sign: float) -> str:
+    """Return by how much a body of a tie has turned about z of its first frame, as a term with a
+    sign: the coordinate of the joint on which it turns, of both on the same body.
     """
     model, ends = places.model, {tie.parent, tie.child}
     along = model.frames(tie)[0].axes[:, 2]
@@ -341,16 +341,11 @@ def _turns_about(places: Places, tie: Tie, body: str) -> str:
         mine = not ends <= {joint.parent, joint.child}
         cosine = float(model.frames(joint)[0].axes[:, 2] @ along)
         if mine and names and joint.kind != "prismatic" and abs(cosine) > 1.0 - 1e-9:
-            direction = cosine if joint.child == body else -cosine
+            direction = sign * (cosine if joint.child == body else -cosine)
             arguments = [places.variables[f"joint {joint.name}"]]
             arguments += [f'"{names[0]}"'] if names[0] else []
             return f" {'+' if direction > 0 else '-'} m.coordinate({', '.join(arguments)})"
     return ""
-
-
-def _minus(terms: str) -> str:
-    """Return the opposite of one signed term."""
-    return terms.replace("+", "*").replace("-", "+").replace("*", "-")
 
 
 def _clean(value: float) -> float:

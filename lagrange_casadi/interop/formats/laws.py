@@ -84,16 +84,12 @@ def parsed(text: str) -> Expression:
         tree = ast.parse(plain, mode="eval").body
     except (SyntaxError, ValueError, MemoryError, RecursionError):
         raise LawError("expected an expression of t") from None
-    waiting, made = [(tree, False)], list[Expression]()
-    while waiting:  # no recursion: a sum of many terms is as deep as these are many
-        node, known = waiting.pop()
-        parts = _parts(node)
-        if known:
-            given = made[len(made) - len(parts) :]
-            made[len(made) - len(parts) :] = [_expression(node, given)]
-        else:
-            waiting += [(node, True), *((part, False) for part in reversed(parts))]
-    return made[0]
+    nodes, made = [tree], dict[ast.expr, Expression]()
+    for node in nodes:  # which grow: no recursion, for a sum of many terms is as deep
+        nodes += _parts(node)
+    for node in reversed(nodes):
+        made[node] = _expression(node, [made[part] for part in _parts(node)])
+    return made[tree]
 
 
 def _parts(node: ast.expr) -> list[ast.expr]:

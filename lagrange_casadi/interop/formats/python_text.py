@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import bisect
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from textwrap import TextWrapper
 
 import numpy as np
 
@@ -73,15 +74,11 @@ def safe(text: str) -> str:
     return escaped(text).replace("\\", "/").replace('"', "'")
 
 
-def comment(text: str) -> Iterator[str]:
-    """Yield the lines of a comment."""
-    words, line = safe(text).split(), "#"
-    for word in words:
-        if len(line) + len(word) + 1 > WIDTH and line != "#":
-            yield line
-            line = "#  "
-        line += f" {word}"
-    yield line
+def comment(text: str) -> list[str]:
+    """Return the lines of a comment."""
+    words = " ".join(safe(text).split())
+    lines = TextWrapper(WIDTH, "# ", "#   ", break_long_words=False, break_on_hyphens=False)
+    return lines.wrap(words)
 
 
 class Short:

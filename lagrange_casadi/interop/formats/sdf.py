@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -53,21 +53,34 @@ def read(model: Model, text: str) -> None:
     named = line.by_name("link", "frame", "joint")
     for one in line.all("frame"):
         one.seen = False  # until something lies on it
-    _Reader(model, line, named, on_model).read()
+    joints = Joints(model, named, {"world": (GROUND, Frame())}, _pose(line.first("pose")), on_model)
+    for name, link in ((name, one) for name, one in named.items() if one.name == "link"):
+        joints.on[name] = _body(model, link, joints.frame(name, ()))
+    joints.read()
+    hung = {name for one in model.joints.values() for name in (one.parent, one.child)}
+    if GROUND not in hung and model.bodies:
+        first = next(iter(model.bodies.values()))
+        model.attach(first.name, GROUND, "weld", first.where)
+        model.notes.append(f"No joint leads to the world: '{first.name}' is fixed.")
+    for one in line.all("model", "include"):
+        raise one.refuse("is not supported; put its links into the model itself")
     note_unread(model, root)
 
 
+@dataclass(eq=False)
 class Joints:
-    """Joints of a model under way, by name, with what else has a place.
+    """Joints of a model under way, which are ``named`` with what else has a place.
 
-    ``on`` are the links with their bodies and places, and ``own`` is the frame of the model.
+    ``on`` are the links with their bodies and places, ``own`` is the frame of the model, on which
+    axes are if they are ``on_model``, and ``placed`` are the frames that are known.
     """
 
-    def __init__(
-        self, model: Model, named: dict[str, Element], on: dict[str, tuple[str, Frame]]
-    ) -> None:
-        self.model, self.named, self.on, self.valid = model, named, on, {**on, **named}
-        self.own, self.on_model, self.placed = Frame(), False, dict[str, Frame]()
+    model: Model
+    named: dict[str, Element]
+    on: dict[str, tuple[str, Frame]]
+    own: Frame = field(default_factory=Frame)
+    on_model: bool = False
+    placed: dict[str, Frame] = field(default_factory=dict)
 
     def read(self) -> None:
         """Read the joints."""
@@ -180,43 +193,18 @@ class Joints:
         """Return the frame of a name."""
         if name in ("", "__model__"):
             return self.own
-        return self.frame(line.known("frame", name, self.valid), above)
+        return self.frame(line.known("frame", name, {**self.on, **self.named}), above)
 
 
-class _Reader(Joints):
-    """A model under way."""
-
-    def __init__(
-        self, model: Model, line: Element, named: dict[str, Element], on_model: bool
-    ) -> None:
-        super().__init__(model, named, {"world": (GROUND, Frame())})
-        self.line, self.own, self.on_model = line, _pose(line.first("pose")), on_model
-
-    def read(self) -> None:
-        """Read the model."""
-        model = self.model
-        for link in self.line.all("link"):
-            self.body(link)
-        super().read()
-        hung = {name for one in model.joints.values() for name in (one.parent, one.child)}
-        if GROUND not in hung and model.bodies:
-            first = next(iter(model.bodies.values()))
-            model.attach(first.name, GROUND, "weld", first.where)
-            model.notes.append(f"No joint leads to the world: '{first.name}' is fixed.")
-        for one in self.line.all("model", "include"):
-            raise one.refuse("is not supported; put its links into the model itself")
-
-    def body(self, link: Element) -> None:
-        """Declare a link as a body."""
-        inertial, name = link.optional("inertial"), link.attribute("name")
-        if inertial.switch("auto", False):
-            raise inertial.refuse("auto: is not supported; give mass and inertia")
-        mass, centre = inertial.inner("mass", 1.0), _pose(inertial.first("pose"))
-        inertia = centre.tensor(six_moments(inertial.optional("inertia").inner, 1.0))
-        frame, weight = self.frame(name, ()), float(link.switch("gravity", True))
-        here = self.model.add(Body, name, link.where, mass, centre.place, inertia, frame)
-        self.model.bodies[here] = replace(self.model.bodies[here], weight=weight)
-        self.on[name] = here, frame
+def _body(model: Model, link: Element, frame: Frame) -> tuple[str, Frame]:
+    """Declare a link as a body; return its name here, and where it is."""
+    inertial = link.optional("inertial")
+    if inertial.switch("auto", False):
+        raise inertial.refuse("auto: is not supported; give mass and inertia")
+    mass, centre = inertial.inner("mass", 1.0), _pose(inertial.first("pose"))
+    inertia = centre.tensor(six_moments(inertial.optional("inertia").inner, 1.0))
+    given, weight = (mass, centre.place, inertia, frame), float(link.switch("gravity", True))
+    return model.add(Body, link.attribute("name"), link.where, *given, weight=weight), frame
 
 
 def resist(

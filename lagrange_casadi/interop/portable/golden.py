@@ -124,7 +124,7 @@ def _in_singles(program: Program, t: Array, p: Array) -> Evaluated:
     evaluated, _ = run(program, t, p, EvaluationMethod("vm"))
     stages, known = compensated(program, "single"), numpy_arithmetic().operations
     singles = Arithmetic(np.float32, {code: _rounded(rule) for code, rule in known.items()})
-    moment, values = ([np.float32(x), np.float32(_rest(x))] for x in (t, p))
+    moment, values = ([np.float32(x), np.float32(remainder(x))] for x in (t, p))
     z: list[Any] = [*np.float32(evaluated.iterated)]
     with np.errstate(all="ignore"):
         counted, *changes = interpret(stages.drive, [moment, [*values[0], *values[1]]], singles)
@@ -141,7 +141,7 @@ def _rounded(rule: Callable[..., Operand]) -> Callable[..., Operand]:
     return lambda *values: np.float32(rule(*values))
 
 
-def _rest(values: Array) -> Array:
+def remainder(values: Array) -> Array:
     """Remainder of values after rounding to single precision."""
     return np.asarray(values - values.astype(np.float32))
 
@@ -176,5 +176,5 @@ def _input(moved: Mapping[str, Array], source: str, precision: Precision) -> Arr
     """The values of an input over instants; of a rest, what rounding its value to single leaves."""
     values = moved[source.removeprefix(REST)]
     if source.startswith(REST):
-        return _rest(values)
+        return remainder(values)
     return np.asarray(values.astype(np.float32).astype(float) if precision == "single" else values)

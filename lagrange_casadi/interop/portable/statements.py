@@ -133,16 +133,16 @@ class Statements:
         if "count" in self.exported.functions:
             yield from calls.call("count")
         if "loops" in self.exported.functions:
-            rule, number = newton_rule(c.precision, None), self.exported.number
-            nz, P = self.exported.sizes["loops"], self._upper
-            most = f"{int(rule['steps'])}, {number(rule['done'])}, {number(rule['lost'])}"
-            yield f"for (k = 0; k < {nz}; ++k) kept[k] = step->model->loops[k];"
-            yield f"if (close_loops(step->model, counted, {most}) == {P}_NOT_CONVERGED) {{"
-            yield f"  for (k = 0; k < {nz}; ++k) step->model->loops[k] = nothing;"
-            yield "}"
+            words = {"nz": self.exported.sizes["loops"], "limits": self._limits(None)}
+            yield template("between_loops.c", **c.words, **words).rstrip()
         yield from calls.call("closing")
         if "loops" in self.exported.functions:
-            yield f"for (k = 0; k < {nz}; ++k) step->model->loops[k] = kept[k];"
+            yield f"for (k = 0; k < {words['nz']}; ++k) step->model->loops[k] = kept[k];"
+
+    def _limits(self, newton: int | None) -> str:
+        """Return the steps, and what done and lost mean, of so many Newton steps, or of all."""
+        rule, number = newton_rule(self.contract.precision, newton), self.exported.number
+        return f"{int(rule['steps'])}, {number(rule['done'])}, {number(rule['lost'])}"
 
     def defaults(self) -> str:
         """Return the constant with the default parameters."""
@@ -155,27 +155,22 @@ class Statements:
     def prepare(self) -> Iterator[str]:
         """Yield what checks parameters, and computes what they alone set."""
         c, sizes, number = self.contract, self.exported.sizes, self.exported.number
-        calls = CalledInC(self.exported.functions)
+        calls, called = CalledInC(self.exported.functions), self.exported.called(PREPARE)
         if c.settings:
-            yield (
-                f"const {c.prefix}_parameters* values = parameters ? parameters :"
-                f" &{c.prefix}_defaults;"
-            )
+            given = f"parameters ? parameters : &{c.prefix}_defaults"
+            yield f"const {c.prefix}_parameters* values = {given};"
         if sizes["sound_of"]:
-            yield f"casadi_real sound_of[{sizes['sound_of']}];"
-            yield "int k;"
-        if self.exported.called(PREPARE):
-            yield "const casadi_real* arg[1];"
-            yield "casadi_real* res[1];"
+            yield f"casadi_real sound_of[{sizes['sound_of']}];\nint k;"
+        if called:
+            yield "const casadi_real* arg[1];\ncasadi_real* res[1];"
         yield "model->seal = 0;"
         for k, m in enumerate(c.settings):
             value = f"values->{m.name}"
-            within = [f"is_finite({value})"]
-            within += [f"{value} >= {number(m.low)}"] if math.isfinite(m.low) else []
-            within += [f"{value} <= {number(m.high)}"] if math.isfinite(m.high) else []
-            yield f"if (!({' && '.join(within)})) return {self._upper}_BAD_PARAMETER;"
+            ends = self._ends(value, (">=", m.low), ("<=", m.high))
+            within = " && ".join([f"is_finite({value})", *ends])
+            yield f"if (!({within})) return {self._upper}_BAD_PARAMETER;"
             yield f"model->parameters[{k}] = {value};"
-        for name in self.exported.called(PREPARE):
+        for name in called:
             yield from calls.call(name)
             if name == "sound":
                 yield from self._refused_parts()
@@ -188,63 +183,49 @@ class Statements:
         ends = (0, self.exported.positive, self.exported.sizes["sound_of"])
         for (start, stop), test in zip(itertools.pairwise(ends), (">", ">="), strict=True):
             if stop > start:
-                yield f"for (k = {start}; k < {stop}; ++k) {{"
-                yield (
-                    f"  if (!(sound_of[k] {test} 0 && is_finite(sound_of[k]))) return"
-                    f" {self.contract.words['P']}_BAD_PARAMETER;"
-                )
-                yield "}"
+                words = {"start": start, "stop": stop, "test": test}
+                yield template("sound.c", **self.contract.words, **words).rstrip()
 
     def motion(self) -> Iterator[str]:
         """Yield what fills the inputs with the motion of the drives at a time."""
-        c, drives = self.contract, len(self.contract.drives)
-        calls = CalledInC(self.exported.functions)
-        at = ["time", "time_rest"] if c.rests else ["time"]
-        ends = self.exported.functions.get("beyond")
-        yield (
-            f"casadi_real at[{len(at)}], d[{len(at) * drives}], rate[{drives}],"
-            f" acceleration[{drives}];"
-        )
-        yield "const casadi_real* arg[2];"
-        yield "casadi_real* res[3];"
-        if ends is not None:
+        c, functions, drives = self.contract, self.exported.functions, len(self.contract.drives)
+        calls, at = CalledInC(functions), ["time", "time_rest"] if c.rests else ["time"]
+        vectors = f"at[{len(at)}], d[{len(at) * drives}], rate[{drives}], acceleration[{drives}]"
+        yield f"casadi_real {vectors};\nconst casadi_real* arg[2];\ncasadi_real* res[3];"
+        if (ends := functions.get("beyond")) is not None:
             yield f"casadi_real far[{ends.size1_out(0)}];"
-        yield from self._refused("model->seal != SEAL", "NOT_PREPARED")
-        yield from self._refused(self._untimely(), "BAD_TIME")
-        yield from (f"at[{k}] = {time};" for k, time in enumerate(at))
+        yield self._refused("model->seal != SEAL", "NOT_PREPARED")
+        time, (low, high) = " + ".join(at), self.exported.program.laws.span
+        untimely = [f"!is_finite({time})", *self._ends(time, ("<", low), (">", high))]
+        yield self._refused(" || ".join(untimely), "BAD_TIME")
+        yield from (f"at[{k}] = {one};" for k, one in enumerate(at))
         yield from calls.call("law")
         if ends is not None:
-            limit = self.exported.number(BEYOND[self.contract.precision])
             yield from calls.call("beyond")
-            yield from self._refused(
-                " || ".join(f"!(far[{k}] <= {limit})" for k in range(ends.size1_out(0))), "BAD_TIME"
-            )
+            limit = self.exported.number(BEYOND[c.precision])
+            far = (f"!(far[{k}] <= {limit})" for k in range(ends.size1_out(0)))
+            yield self._refused(" || ".join(far), "BAD_TIME")
         moment = (
             value
-            for i, time in enumerate(at)
-            for value in (time, *(f"d[{i * drives + k}]" for k in range(drives)))
+            for i, one in enumerate(at)
+            for value in (one, *(f"d[{i * drives + k}]" for k in range(drives)))
         )
         values = dict(zip(c.moment, moment, strict=True))
         for vector, members in zip(("rate", "acceleration"), c.motion[1:], strict=True):
             values |= {member: f"{vector}[{k}]" for k, member in enumerate(members)}
         yield from (f"inputs->{m.name} = {values[m.name]};" for m in c.inputs)
-        yield f"return {self.contract.words['P']}_OK;"
+        yield f"return {self._upper}_OK;"
 
-    def _refused(self, condition: str, status: str) -> Iterator[str]:
-        """Give nothing but a status, where a condition holds."""
-        yield f"if ({condition}) {{"
-        yield from (f"  inputs->{m.name} = nothing;" for m in self.contract.inputs)
-        yield f"  return {self.contract.words['P']}_{status};"
-        yield "}"
+    def _refused(self, condition: str, status: str) -> str:
+        """Return what gives nothing but a status, where a condition holds."""
+        nothing = indented(f"inputs->{m.name} = nothing;" for m in self.contract.inputs)
+        return f"if ({condition}) {{\n{nothing}\n  return {self._upper}_{status};\n}}"
 
-    def _untimely(self) -> str:
-        """Test that a time is outside the motion."""
-        moment = "time + time_rest" if self.contract.rests else "time"
-        low, high = self.exported.program.laws.span
-        bad = [f"!is_finite({moment})"]
-        bad += [f"{moment} < {self.exported.number(low)}"] if math.isfinite(low) else []
-        bad += [f"{moment} > {self.exported.number(high)}"] if math.isfinite(high) else []
-        return " || ".join(bad)
+    def _ends(self, value: str, *ends: tuple[str, float]) -> Iterator[str]:
+        """Yield how a value is compared with those ends of a range that are finite."""
+        for sign, end in ends:
+            if math.isfinite(end):
+                yield f"{value} {sign} {self.exported.number(end)}"
 
     def instant(self) -> Iterator[str]:
         """Yield what computes the columns of an instant, and refuses those that break a rule."""
@@ -258,8 +239,7 @@ class Statements:
         yield f"casadi_real rate[{drives}], acceleration[{drives}];"
         if table is not None:
             yield f"casadi_real drive[{sizes['evaluated']}];"
-        yield "const casadi_real* arg[5];"
-        yield "casadi_real* res[1];"
+        yield "const casadi_real* arg[5];\ncasadi_real* res[1];"
         if "status" in called:
             yield "casadi_real iterated = 0, rule;"
         if "loops" in called:
@@ -268,8 +248,7 @@ class Statements:
         for k, member in enumerate(c.moment if "count" in called else ()):
             yield f"moment[{k}] = {f'inputs->{member}' if member else '0'};"
         for k, (_, rate, acceleration) in enumerate(zip(*c.motion, strict=True)):
-            yield f"rate[{k}] = inputs->{rate};"
-            yield f"acceleration[{k}] = inputs->{acceleration};"
+            yield f"rate[{k}] = inputs->{rate};\nacceleration[{k}] = inputs->{acceleration};"
         given = " + ".join(f"inputs->{m.name}" for m in c.inputs)
         yield f"if (!is_finite({given})) return {P}_BAD_INPUT;"
         for name in called:
@@ -281,19 +260,12 @@ class Statements:
         yield f"if (!all_finite(y, {len(self.exported.columns)})) return {P}_NOT_FINITE;"
 
     def _close(self) -> Iterator[str]:
-        P, rule, number = self._upper, self.exported.rule, self.exported.number
-        done, lost, most = number(rule["done"]), number(rule["lost"]), int(rule["steps"])
-        if self.exported.newton is not None:
-            full = newton_rule(self.contract.precision, None)
-            limits = f"{int(full['steps'])}, {number(full['done'])}, {number(full['lost'])}"
-            yield (
-                f"if (!model->closed && close_loops(model, counted, {limits}) =="
-                f" {P}_NOT_CONVERGED) {{"
-            )
-            yield f"  return {P}_NOT_CONVERGED;"
-            yield "}"
-            yield "model->closed = 1;"
-        yield f"closed = close_loops(model, counted, {most}, {done}, {lost});"
+        """Yield what closes loops: by all steps that these want, or first so and then by a few."""
+        P, newton = self._upper, self.exported.newton
+        if newton is not None:
+            yield template("close_first.c", P=P, limits=self._limits(None)).rstrip()
+        yield f"closed = close_loops(model, counted, {self._limits(newton)});"
         yield f"if (closed == {P}_NOT_CONVERGED) return closed;"
-        if self.exported.newton is None:
-            yield f"if (closed == {P}_SLOW) iterated = {number(float(Status.SLOW))};"
+        if newton is None:
+            slow = self.exported.number(float(Status.SLOW))
+            yield f"if (closed == {P}_SLOW) iterated = {slow};"

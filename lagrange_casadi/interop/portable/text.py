@@ -80,7 +80,7 @@ def number_rows(table: Iterable[Iterable[float]]) -> str:
 
 def indented(lines: Iterable[str]) -> str:
     """Lines of a body."""
-    return "\n".join(f"  {line}" for line in lines)
+    return textwrap.indent("\n".join(lines), "  ")
 
 
 def filled(text: str, before: str = "") -> str:
