@@ -2,7 +2,8 @@
 tables to choose from.
 """
 
-from .model.fitted import Pin, Plain, Rolling, fit
+from .model.elements.fitting import fit
+from .model.fitted import Pin, Plain, Rolling
 from .results.strength.bearings import bending_of_pin, equivalent_load, rated_hours
 from .results.strength.rolling_bearings import (
     RollingBearing,

@@ -10,7 +10,8 @@ from ..base.arrays import Expression
 from ..base.frames import Velocities
 from ..base.vectors import AXES, ZERO, cross, dot, minus, nil, plus, times
 from ..model.joints import Axis, Joint
-from ..model.parts import Force, Friction, LineLoad, Link, Load, Point, Spring, Torque, Vector
+from ..model.loads import Force, Friction, LineLoad, Load, Spring, Torque
+from ..model.parts import Link, Point, Vector
 from .growing import Grown
 from .joints import carried, reaction, residual_motion
 from .multibody import Applied, LoopEquations, RowGraph

@@ -20,12 +20,13 @@ from ..base.frames import Carried, Frame, Velocities
 from ..base.scalars import column
 from ..base.vectors import AXES, ZERO, dot, minus, nil, times
 from ..errors import DeclarationError
+from ..model.constraints import Constraint, Row
 from ..model.corners import smooth_constraint
 from ..model.density import Density
 from ..model.joints import Axis, Joint
 from ..model.mass_properties import second_moments
 from ..model.mechanism import Mechanism
-from ..model.parts import Constraint, Link, PointMass, RigidMass, Row, Vector
+from ..model.parts import Link, PointMass, RigidMass, Vector
 from .applied import applied_by, held_by, push, work
 from .growing import Grown, coordinates_of
 from .joints import loop_residuals

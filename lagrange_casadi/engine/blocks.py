@@ -24,8 +24,8 @@ from .legs import solve_leg
 from .loops import ClosedForm, solve_loop, solves
 from .multibody import Coordinate, LoopEquations, Multibody
 from .released_loops import ReleasedLoops
-from .residuals import extent, units
 from .sampling import Sampling, drawn
+from .sizes import extent, units
 from .two_force_links import idle_spins
 
 _ABSENT = 1e-13

@@ -21,8 +21,8 @@ what is between a and b is a dead centre within rounding.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, TypeAlias
+from collections.abc import Callable, Iterable
+from typing import TypeAlias
 
 import casadi as ca
 import numpy as np
@@ -30,9 +30,8 @@ import numpy.typing as npt
 
 from ..base.arrays import Array, Expression
 from ..base.scalars import graph, inputs_of
-
-if TYPE_CHECKING:
-    from .program import Program
+from .iteration import NewtonLoop
+from .verdicts import Bound
 
 CLOSURES = ("CLOSURE", "BRANCH")
 """Bounds that come to zero at a dead centre, by what they are seen beside: of a ``BRANCH`` the
@@ -56,25 +55,27 @@ Path: TypeAlias = Callable[[Array], tuple[Array, Array, Array]]
 """
 
 
-def closing_of(program: Program) -> ca.Function:
+def closing_of(
+    instant: ca.Function, bounds: Iterable[Bound], newton: NewtonLoop | None
+) -> ca.Function:
     """The function ``closing(t, d, d_rate, d_acceleration, z, p) -> (squares, rates, slopes)`` of
-    the m bounds of :data:`CLOSURES`: C (m,), C' [1/s] (m,), and dC/d(t, d), (m (1 + drives),),
+    the m ``bounds`` of :data:`CLOSURES`: C (m,), C' [1/s] (m,), and dC/d(t, d), (m (1 + drives),),
     those of the first bound first.
     """
-    given = inputs_of(program.instant)
+    given = inputs_of(instant)
     t, d, rate, acceleration, z, p = given.values()
-    out, u = program.instant(*given.values()), ca.vertcat(t, d)
+    out, u = instant(*given.values()), ca.vertcat(t, d)
     squares: Expression = ca.vertcat(
         *(
             out[bound.column] ** 2 if bound.beside == "BRANCH" else out[bound.column]
-            for bound in program.bounds
+            for bound in bounds
             if bound.beside in CLOSURES
         )
     )
     slopes = ca.jacobian(squares, u)
-    if program.newton is not None:
+    if newton is not None:
         # At a solution the correction's slopes are those of the solution itself.
-        slopes += ca.jacobian(squares, z) @ ca.jacobian(program.newton.step(z, t, d, p)[0], u)
+        slopes += ca.jacobian(squares, z) @ ca.jacobian(newton.step(z, t, d, p)[0], u)
     rates = slopes @ ca.vertcat(1, rate) + ca.jtimes(squares, rate, acceleration)
     return graph("closing", given, squares=squares, rates=rates, slopes=ca.vec(slopes.T))
 

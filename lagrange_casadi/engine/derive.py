@@ -24,8 +24,7 @@ from ..errors import AssemblyError, DeclarationError, MobilityError, PostureErro
 from ..model.density import Density
 from ..model.end_conditions import effective_lengths, ends_of
 from ..model.limits import END, FITS, MISSES
-from ..model.parts import Link
-from ..model.results import Asked
+from ..model.parts import Asked, Link
 from ..model.scene import STRENGTH, Scene, Wanted
 from ..model.wanted_names import among
 from .deflections import deflections

@@ -17,8 +17,9 @@ from ..base.arrays import Expression
 from ..base.quantities import Column, Output
 from ..base.tables import table_of
 from ..model.density import Density, shifted
+from ..model.loads import LineLoad
 from ..model.mechanism import Mechanism
-from ..model.parts import LineLoad, Link, Vector
+from ..model.parts import Link, Vector
 from .multibody import Multibody
 
 

@@ -21,7 +21,7 @@ from ..base.quantities import Output
 from ..base.scalars import graph
 from ..base.symbolic import Graphs, symbolic
 from ..errors import DeclarationError
-from ..model.parts import Friction
+from ..model.loads import Friction
 from ..model.scene import Scene
 from ..model.torques import Law, torque_of
 from .derive import compile_scene

@@ -20,7 +20,7 @@ from ..model.mechanism import Mechanism
 from ..model.parts import Link, Point, Vector
 from .joints import turning_axes
 from .multibody import Coordinate, Turned, motion_along, own_coordinate
-from .residuals import reach
+from .sizes import reach
 from .spherical import SphericalCoordinates
 from .tree import Branch, Tree
 from .two_force_links import TwoForceLink, two_force_frame

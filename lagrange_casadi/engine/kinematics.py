@@ -28,9 +28,10 @@ from .linear import LinearSystem
 from .loops import ClosedForm
 from .multibody import Coordinate, Multibody
 from .postures import Undecided, directions, is_angle, measured
-from .residuals import lengths, loop_residual, reach, redundancy_residual
+from .residuals import lengths, loop_residual, redundancy_residual
 from .revolutions import Guide
 from .screws import signed_volume
+from .sizes import reach
 from .spherical import SphericalCoordinates
 from .substitution import Expressions, Numbers
 

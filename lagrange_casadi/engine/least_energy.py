@@ -37,8 +37,8 @@ from ..model.parts import Link
 from ..model.scene import Wanted
 from ..model.scene_arguments import Elastic
 from .indeterminate import Forces
-from .residuals import extent
 from .section_function import Place, Section
+from .sizes import extent
 from .strains import Moduli, moduli_of, resultants
 from .strength import Loaded
 from .stress import FORCES

@@ -49,7 +49,7 @@ from .meshes import braking, pressing_apart, transmissions_of
 from .multibody import Multibody, own_coordinate, released_forces
 from .multipliers import multipliers_of
 from .pressing import frictions_of, joint_friction
-from .residuals import reach
+from .sizes import reach
 
 
 @dataclass(frozen=True, eq=False)

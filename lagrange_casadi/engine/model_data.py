@@ -26,14 +26,15 @@ from ..model.corners import Corners
 from ..model.density import Density
 from ..model.description import Description
 from ..model.laws import Laws
+from ..model.loads import LineLoad
 from ..model.mass_properties import ALL
-from ..model.parts import LineLoad, Link, Parameter
+from ..model.parts import Link, Parameter
 from ..model.scene import Scene
 from ..model.stated import Stated
 from ..model.times import Timing
 from ..model.validity import Margins
-from .residuals import extent
 from .section_function import Section
+from .sizes import extent
 from .tree import span
 
 

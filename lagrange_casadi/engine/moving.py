@@ -22,7 +22,6 @@ from ..model.laws import Laws
 from ..model.limits import parameters_note
 from ..model.mechanism import Mechanism
 from ..model.scene import Scene, Wanted
-from ..model.spatial import reference_posture
 from . import kinematics
 from .assembly import assemble
 from .drives import pushed
@@ -178,9 +177,9 @@ def solved_motion(scene: Scene, body: Multibody) -> tuple[Laws, Start, kinematic
     """The laws of a scene's driven coordinates, where its motion starts, and its loops solved."""
     laws = scene.prescribed.only([c.name for c in body.coordinates if c.driven])
     values = list(scene.mechanism.values(scene.assembly).values())
-    note = parameters_note(scene.mechanism, scene.assembly)
+    note = parameters_note(scene.mechanism.parameters, scene.assembly)
     start = Start(laws.motion, scene.span, values, note)
-    posture = reference_posture(scene.mechanism) | dict(scene.posture)
+    posture = scene.mechanism.rough | dict(scene.posture)
     return laws, start, kinematics.solve(body, posture, start)
 
 

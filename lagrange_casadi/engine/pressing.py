@@ -12,12 +12,13 @@ from ..base.arrays import Expression
 from ..base.frames import Frame
 from ..base.vectors import dot, minus, norm, times
 from ..model.joints import Joint
+from ..model.loads import Friction
 from ..model.mechanism import Mechanism
 from ..model.meshes import Loss, Transmission
-from ..model.parts import Friction, Vector
+from ..model.parts import Vector
 from .growing import Grown
 from .multibody import Multibody
-from .residuals import reach
+from .sizes import reach
 
 _REST = 1e-12
 """Fraction of the fastest motion in the mechanism below which a rate is that of rest."""

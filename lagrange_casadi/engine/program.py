@@ -156,7 +156,7 @@ class Program(Graphs):
         """The function ``closing(t, d, d_rate, d_acceleration, z, p) -> (squares, rates, slopes)``
         of what is zero at dead centres, as ``closing_of`` returns it.
         """
-        return closing_of(self)
+        return closing_of(self.instant, self.bounds, self.newton)
 
     def seen(self, constraint: str, out: Array) -> Array:
         """Symbols, (..., symbols, t), of a constraint that may have kinks, from columns ``out``

@@ -15,7 +15,7 @@ from ..base.arrays import Array, Expression
 from ..base.scalars import column
 from .iteration import place_roughly
 from .multibody import Coordinate, Multibody
-from .residuals import extent, units
+from .sizes import extent, units
 from .spherical import axes_of, turn
 from .substitution import Numbers
 

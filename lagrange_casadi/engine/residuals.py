@@ -1,23 +1,15 @@
-"""Residuals of loops' equations after their solution, and the length relative to which a residual
-is large.
-"""
+"""Residuals of loops' equations after their solution."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import casadi as ca
-import numpy as np
 
-from ..base.arrays import Array, Expression
+from ..base.arrays import Expression
 from ..base.scalars import column
-from ..base.symbolic import symbolic
-from ..model.mechanism import Mechanism
+from .blocks import Block, Equation
 from .joints import held_directions, off
-from .multibody import LoopEquations, Multibody
-
-if TYPE_CHECKING:
-    from .blocks import Block, Equation
+from .multibody import Multibody
+from .sizes import reach
 
 
 def loop_residual(multibody: Multibody, block: Block, length: ca.SX) -> ca.SX:
@@ -64,38 +56,6 @@ def redundancy_residual(multibody: Multibody, block: Block) -> Expression:
         if equation.aligns:
             found = ca.fmax(found, _turned(multibody, equation))
     return found
-
-
-def reach(mechanism: Mechanism) -> ca.SX:
-    """All links end to end [m], or one metre where there is none,
-    as an expression in parameters.
-    """
-    return (
-        sum((ca.SX(link.length) for link in mechanism.links.values()), ca.SX(0))
-        if mechanism.links
-        else ca.SX(1)
-    )
-
-
-@symbolic
-def extent(mechanism: Mechanism) -> ca.SX:
-    """The links end to end, and how far from the origin they are joined to the ground [m]: a gap is
-    small or large beside it.
-    """
-    points = (point for joint in mechanism.joints.values() for point in (joint.parent, joint.child))
-    places = [
-        ca.fabs(ca.SX(place))
-        for point in points
-        if point.body is mechanism.ground
-        for place in point.place
-    ]
-    return reach(mechanism) + (ca.mmax(ca.vertcat(*places)) if places else 0)
-
-
-def units(loop: LoopEquations, size: float) -> Array:
-    """Units of a loop's residuals: the mechanism's size [m], or 1 for directions."""
-    held = held_directions(loop.joint) if loop.joint is not None else 0
-    return np.array([size] * (loop.residual.numel() - held) + [1.0] * held)
 
 
 def _turned(multibody: Multibody, equation: Equation) -> Expression:

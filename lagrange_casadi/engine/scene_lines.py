@@ -10,11 +10,11 @@ import numpy as np
 
 from ..base.arrays import Expression
 from ..base.lookups import PREFIX
+from ..model.constraints import Constraint
 from ..model.laws import motion_function
+from ..model.loads import Force, Friction, LineLoad, Load, Torque
 from ..model.motion import Motion
-from ..model.parts import Constraint, Force, Friction, LineLoad, Load, Torque
 from ..model.scene import Scene
-from ..model.spatial import reference_posture
 from .kinematics import describe_coordinate
 
 _LONG, _SAMPLES, _MOST_JUMPS = 200, 1001, 8
@@ -53,7 +53,7 @@ def scene_lines(scene: Scene) -> Iterator[str]:
         describe_coordinate(name, "slide" if name in slides else "angle", rough)
         for name, rough in scene.posture.items()
     ]
-    if any(name not in scene.posture for name in reference_posture(mechanism)):
+    if any(name not in scene.posture for name in mechanism.rough):
         postures.append(
             f"{'else ' if postures else ''}the reference posture, in which the parts are declared"
         )

@@ -20,8 +20,8 @@ from .blocks import Block
 from .joints import turning_axes
 from .linear import LinearSystem
 from .multibody import Multibody
-from .residuals import reach
 from .sampling import Sampling
+from .sizes import reach
 from .substitution import Numbers
 
 _NOTHING = 1e-14

@@ -25,8 +25,9 @@ from ..base.vectors import ZERO, cross, dot, minus, nil, plus, times
 from ..model.density import Density
 from ..model.joints import Joint
 from ..model.limits import parameter_values
+from ..model.loads import Friction, Torque
 from ..model.mechanism import Mechanism
-from ..model.parts import Body, Friction, Link, Point, Torque, Vector
+from ..model.parts import Body, Link, Point, Vector
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,11 +16,11 @@ import numpy.typing as npt
 
 from ..base.arrays import Array
 from ..base.symbolic import Graphs, symbolic
+from .constraints import Constraint
 from .kinks import Smooth
 from .laws import law_expression
 from .mechanism import Mechanism
 from .motion import Motion
-from .parts import Constraint
 from .scene import Scene
 
 _SAMPLED = 4001

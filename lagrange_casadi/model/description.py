@@ -27,9 +27,10 @@ from .density import Density, NumericDensity
 from .fitted import Fittings, Pin, Plain, Rolling
 from .guiding import kind_of
 from .joints import Joint, JointKind
+from .loads import Friction, Load
 from .mass_properties import mass_of
 from .mechanism import Mechanism
-from .parts import Friction, Link, Load, Point, PointMass, RigidMass
+from .parts import Link, Point, PointMass, RigidMass
 
 Triple: TypeAlias = tuple[float, float, float]
 """A vector."""

@@ -7,7 +7,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import casadi as ca
 
@@ -16,10 +15,8 @@ from ..base.vectors import AXES, ZERO, Vector, cross, dot, minus, norm, times
 from ..errors import DeclarationError
 from .joints import Triad
 from .limits import ROUNDED
+from .ownership import Ownership
 from .parts import Body, Expression, Link, Point
-
-if TYPE_CHECKING:
-    from .ownership import Ownership
 
 Checked = Callable[..., Expression]
 """Takes what is said of an expression, the expression, and its unit if a text may state it."""

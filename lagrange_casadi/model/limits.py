@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import casadi as ca
 
@@ -16,9 +15,6 @@ from ..errors import DeclarationError, ParameterError, UnknownNameError
 from .density import Density
 from .joints import Joint
 from .parts import Body, Expression, Ground, Link, Parameter, Point
-
-if TYPE_CHECKING:
-    from .mechanism import Mechanism
 
 END: dict[Precision, float] = {"double": 1e-12, "single": 1e-6}
 """Fraction of a link's length within which a point is at the link's end."""
@@ -141,12 +137,12 @@ def no_sections(name: str, *, link: bool, links: Iterable[str]) -> str:
     return f"'{name}' is not a link and has no sections; links: {', '.join(links)}"
 
 
-def parameters_note(mechanism: Mechanism, values: Mapping[str, float]) -> str:
-    """Parameters of a result, to end a message with: the defaults, or others; empty if there are
-    none.
+def parameters_note(parameters: Mapping[str, Parameter], values: Mapping[str, float]) -> str:
+    """Values of parameters of a result, to end a message with: the defaults, or others; empty if
+    there are no parameters.
     """
     return values_note(
-        values or {name: parameter.default for name, parameter in mechanism.parameters.items()},
+        values or {name: parameter.default for name, parameter in parameters.items()},
         not values,
     )
 

@@ -120,8 +120,6 @@ def mass_of(body: Link | PointMass) -> ca.SX:
     """The mass of a link or a point mass [kg]."""
     if isinstance(body, PointMass):
         return ca.SX(body.mass)
-    assert isinstance(body, Link)
     if isinstance(body.mass, Density):
         return ca.SX(body.mass.tails(0.0, body.length)[0])
-    assert isinstance(body.mass, RigidMass)
     return ca.SX(body.mass.mass)

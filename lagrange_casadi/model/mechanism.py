@@ -10,57 +10,36 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import Any, cast
+from dataclasses import dataclass
 
 import casadi as ca
 
 from ..base.arguments import public
 from ..base.brief import listed
-from ..base.scalars import column
-from ..base.symbolic import Graphs, symbolic
+from ..base.symbolic import symbolic
 from ..base.units import Number, quantity
 from ..errors import DeclarationError
 from .beams.beam import Beam
+from .constraints import Constraint, Row
+from .declaration import Declaration
 from .density import Density
 from .directions import in_plane
-from .expressions import check_line, check_name, value_of
-from .fitted import Fittings
-from .joints import Axis, Joint, JointKind, check_ends
+from .expressions import check_line
+from .joints import Joint, JointKind, check_ends
 from .limits import check_connected, parameter_values
-from .loads import Between, LoadDensity, friction, line_load
+from .load_arguments import Between, LoadDensity, friction, line_load
+from .loads import Force, Friction, LineLoad, Spring, Torque
 from .mass_properties import Rigid, beam_of, mass_properties_of
-from .measures import Measures
 from .ownership import Ownership
-from .parts import (
-    Body,
-    Constraint,
-    Expression,
-    Force,
-    Friction,
-    Ground,
-    LineLoad,
-    Link,
-    Load,
-    Outline,
-    Parameter,
-    Path,
-    Point,
-    PointMass,
-    Roller,
-    Row,
-    Spring,
-    Torque,
-    Vector,
-)
-from .results import Asked, Results, UserOutput
+from .parts import Body, Expression, Link, Parameter, Path, Point, PointMass, UserOutput, Vector
+from .results import Results
 from .validity import demands
 
 
 @public
 @symbolic
 @dataclass(eq=False)
-class Mechanism(Graphs):
+class Mechanism(Declaration):
     """A planar mechanism under declaration: links and point masses in the x-y plane, joined to each
     other and to the ground.
 
@@ -74,65 +53,10 @@ class Mechanism(Graphs):
     made. :class:`.Joint` says what joints hold.
     """
 
-    name: str
-    parameters: dict[str, Parameter] = field(default_factory=dict, init=False)
-    bodies: dict[str, Body] = field(default_factory=dict, init=False)
-    joints: dict[str, Joint] = field(default_factory=dict, init=False)
-    loads: dict[str, Load] = field(default_factory=dict, init=False)
-    constraints: dict[str, Constraint] = field(default_factory=dict, init=False)
-    rows: dict[str, Row] = field(default_factory=dict, init=False)
-    outputs: dict[str, UserOutput] = field(default_factory=dict, init=False)
-    paths: dict[str, Path] = field(default_factory=dict, init=False)
-    fitted: dict[str, Fittings] = field(default_factory=dict, init=False)
-    turning: dict[str, str] = field(default_factory=dict, init=False)
-    rough: dict[str, float] = field(default_factory=dict, init=False)
-    snapped: dict[str, tuple[float, float]] = field(default_factory=dict, init=False)
-    rounding: float = field(default=0.0, init=False)
-    outlines: dict[str, list[Outline]] = field(default_factory=dict, init=False)
-    rollers: dict[str, Roller] = field(default_factory=dict, init=False)
-    gravity: Vector = field(default=(0.0, -9.81, 0.0), init=False)
-    frozen: bool = field(default=False, init=False)
-    time: Any = field(default_factory=lambda: ca.SX.sym("t"), init=False)
-    measures: Measures = field(default_factory=Measures, init=False)
-    asked: list[Asked] = field(default_factory=list, init=False)
-
-    def __post_init__(self) -> None:
-        check_name("mechanism", self.name)
-        self.bodies["ground"] = Ground("ground")
-
     def __repr__(self) -> str:
         bodies = listed((body.name for body in self.moving), "no body yet")
         joints = listed(self.joints, "none yet")
         return f"<{type(self).__name__} {self.name}: {bodies}; joints: {joints}>"
-
-    @property
-    def ground(self) -> Ground:
-        """The fixed frame; ``ground.at(x, y)`` is a point of it, ``ground`` itself its origin."""
-        return cast(Ground, self.bodies["ground"])
-
-    @property
-    def moving(self) -> tuple[Link | PointMass, ...]:
-        """The links and point masses, in the order of declaration."""
-        return tuple(body for body in self.bodies.values() if isinstance(body, Link | PointMass))
-
-    @property
-    def links(self) -> dict[str, Link]:
-        """The links by name."""
-        return {name: body for name, body in self.bodies.items() if isinstance(body, Link)}
-
-    @property
-    def coordinates(self) -> dict[str, tuple[Joint, Axis]]:
-        """The coordinates by name, as the joint and its axis: ``JOINT``, or ``JOINT:NAME`` where a
-        joint has several.
-        """
-        return {
-            axis.coordinate: (joint, axis) for joint in self.joints.values() for axis in joint.axes
-        }
-
-    @property
-    def space(self) -> bool:
-        """True if it lies in space, not in a plane."""
-        return False
 
     @property
     def ownership(self) -> Ownership:
@@ -142,12 +66,7 @@ class Mechanism(Graphs):
     @property
     def results(self) -> Results:
         """The symbols of accelerations and forces, for :meth:`output`."""
-        return Results(self)
-
-    @property
-    def symbols(self) -> Expression:
-        """The parameters' symbols as one column, in the order of declaration."""
-        return column(parameter.symbol for parameter in self.parameters.values())
+        return Results(self.ownership)
 
     def parameter(
         self,
@@ -1056,30 +975,6 @@ class Mechanism(Graphs):
         values = parameter_values(self.parameters, overrides)
         demands(self).check(list(values.values()), lambda e: self.number(e, values))
         return values
-
-    def number(self, expression: Expression, values: Mapping[str, float]) -> float:
-        """Return the value of an expression of parameters.
-
-        Parameters
-        ----------
-        expression : float or casadi.SX
-            The expression.
-        values : mapping
-            Values of all parameters by name, as of :meth:`values`.
-
-        Returns
-        -------
-        float
-            Its value.
-
-        Raises
-        ------
-        DeclarationError
-            If it has other symbols, or a parameter has no value.
-        """
-        return value_of(
-            expression, {name: one.symbol for name, one in self.parameters.items()}, values
-        )
 
     def _joint(
         self,

@@ -381,9 +381,9 @@ def _timed(
     named = part.law if part.law is not None else "polynomial_345"
     standard_law = part.law is None or part.law in ("trapezoid", "s_curve")
     if standard_law and given == {"speed", "acceleration"} and part.law != "s_curve":
-        law = trapezoid_within(by, limits)
+        law = trapezoid_within(by, **limits.given)
     elif standard_law and given == {"speed", "acceleration", "jerk"} and part.law != "trapezoid":
-        law = s_curve_within(by, limits)
+        law = s_curve_within(by, **limits.given)
     else:
         law = rest_law(what, named)
     if "jerk" in given and isinstance(law.jerk, float) and math.isinf(law.jerk):

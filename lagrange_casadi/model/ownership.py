@@ -6,29 +6,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, get_args
+from typing import get_args
 
 from ..errors import DeclarationError
+from .constraints import Constraint, Row
+from .declaration import Declaration
 from .expressions import check_name, scalar
 from .joints import Axis, Joint
 from .limits import along_link, on_link
-from .parts import (
-    Body,
-    Constraint,
-    Expression,
-    Ground,
-    Link,
-    Load,
-    Parameter,
-    Path,
-    Point,
-    PointMass,
-    Row,
-)
-from .results import UserOutput
-
-if TYPE_CHECKING:
-    from .mechanism import Mechanism
+from .loads import Load
+from .parts import Body, Expression, Ground, Link, Parameter, Path, Point, PointMass, UserOutput
 
 _WORDS: dict[type[object], str] = dict.fromkeys(get_args(Load), "a load") | {
     Constraint: "a constraint",
@@ -47,12 +34,12 @@ Part = Parameter | Body | Joint | Load | Constraint | Row | UserOutput | Path
 
 @dataclass(frozen=True, eq=False)
 class Ownership:
-    """Parts and names of a mechanism.
+    """Parts and names of what is ``declared`` of a mechanism.
 
     Methods return what they were given, and raise :class:`.DeclarationError` for anything else.
     """
 
-    mechanism: Mechanism
+    declared: Declaration
 
     def point(self, what: str, place: Body | Point) -> Point:
         """A point of a body: of a link its base, of any other its origin."""
@@ -65,14 +52,14 @@ class Ownership:
                 f"{what}: expected a link, a point mass, the ground or a point of one, got"
                 f" {place!r}"
             )
-        if self.mechanism.bodies.get(point.body.name) is not point.body:
+        if self.declared.bodies.get(point.body.name) is not point.body:
             raise DeclarationError(
                 f"{what}: '{point.body.name}' belongs to another mechanism than"
-                f" '{self.mechanism.name}'"
+                f" '{self.declared.name}'"
             )
         place_of = f"{what}: place on '{point.body.name}'"
         x, y, z = (self.expression(place_of, number, "m") for number in point.place)
-        if not self.mechanism.space and not (isinstance(z, float) and z == 0.0):
+        if not self.declared.space and not (isinstance(z, float) and z == 0.0):
             raise DeclarationError(
                 f"{place_of}: a planar mechanism has no z, got {z}; use SpatialMechanism for one"
                 " in space"
@@ -91,16 +78,16 @@ class Ownership:
         """Note by how much an axis [rad] or a place [m] of a part is taken as the exact one that a
         drawing rounded.
         """
-        if (angle or distance) and not self.mechanism.frozen:
-            most = self.mechanism.snapped.get(what, (0.0, 0.0))
-            self.mechanism.snapped[what] = max(most[0], angle), max(most[1], distance)
+        if (angle or distance) and not self.declared.frozen:
+            most = self.declared.snapped.get(what, (0.0, 0.0))
+            self.declared.snapped[what] = max(most[0], angle), max(most[1], distance)
 
     def joint(self, joint: Joint) -> Joint:
         """A joint."""
-        joints = self.mechanism.joints
+        joints = self.declared.joints
         if not isinstance(joint, Joint) or joints.get(joint.name) is not joint:
             raise DeclarationError(
-                f"expected a joint of mechanism '{self.mechanism.name}', got {joint!r}; joints:"
+                f"expected a joint of mechanism '{self.declared.name}', got {joint!r}; joints:"
                 f" {', '.join(joints)}"
             )
         return joint
@@ -133,28 +120,28 @@ class Ownership:
 
         A number in a ``unit`` may be a text, as ``"100 mm"``.
         """
-        mechanism = self.mechanism
-        symbols = [parameter.symbol for parameter in mechanism.parameters.values()]
-        symbols += [mechanism.time, *mechanism.measures.symbols] if moving else []
+        declared = self.declared
+        symbols = [parameter.symbol for parameter in declared.parameters.values()]
+        symbols += [declared.time, *declared.measures.symbols] if moving else []
         symbols += (
-            [*mechanism.measures.accelerations, *(asked.symbol for asked in mechanism.asked)]
+            [*declared.measures.accelerations, *(asked.symbol for asked in declared.asked)]
             if found
             else []
         )
         allowed = "parameter, time, coordinate or rate" if moving else "parameter"
         allowed = f"{allowed.replace(' or rate', ', rate')} or result" if found else allowed
-        return scalar(what, value, symbols, f"{allowed} of mechanism '{mechanism.name}'", unit)
+        return scalar(what, value, symbols, f"{allowed} of mechanism '{declared.name}'", unit)
 
     def at_defaults(self, expression: Expression) -> float:
         """The value of an expression in the parameters, with their defaults."""
-        parameters = self.mechanism.parameters
-        return self.mechanism.number(
+        parameters = self.declared.parameters
+        return self.declared.number(
             expression, {name: parameter.default for name, parameter in parameters.items()}
         )
 
     def free(self, kind: str, name: str, table: Mapping[str, Part]) -> None:
         """Raise for a name that is taken, and where nothing can be added any more."""
-        m = self.mechanism
+        m = self.declared
         self.refuse_frozen(f"add {kind} '{name}'")
         # Files and scenes know joints, loads, constraints, rows and paths by their names alone,
         # beside those of links.
@@ -171,8 +158,8 @@ class Ownership:
 
     def refuse_frozen(self, what: str) -> None:
         """Raise where nothing can be changed any more."""
-        if self.mechanism.frozen:
+        if self.declared.frozen:
             raise DeclarationError(
-                f"cannot {what}: mechanism '{self.mechanism.name}' is frozen since a scene was"
+                f"cannot {what}: mechanism '{self.declared.name}' is frozen since a scene was"
                 " made of it; declare all parts before the scene"
             )

@@ -1,29 +1,25 @@
-"""The parts of a mechanism, frozen: parameters, bodies and their points, loads, constraints and
-non-holonomic rows.
+"""The parts of a mechanism, frozen: parameters, bodies and their points, paths, and outputs of the
+user's own.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import Literal, TypeAlias
+
+import casadi as ca
 
 from ..base.arguments import Symbolic, public
 from ..base.brief import Brief
 from ..base.numerals import readable
+from ..base.quantities import Output
 from ..base.units import Number, in_words, number
 from ..base.vectors import Expression as Expression
 from ..base.vectors import Vector as Vector
 from ..errors import NumberError, ParameterError, shown
 from .beams.beam import Beam
 from .density import Density
-
-if TYPE_CHECKING:
-    import casadi as ca
-
-if TYPE_CHECKING:
-    from .joints import Axis, Joint
-    from .meshes import Transmission
 
 End = Literal["base", "tip"]
 
@@ -189,193 +185,34 @@ class Path(Brief):
     point: Point
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Force(Brief):
-    """A force with three components [N] at a point, in ground axes, or where ``turning`` in the
-    body's own; in a plane the third is zero.
+@dataclass(frozen=True, eq=False)
+class Asked:
+    """A result that an output is made of, and the symbol that stands for it; of a section force the
+    ratio xi/l.
+
+    A ``passive`` effort is zero if the joint is not a drive; any other is refused.
     """
 
-    name: str
-    point: Point
-    components: Vector
-    turning: bool
-
-    @property
-    def points(self) -> tuple[Point, ...]:
-        """Place where it acts."""
-        return (self.point,)
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Torque(Brief):
-    """A torque with three components [N m] on a body at a point, and the opposite on another one,
-    or on the ground; in ground axes, or where ``turning`` in the body's own.
-
-    In a plane the first two are zero.
-    """
-
-    name: str
-    point: Point
-    components: Vector
-    against: Point
-    turning: bool
-
-    @property
-    def points(self) -> tuple[Point, ...]:
-        """Places where it acts, first the point it is for."""
-        return (self.point, self.against)
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Spring(Brief):
-    """A spring and damper between two points: its tension is stiffness (distance - length) +
-    damping (distance)'.
-    """
-
-    name: str
-    first: Point
-    second: Point
-    stiffness: Expression
-    length: Expression
-    damping: Expression
-
-    @property
-    def points(self) -> tuple[Point, ...]:
-        """End points."""
-        return (self.first, self.second)
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class LineLoad(Brief):
-    """A load [N/m] along a link, ``between`` two distances from its base [m]: a polynomial of the
-    place.
-
-    ``x``, ``y``, ``z`` are coefficients of rising powers of (end - xi)/(end - start), as many of
-    each: where it ends the first of them acts, where it begins their sum. In ground axes, or where
-    ``turning`` in the link's own.
-    """
-
-    name: str
-    link: Link
-    between: tuple[Expression, Expression]
-    x: tuple[Expression, ...]
-    y: tuple[Expression, ...]
-    z: tuple[Expression, ...]
-    turning: bool
-
-    @property
-    def whole(self) -> bool:
-        """True if it acts from the base to the tip."""
-        start, end = self.between
-        return isinstance(start, float) and start == 0.0 and end is self.link.length
-
-    @property
-    def reach(self) -> Expression:
-        """The length of the part on which it acts [m]."""
-        return self.link.length if self.whole else self.between[1] - self.between[0]
-
-    @property
-    def width(self) -> Expression:
-        """The length of the part on which it acts, as a ratio to that of the link."""
-        return 1.0 if self.whole else self.reach / self.link.length
-
-    @property
-    def end(self) -> Expression:
-        """End, as a ratio xi/l."""
-        return 1.0 if self.whole else self.between[1] / self.link.length
-
-    @property
-    def points(self) -> tuple[Point, ...]:
-        """Place of its resultant: the middle of the part on which it acts."""
-        start, end = self.between
-        return (self.link.at(end / 2 if self.whole else (start + end) / 2),)
-
-
-POSITIVE = ("radius", "length", "stribeck", "smooth")
-"""Numbers of a friction that must not be zero."""
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Friction(Brief):
-    """Friction in a joint along a coordinate of its, that follows what the joint bears; ``symbol``
-    stands for it until it is found.
-
-    With the rate v of the coordinate and sigma its sign, or tanh(v/``smooth``), the force or couple
-    along the coordinate is::
-
-        -sigma mu radius |R| - viscous v                    in a pin that bears the force R, -sigma
-        mu (|N/2 + M/length| + |N/2 - M/length|) - viscous v   in a guide that bears N across its
-        line and the moment M.
-
-    A spherical joint rubs as a pin about the axis about which its child turns on its parent at the
-    moment: v is the size of their relative angular velocity, which is never negative.
-
-    ``static`` is the coefficient where sliding starts: mu + (static - mu) exp(-(speed/stribeck)^2),
-    by the speed of sliding [m/s]. In a joint that slides and turns at once, ``beside`` is its other
-    coordinate: sigma is then the share of the speed of sliding that is along this one.
-    """
-
-    name: str
-    joint: Joint
-    axis: Axis
+    output: Output
     symbol: ca.SX
-    mu: Expression = 0.0
-    radius: Expression | None = None
-    length: Expression | None = None
-    viscous: Expression = 0.0
-    static: Expression | None = None
-    stribeck: Expression | None = None
-    smooth: Expression | None = None
-    beside: Axis | None = None
+    ratio: Expression | None = None
+    passive: bool = False
 
     @property
-    def points(self) -> tuple[Point, ...]:
-        """Places where it acts: on the joint's child, and back on its parent."""
-        return (self.joint.child, self.joint.parent)
-
-    @property
-    def numbers(self) -> dict[str, Expression]:
-        """Numbers of the friction, by the keywords of its declaration."""
-        words = ("mu", "radius", "length", "viscous", "static", "stribeck", "smooth")
-        return {word: getattr(self, word) for word in words if getattr(self, word) is not None}
-
-    @property
-    def every_way(self) -> bool:
-        """True if it acts against any turning of the joint, and not along a coordinate."""
-        return self.joint.kind == "spherical"
-
-    @property
-    def dry(self) -> bool:
-        """True if it depends on the joint's reaction."""
-        return not (isinstance(self.mu, float) and self.mu == 0.0 and self.static is None)
-
-
-Load: TypeAlias = Force | Torque | Spring | LineLoad | Friction
+    def wanted(self) -> str:
+        """Outputs that must be wanted for it."""
+        return (
+            "effort" if self.output.group == "effort" else f"{self.output.group}:{self.output.part}"
+        )
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Constraint(Brief):
-    """Phi(q, t) = 0 in joint coordinates (paper eq. 5).
-
-    The multiplier of a ``transmission`` acts where its parts touch.
-
-    Phi is differentiated twice, so its slopes must not jump; of a cam those of its ``lift`` alone,
-    at the cam's angle: off the contact those of phi may jump as the normal turns, on it that counts
-    for nothing.
-    """
-
-    name: str
-    phi: ca.SX
-    transmission: Transmission | None = None
-    lift: ca.SX | None = None
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Row(Brief):
-    """A non-holonomic row A(q) q' + b = 0 in joint coordinates and rates (paper eq. 3),
-    in place of one drive's effort.
+class UserOutput(Brief):
+    """An output of the user's own: an expression of time, parameters, measures and results, and its
+    unit.
     """
 
     name: str
     expression: ca.SX
-    replaces: str
+    unit: str
+    made_of: tuple[Asked, ...]

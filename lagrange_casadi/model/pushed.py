@@ -10,7 +10,8 @@ from typing import Any
 import casadi as ca
 
 from ..errors import DeclarationError
-from .parts import Body, Force, Link, Parameter, Point, PointMass
+from .loads import Force
+from .parts import Body, Link, Parameter, Point, PointMass
 from .scene import Scene
 
 _LOAD = "tool deflection"

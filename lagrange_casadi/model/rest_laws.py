@@ -134,38 +134,37 @@ def s_curve(share: Symbolic = _CUBE, rounding: Symbolic = 0.5) -> RestLaw:
     return _seven(1.0 - share, share - third, third)
 
 
-def s_curve_within(displacement: Expression, limits: Limits) -> RestLaw:
+def s_curve_within(
+    displacement: Expression, speed: Expression, acceleration: Expression, jerk: Expression
+) -> RestLaw:
     """The S-curve of the shortest time within all three limits: fewer than seven segments where a
     limit is not reached.
 
     With a top speed v, acceleration a and jerk j it is a rectangle of h/v seconds, averaged over
     v/a and over j/a seconds.
     """
-    assert limits.speed is not None
-    assert limits.acceleration is not None
-    assert limits.jerk is not None
-    size, jerk = ca.fabs(ca.SX(displacement)), limits.jerk
-    most = ca.fmin(ca.SX(limits.acceleration), ca.sqrt(limits.speed * jerk))
+    size = ca.fabs(ca.SX(displacement))
+    most = ca.fmin(ca.SX(acceleration), ca.sqrt(speed * jerk))
     most = ca.fmin(most, (size * jerk * jerk / 2.0) ** _CUBE)
     ramp = most * most / jerk
     # The speed at which the way is used up by speeding up and slowing down.
     top = ca.fmin(
-        ca.SX(limits.speed), 2.0 * most * size / (ramp + ca.sqrt(ramp * ramp + 4.0 * most * size))
+        ca.SX(speed), 2.0 * most * size / (ramp + ca.sqrt(ramp * ramp + 4.0 * most * size))
     )
     each = size / top, top / most, most / jerk
     whole = each[0] + each[1] + each[2]
     return _seven(*(plain(part / whole) for part in each))
 
 
-def trapezoid_within(displacement: Expression, limits: Limits) -> RestLaw:
+def trapezoid_within(
+    displacement: Expression, speed: Expression, acceleration: Expression
+) -> RestLaw:
     """The trapezoid of speed of the shortest time within a speed and an acceleration; a triangle
     where the speed is not reached.
     """
-    assert limits.speed is not None
-    assert limits.acceleration is not None
     size = ca.fabs(ca.SX(displacement))
-    top = ca.fmin(ca.SX(limits.speed), ca.sqrt(limits.acceleration * size))
-    ramp = top / limits.acceleration
+    top = ca.fmin(ca.SX(speed), ca.sqrt(acceleration * size))
+    ramp = top / acceleration
     return trapezoid(plain(ca.fmin(ramp / (size / top + ramp), 0.5)))
 
 

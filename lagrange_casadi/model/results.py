@@ -7,57 +7,23 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias, overload
+from typing import Any, NamedTuple, TypeAlias, overload
 
 import casadi as ca
 
-from ..base.brief import Brief
 from ..base.quantities import Output, force_members
 from ..base.tables import table_of
 from ..errors import DeclarationError, UnknownNameError
+from .constraints import Constraint, Row
 from .density import Density
 from .joints import Joint
 from .limits import no_sections
-from .parts import Body, Constraint, Expression, Friction, Link, Load, Point, Row
-
-if TYPE_CHECKING:
-    from .mechanism import Mechanism
+from .loads import Friction, Load
+from .ownership import Ownership
+from .parts import Asked, Body, Expression, Link, Point
 
 _Part: TypeAlias = Load | Friction | Constraint | Row
 """Part of a mechanism that has results of its own."""
-
-
-@dataclass(frozen=True, eq=False)
-class Asked:
-    """A result that an output is made of, and the symbol that stands for it; of a section force the
-    ratio xi/l.
-
-    A ``passive`` effort is zero if the joint is not a drive; any other is refused.
-    """
-
-    output: Output
-    symbol: ca.SX
-    ratio: Expression | None = None
-    passive: bool = False
-
-    @property
-    def wanted(self) -> str:
-        """Outputs that must be wanted for it."""
-        return (
-            "effort" if self.output.group == "effort" else f"{self.output.group}:{self.output.part}"
-        )
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class UserOutput(Brief):
-    """An output of the user's own: an expression of time, parameters, measures and results, and its
-    unit.
-    """
-
-    name: str
-    expression: ca.SX
-    unit: str
-    made_of: tuple[Asked, ...]
 
 
 class Force(NamedTuple):
@@ -120,7 +86,7 @@ class Results:
     such result.
     """
 
-    mechanism: Mechanism
+    ownership: Ownership
 
     @overload
     def acceleration(self, of: Joint) -> ca.SX: ...
@@ -132,36 +98,35 @@ class Results:
         """The symbol of the acceleration of a joint's coordinate; or those of a point's, in ground
         axes [m/s^2].
         """
-        measures, ownership = self.mechanism.measures, self.mechanism.ownership
+        measures = self.ownership.declared.measures
         if isinstance(of, Joint):
-            return measures.joint(*ownership.moving_joint(of)).accelerations[0]
-        return measures.point(ownership.point("acceleration", of)).accelerations
+            return measures.joint(*self.ownership.moving_joint(of)).accelerations[0]
+        return measures.point(self.ownership.point("acceleration", of)).accelerations
 
     def effort(self, joint: Joint, *, passive: bool = False) -> ca.SX:
         """The symbol of the effort of the drive at a joint, along its coordinate.
 
         If ``passive``, the joint may be no drive, and its effort is zero then.
         """
-        coordinate = self.mechanism.ownership.moving_joint(joint)[1].coordinate
+        coordinate = self.ownership.moving_joint(joint)[1].coordinate
         return self._ask(Output("effort", coordinate), passive=passive)
 
     def reaction(self, joint: Joint) -> Force | SpatialForce:
         """The symbols of a joint's reaction: what its parent does to its child, without the drive's
         effort.
         """
-        joint = self.mechanism.ownership.joint(joint)
+        joint = self.ownership.joint(joint)
         return self._force("reaction", joint.name, moment=joint.bears_moment)
 
     def load(self, load: Load) -> Force | SpatialForce:
         """The symbols of what a load does to the body of its first point."""
-        return self._force(
-            "load", self._own("load", load, self.mechanism.loads.values()), moment=True
-        )
+        name = self._own("load", load, self.ownership.declared.loads.values())
+        return self._force("load", name, moment=True)
 
     def friction(self, friction: Friction) -> FrictionSymbols:
         """The symbols of a friction and of the power that it takes."""
-        sliding = [load for load in self.mechanism.loads.values() if isinstance(load, Friction)]
-        name = self._own("friction", friction, sliding)
+        loads = self.ownership.declared.loads.values()
+        name = self._own("friction", friction, [x for x in loads if isinstance(x, Friction)])
         return FrictionSymbols(
             self._ask(Output("friction", name, "along")),
             self._ask(Output("friction", name, "loss")),
@@ -169,11 +134,11 @@ class Results:
 
     def multiplier(self, of: Constraint | Row) -> ca.SX:
         """The symbol of the multiplier of a constraint or a non-holonomic constraint."""
-        ownership: tuple[_Part, ...] = (
-            *self.mechanism.constraints.values(),
-            *self.mechanism.rows.values(),
+        declared = self.ownership.declared
+        name = self._own(
+            "constraint", of, [*declared.constraints.values(), *declared.rows.values()]
         )
-        return self._ask(Output("multiplier", self._own("constraint", of, ownership)))
+        return self._ask(Output("multiplier", name))
 
     def section(self, link: Link, ratio: Expression) -> SectionForces | SpatialSectionForces:
         """The symbols of the forces at a section of a link, at a ratio xi/l from 0 to 1; at a
@@ -181,26 +146,26 @@ class Results:
 
         The ratio is a number, or an expression of parameters.
         """
-        mechanism = self.mechanism
-        body = mechanism.ownership.point("section", link).body
+        declared = self.ownership.declared
+        body = self.ownership.point("section", link).body
         if not isinstance(body, Link) or not isinstance(body.mass, Density):
             raise DeclarationError(
                 "section:"
-                f" {no_sections(body.name, link=isinstance(body, Link), links=mechanism.links)}"
+                f" {no_sections(body.name, link=isinstance(body, Link), links=declared.links)}"
             )
-        ratio = mechanism.ownership.expression(f"section of '{body.name}': ratio", ratio)
+        ratio = self.ownership.expression(f"section of '{body.name}': ratio", ratio)
         if not isinstance(ratio, ca.SX) and not 0.0 <= ratio <= 1.0:
             raise DeclarationError(
                 f"section of '{body.name}': expected a ratio xi/l from 0 to 1, got {ratio:g}"
             )
         forces = (
             self._ask(Output("section", body.name, member), ratio)
-            for member in table_of(mechanism.space).sections
+            for member in table_of(declared.space).sections
         )
-        return SpatialSectionForces(*forces) if mechanism.space else SectionForces(*forces)
+        return SpatialSectionForces(*forces) if declared.space else SectionForces(*forces)
 
     def _force(self, group: str, part: str, *, moment: bool) -> Force | SpatialForce:
-        space = self.mechanism.space
+        space = self.ownership.declared.space
         forces = [
             self._ask(Output(group, part, member)) for member in force_members(space, moment=False)
         ]
@@ -214,7 +179,7 @@ class Results:
     def _ask(
         self, output: Output, ratio: Expression | None = None, *, passive: bool = False
     ) -> ca.SX:
-        asked = self.mechanism.asked
+        asked = self.ownership.declared.asked
         for one in asked:
             same = one.ratio is ratio or (
                 isinstance(ratio, float) and isinstance(one.ratio, float) and one.ratio == ratio
@@ -238,7 +203,7 @@ class Results:
         if not any(part is one for one in parts):
             name = getattr(part, "name", part)
             raise UnknownNameError(
-                f"{kind} of mechanism '{self.mechanism.name}'",
+                f"{kind} of mechanism '{self.ownership.declared.name}'",
                 str(name),
                 [one.name for one in parts],
             )

@@ -21,9 +21,10 @@ from .even_points import EvenPoints, checked_ratios
 from .guiding import guided, laws_of
 from .laws import Laws
 from .limits import no_sections, parameters_note
+from .loads import Friction
 from .mechanism import Mechanism
 from .motion import Motion
-from .parts import Expression, Friction, Parameter
+from .parts import Expression, Parameter
 from .scene_arguments import Elastic, compliant_links, links_with_beams, rough_posture, weighed
 from .shaking import refuse_late
 from .stretches import Timetable, timetable
@@ -288,7 +289,9 @@ class Scene(Graphs):
         try:
             self.mechanism.values()
         except ParameterError as error:
-            raise ParameterError(f"{error}{parameters_note(self.mechanism, {})}") from None
+            raise ParameterError(
+                f"{error}{parameters_note(self.mechanism.parameters, {})}"
+            ) from None
         numbers = self.mechanism.values(self.assembly)
         self.checked(numbers)
         put("assembly", MappingProxyType({name: numbers[name] for name in self.assembly}))

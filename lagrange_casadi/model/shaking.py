@@ -9,19 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from ..base.arguments import public
 from ..base.arrays import Operand
 from ..base.vectors import ZERO, Vector, cross, minus, times
-from ..errors import DeclarationError, shown
+from ..errors import DeclarationError
 from .density import Density
 from .mass_properties import second_moments
-from .parts import Expression, Link, Point, PointMass
-from .results import UserOutput
-
-if TYPE_CHECKING:
-    from .mechanism import Mechanism
+from .mechanism import Mechanism
+from .parts import Expression, Link, Point, PointMass, UserOutput
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -64,8 +60,6 @@ def shaking(
     DeclarationError
         If there are no bodies, or ``about`` is no point.
     """
-    if isinstance(mechanism, type) or not hasattr(mechanism, "moving"):
-        raise DeclarationError(f"shaking: expected a Mechanism, got {shown(mechanism)}")
     if not mechanism.moving:
         raise DeclarationError(
             "shaking: there are no bodies yet; call it after all bodies are declared"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import ClassVar
 
 from ..base.arguments import public
 from ..base.rotation import Rotation
@@ -16,22 +17,11 @@ from .density import Density
 from .directions import Reference, rotated, tensor, triad_of, turned_by, vector
 from .directions import between as lying
 from .joints import Joint, JointKind, Triad, check_ends
-from .loads import Between, LoadDensity, line_load
+from .load_arguments import Between, LoadDensity, line_load
+from .loads import Force, LineLoad, Torque
 from .measures import Measures
 from .mechanism import Mechanism
-from .parts import (
-    Body,
-    Expression,
-    Force,
-    Ground,
-    LineLoad,
-    Link,
-    Point,
-    PointMass,
-    RigidMass,
-    Torque,
-    Vector,
-)
+from .parts import Body, Expression, Ground, Link, Point, PointMass, RigidMass, Vector
 
 Turns = Sequence[tuple[str, Expression]] | tuple[Vector, Vector]
 """Turns in sequence, each about the ``"x"``, ``"y"`` or ``"z"`` axis that the turns before it
@@ -62,6 +52,7 @@ class SpatialMechanism(Mechanism):
       the reference posture, from where loops are assembled.
     """
 
+    space: ClassVar[bool] = True
     gravity: Vector = field(default=(0.0, 0.0, -9.81), init=False)
     measures: Measures = field(default_factory=lambda: Measures(components="xyz"), init=False)
     references: dict[str, Reference] = field(default_factory=dict, init=False)
@@ -70,11 +61,6 @@ class SpatialMechanism(Mechanism):
     def __post_init__(self) -> None:
         super().__post_init__()
         self.references[self.ground.name] = Reference()
-
-    @property
-    def space(self) -> bool:
-        """True: it lies in space."""
-        return True
 
     def link(  # type: ignore[override]
         self,
@@ -612,6 +598,7 @@ class SpatialMechanism(Mechanism):
         )
         if placed:
             self.hard.add(name)
+            self.rough |= {axis.coordinate: 0.0 for axis in joint.axes}
         return joint
 
     def _at_reference(
@@ -660,13 +647,3 @@ class SpatialMechanism(Mechanism):
 
     def _vector(self, what: str, value: object, unit: str = "1") -> Vector:
         return vector(what, value, self.ownership.expression, unit)
-
-
-def reference_posture(mechanism: Mechanism) -> dict[str, float]:
-    """Coordinates where all parts are turned as they were declared to be: zero, of joints that take
-    it from that posture, and ``rough`` values that elements know.
-    """
-    hard = mechanism.hard if isinstance(mechanism, SpatialMechanism) else ()
-    return mechanism.rough | {
-        name: 0.0 for name, (joint, _) in mechanism.coordinates.items() if joint.name in hard
-    }

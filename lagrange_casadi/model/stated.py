@@ -18,12 +18,14 @@ from ..base.scalars import column
 from ..base.symbolic import Graphs, symbolic
 from ..base.templates import Template
 from ..base.vectors import ZERO
+from .constraints import Constraint, Row
 from .description import Triple
 from .guiding import point_of
+from .loads import Force, Friction, LineLoad, Spring, Torque
 from .mechanism import Mechanism
 from .meshes import Transmission, Wrench
 from .motion import Motion
-from .parts import Constraint, Force, Friction, LineLoad, Point, Row, Spring, Torque
+from .parts import Point
 
 EntryKind = Literal["coordinate", "x", "y", "z", "direction"]
 

@@ -9,7 +9,7 @@ import itertools
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -20,28 +20,17 @@ from ..base.symbolic import Graphs, symbolic, symbolic_property
 from ..base.vectors import dot, nil
 from ..base.vocabulary import Precision
 from ..errors import ParameterError
+from .declaration import Declaration
 from .density import Density, Slices
 from .directions import RIGHT, not_right
 from .ends import BEYOND, beyond_ends, words_beyond
 from .joints import Joint
 from .limits import END
+from .loads import POSITIVE, Friction, LineLoad
 from .mass_properties import second_moments
 from .meshes import FITTING, Fit
-from .parts import (
-    POSITIVE,
-    Expression,
-    Friction,
-    LineLoad,
-    Link,
-    Point,
-    PointMass,
-    RigidMass,
-    Vector,
-)
+from .parts import Expression, Link, Point, PointMass, RigidMass, Vector
 from .polynomials import lowest, product
-
-if TYPE_CHECKING:
-    from .mechanism import Mechanism
 
 Evaluator = Callable[[Any], float]
 """Gives the value of an expression."""
@@ -119,39 +108,37 @@ class Margins(Graphs):
 
 
 @symbolic
-def demands(mechanism: Mechanism, precision: Precision = "double") -> ParameterConstraints:
-    """Conditions on a mechanism's parts: lengths, masses, densities, load points; with the
+def demands(declared: Declaration, precision: Precision = "double") -> ParameterConstraints:
+    """Conditions on the parts of a mechanism: lengths, masses, densities, load points; with the
     tolerance of a precision.
     """
-    return _of_frozen(mechanism, precision) if mechanism.frozen else _of(mechanism, precision)
+    return _of_frozen(declared, precision) if declared.frozen else _of(declared, precision)
 
 
 @functools.lru_cache(maxsize=64)
-def _of_frozen(mechanism: Mechanism, precision: Precision) -> ParameterConstraints:
-    return _of(mechanism, precision)
+def _of_frozen(declared: Declaration, precision: Precision) -> ParameterConstraints:
+    return _of(declared, precision)
 
 
-def _of(mechanism: Mechanism, precision: Precision) -> ParameterConstraints:
+def _of(declared: Declaration, precision: Precision) -> ParameterConstraints:
     found: list[Demand] = []
     masses: list[Expression] = []
-    for what, expressions in _numbers(mechanism):
+    for what, expressions in _numbers(declared):
         found += _of_curves(what, expressions)
-    for body in mechanism.moving:
-        mass, constraints = _of_body(body, precision, space=mechanism.space)
+    for body in declared.moving:
+        mass, constraints = _of_body(body, precision, space=declared.space)
         masses.append(mass)
         found += constraints
     if not any(_surely_positive(mass) for mass in masses):
-        loaded = any(not isinstance(load, Friction) for load in mechanism.loads.values())
-        found.append(_some_mass(mechanism.name, masses, loaded=loaded))
-    for joint in mechanism.joints.values():
+        loaded = any(not isinstance(load, Friction) for load in declared.loads.values())
+        found.append(_some_mass(declared.name, masses, loaded=loaded))
+    for joint in declared.joints.values():
         found += _of_axes(joint, precision)
         for point in (joint.parent, joint.child):
             if joint.slides and point is joint.parent:
                 continue  # a place on the line along which the child slides, and loads the parent
-            found += _of_load_point(
-                f"joint '{joint.name}'", point, precision, space=mechanism.space
-            )
-    for load in mechanism.loads.values():
+            found += _of_load_point(f"joint '{joint.name}'", point, precision, space=declared.space)
+    for load in declared.loads.values():
         if isinstance(load, LineLoad):
             found += _of_part(load, precision)
             continue
@@ -159,18 +146,18 @@ def _of(mechanism: Mechanism, precision: Precision) -> ParameterConstraints:
             found += _of_friction(load)
             continue
         for point in load.points:
-            found += _of_load_point(f"load '{load.name}'", point, precision, space=mechanism.space)
-    for constraint in mechanism.constraints.values():
+            found += _of_load_point(f"load '{load.name}'", point, precision, space=declared.space)
+    for constraint in declared.constraints.values():
         if constraint.transmission is not None:
             found += [
                 _of_fit(constraint.name, fit, precision) for fit in constraint.transmission.varying
             ]
-    return ParameterConstraints(mechanism.symbols, tuple(found))
+    return ParameterConstraints(declared.symbols, tuple(found))
 
 
-def _numbers(mechanism: Mechanism) -> Iterator[tuple[str, list[Expression]]]:
+def _numbers(declared: Declaration) -> Iterator[tuple[str, list[Expression]]]:
     """The expressions in parameters of which parts are made, and what they are of."""
-    for body in mechanism.moving:
+    for body in declared.moving:
         if isinstance(body, PointMass):
             yield f"point mass '{body.name}'", [body.mass]
             continue
@@ -183,12 +170,12 @@ def _numbers(mechanism: Mechanism) -> Iterator[tuple[str, list[Expression]]]:
         for shape in () if body.beam is None else body.beam.course.shapes:
             numbers += shape.dimensions.values()
         yield f"link '{body.name}'", numbers
-    for joint in mechanism.joints.values():
+    for joint in declared.joints.values():
         places = [number for point in (joint.parent, joint.child) for number in point.place]
         directions = (*joint.triad, joint.turned.x, joint.turned.y)
         numbers = [number for direction in directions for number in direction]
         yield f"joint '{joint.name}'", [*places, *numbers, joint.pitch]
-    for load in mechanism.loads.values():
+    for load in declared.loads.values():
         if isinstance(load, LineLoad):
             numbers = [*load.between]
         elif isinstance(load, Friction):
@@ -196,7 +183,7 @@ def _numbers(mechanism: Mechanism) -> Iterator[tuple[str, list[Expression]]]:
         else:
             numbers = [number for point in load.points for number in point.place]
         yield f"load '{load.name}'", numbers
-    yield "gravity", [*mechanism.gravity]
+    yield "gravity", [*declared.gravity]
 
 
 def _of_curves(what: str, expressions: list[Expression]) -> list[Demand]:
@@ -269,7 +256,6 @@ def _of_body(
             return base + tip, [*found, *_of_density(what, body.mass, length, precision), *slices]
     mass_properties = body.mass
     mass = mass_properties.mass if isinstance(mass_properties, RigidMass) else mass_properties
-    assert not isinstance(mass, Density)
     found.append(Demand.saying(mass, False, f"{what}: mass must not be negative, got {{got}} kg"))
     if isinstance(mass_properties, RigidMass):
         if mass_properties.accepted:

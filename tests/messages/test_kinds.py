@@ -73,7 +73,7 @@ WRONG = {
         lambda s: tool_deflection(None, "arm"),
         "tool_deflection: scene: expected a Scene, got None",
     ),
-    "shaking": (lambda s: shaking("m"), "shaking: expected a Mechanism, got 'm'"),
+    "shaking": (lambda s: shaking("m"), "shaking: mechanism: expected a Mechanism, got 'm'"),
     "about": (
         lambda s: shaking(s.mechanism, about=1.0),
         "shaking: expected a place (x, y) for about, got 1.0",
@@ -92,7 +92,7 @@ WRONG = {
         lambda s: elements.plate("p", "p", []),
         "plate 'p': mechanism: expected a Mechanism, got 'p'",
     ),
-    "fit": (lambda s: bearings.fit("O", None), "fit: expected a Mechanism first, got 'O'"),
+    "fit": (lambda s: bearings.fit("O", None), "fit: mechanism: expected a Mechanism, got 'O'"),
     "load": (lambda s: load(True), "path: expected a path, got True"),
     "check": (lambda s: check(None), "path: expected a path, got None"),
     "load_case": (lambda s: load_case(1), "load_case: path: expected a path, got 1"),

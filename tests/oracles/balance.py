@@ -161,9 +161,9 @@ def oracle_of(m, values, arithmetic=DOUBLE, **beside):
         if b.name not in m.links:
             return oracle.Body(b.name, number(b.mass), oriented=False)
         if hasattr(b.mass, "centre"):
-            centre = tuple(number(c) for c in b.mass.centre)
+            centre = tuple(number(c) for c in b.mass.centre[:2])
             return oracle.Body(
-                b.name, number(b.mass.mass), number(b.length), centre, number(b.mass.inertia)
+                b.name, number(b.mass.mass), number(b.length), centre, number(b.mass.inertia[2][2])
             )
         length, breaks = number(b.length), [number(ratio) for ratio in b.mass.breaks]
         cells = [
@@ -183,8 +183,8 @@ def oracle_of(m, values, arithmetic=DOUBLE, **beside):
             j.kind,
             point(j.parent),
             point(j.child),
-            (number(j.axis[0]), number(j.axis[1])),
-            number(j.angle),
+            tuple(map(number, j.triad[0][:2])),
+            number(j.turned.angle),
         )
         for j in m.joints.values()
     ]

@@ -27,9 +27,10 @@ from ...base.arguments import public
 from ...base.brief import Brief
 from ...base.vectors import cross, dot, minus, norm, times
 from ...errors import DeclarationError
+from ..constraints import Constraint
 from ..mechanism import Mechanism
 from ..meshes import FITTING, Fit, Loss, Mesh, Transmission, Wrench
-from ..parts import Body, Constraint, Expression, Point
+from ..parts import Body, Expression, Point
 from .courses import along, courses_on, fits_of, size
 from .ranges import at_least, positive, share
 
@@ -110,8 +111,6 @@ def belt(
     fits += at_least(what, "preload [N] must not be negative", tension, 0.0, tension)
     number = ownership.at_defaults
     u, v, away = one.axis, two.axis, minus(two.place, one.place)
-    assert u is not None
-    assert v is not None
     beside, scale = dot(away, u), r1 + r2
     if size(cross(u, v), number) > FITTING or abs(number(beside)) > FITTING * number(scale):
         raise DeclarationError(

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import casadi as ca
 
 from ...base.rotation import Rotation
-from ...base.vectors import cross, dot, minus, plus
+from ...base.vectors import ZERO, cross, dot, minus, plus
 from ...errors import DeclarationError
 from ..joints import Joint
 from ..mechanism import Mechanism
@@ -29,13 +29,14 @@ class Course:
 
     ``place`` and ``axis``, of length one, are in the carrier's axes where all coordinates are zero;
     ``rotations`` are the joints whose coordinates, each with its sign, add up to the angle about
-    the axis, or the way along it. ``joints`` are all joints between, and ``shifted`` how far the
-    point is from their axes. ``seen`` turns the carrier's axes from those of the body.
+    the axis, or the way along it; without them the axis is zero. ``joints`` are all joints between,
+    and ``shifted`` how far the point is from their axes. ``seen`` turns the carrier's axes from
+    those of the body.
     """
 
     carrier: Body
     place: Vector
-    axis: Vector | None
+    axis: Vector
     rotations: tuple[tuple[int, Joint], ...]
     slides: bool
     joints: tuple[Joint, ...]
@@ -111,7 +112,7 @@ def fits_of(what: str, course: Course) -> list[Fit]:
 
 def _courses(mechanism: Mechanism, point: Point) -> list[Course]:
     """All courses of a point: to every body on which it turns about one axis, or slides."""
-    start = Course(point.body, point.place, None, (), False, ())
+    start = Course(point.body, point.place, ZERO, (), False, ())
     reached, found = {point.body.name}, [start]
     for course in found:
         for joint in mechanism.joints.values():
@@ -124,7 +125,7 @@ def _courses(mechanism: Mechanism, point: Point) -> list[Course]:
             ):
                 reached.add(other.name)
                 found.append(further)
-    return [course for course in found if course.axis is not None]
+    return [course for course in found if course.rotations]
 
 
 def _through(mechanism: Mechanism, course: Course, joint: Joint, other: Body) -> Course | None:
@@ -132,7 +133,7 @@ def _through(mechanism: Mechanism, course: Course, joint: Joint, other: Body) ->
     outward, zero = joint.child.body is other, joint.turned
     number = mechanism.ownership.at_defaults
     if joint.kind != "weld" and (
-        not joint.axes or course.slides or (joint.kind == "prismatic" and course.axis is not None)
+        not joint.axes or course.slides or (joint.kind == "prismatic" and course.rotations)
     ):
         return None
 
@@ -145,14 +146,13 @@ def _through(mechanism: Mechanism, course: Course, joint: Joint, other: Body) ->
     whole = (zero.inverse if outward else zero).then(course.seen)
     axis, place, shifted = course.axis, course.place, course.shifted
     if joint.kind == "weld":
-        axis, joints = axis and turn(axis), (*course.joints, joint)
-        moved = course.rotations, course.slides
-        return Course(other, seen(place), axis, *moved, joints, shifted, whole)
+        joints, moved = (*course.joints, joint), (course.rotations, course.slides)
+        return Course(other, seen(place), turn(axis), *moved, joints, shifted, whole)
     # The joint's axis is in its parent's axes, and the same in its child's, turned.
     direction = joint.axes[0].direction
     here = direction if outward else zero.resolve(direction)
     sign = -1 if outward else 1
-    if axis is None:
+    if not course.rotations:
         axis = here
     elif size(cross(axis, here), number) > FITTING:
         return None

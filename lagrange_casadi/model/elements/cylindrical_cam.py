@@ -30,9 +30,10 @@ from ...base.brief import Brief
 from ...base.rotation import Rotation, direction
 from ...base.vectors import ZERO, Vector, cross, dot, minus, norm, plus, times
 from ...errors import DeclarationError
+from ..constraints import Constraint
 from ..joints import Joint
 from ..mechanism import Mechanism
-from ..parts import Constraint, Expression, Link, Point
+from ..parts import Expression, Link, Point
 from .cam_profile import turn_in
 from .follower import STEEL, held_by, largest_pressure, rise_of, stiffness_of
 

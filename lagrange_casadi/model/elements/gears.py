@@ -30,9 +30,10 @@ from ...base.arguments import public
 from ...base.brief import Brief
 from ...base.vectors import cross, dot, minus, norm, plus
 from ...errors import DeclarationError
+from ..constraints import Constraint
 from ..mechanism import Mechanism
 from ..meshes import Fit, Loss, Mesh, Transmission, Wrench
-from ..parts import Body, Constraint, Expression, Point
+from ..parts import Body, Expression, Point
 from .courses import Course, along, courses_on, fits_of
 from .pitch import Pitch, Teeth, pitch_of
 from .ranges import LEAST, at_least, positive, share, whole, within
@@ -226,7 +227,6 @@ def _mesh(
     """Place where two gears touch; on a rack the place moves."""
     if two.slides:
         direction = two.displacement(mechanism)
-        assert two.axis is not None
         gone = tuple(direction * x for x in two.axis)
         back = two.seen.resolve(
             minus(minus(plus(one.place, pitch.arm), two.place), (gone[0], gone[1], gone[2]))

@@ -64,8 +64,6 @@ def pitch_of(what: str, number: Evaluator, first: Course, second: Course, teeth:
 
     Raises :class:`.DeclarationError` where these do not fit.
     """
-    assert first.axis is not None
-    assert second.axis is not None
     if second.slides:
         return _rack(what, number, first, second, teeth)
     across = cross(first.axis, second.axis)
@@ -80,8 +78,6 @@ def pitch_of(what: str, number: Evaluator, first: Course, second: Course, teeth:
 
 def _parallel(what: str, number: Evaluator, first: Course, second: Course, teeth: Teeth) -> Pitch:
     u, (r1, r2) = first.axis, teeth.radii
-    assert u is not None
-    assert second.axis is not None
     away = minus(second.place, first.place)
     beside, sense = dot(away, u), _sign(number, dot(u, second.axis))
     away = minus(away, times(beside, u))
@@ -116,8 +112,6 @@ def _parallel(what: str, number: Evaluator, first: Course, second: Course, teeth
 def _bevel(what: str, number: Evaluator, first: Course, second: Course, teeth: Teeth) -> Pitch:
     """Both cones have their apex where the axes meet; their mean circles, of the radii, touch."""
     u, v, (r1, r2) = first.axis, second.axis, teeth.radii
-    assert u is not None
-    assert v is not None
     # How far the centres are from where the axes meet: the feet of the common perpendicular are
     # one.
     away, slope = minus(second.place, first.place), dot(u, v)
@@ -154,8 +148,6 @@ def _crossed(what: str, number: Evaluator, first: Course, second: Course, teeth:
     their numbers.
     """
     u, v, (r1, r2) = first.axis, second.axis, teeth.radii
-    assert u is not None
-    assert v is not None
     away = minus(second.place, first.place)
     distance = norm(away)
     fits = []
@@ -187,8 +179,6 @@ def _crossed(what: str, number: Evaluator, first: Course, second: Course, teeth:
 
 def _rack(what: str, number: Evaluator, first: Course, second: Course, teeth: Teeth) -> Pitch:
     u, d, (radius, *_) = first.axis, second.axis, teeth.radii
-    assert u is not None
-    assert d is not None
     if abs(number(dot(u, d))) > FITTING:
         raise DeclarationError(
             f"{what}: its rack must slide at right angles to the axis of its gear"

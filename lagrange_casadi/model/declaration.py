@@ -1,0 +1,127 @@
+"""State of a mechanism under declaration, for the functions that check it or read it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, ClassVar, cast
+
+import casadi as ca
+
+from ..base.arguments import public
+from ..base.scalars import column
+from ..base.symbolic import Graphs, symbolic
+from .constraints import Constraint, Row
+from .expressions import check_name, value_of
+from .fitted import Fittings
+from .joints import Axis, Joint
+from .loads import Load
+from .measures import Measures
+from .parts import (
+    Asked,
+    Body,
+    Expression,
+    Ground,
+    Link,
+    Outline,
+    Parameter,
+    Path,
+    PointMass,
+    Roller,
+    UserOutput,
+    Vector,
+)
+
+
+@public
+@symbolic
+@dataclass(eq=False, repr=False)
+class Declaration(Graphs):
+    """Parts of a mechanism that are declared so far, by their names, and notes on them.
+
+    :class:`.Mechanism` has the methods that declare. ``rough`` are coordinates at which parts are
+    turned as they were declared to be [rad or m]; ``snapped`` are by how much axes [rad] and places
+    [m] of a part were moved to the exact ones.
+    """
+
+    space: ClassVar[bool] = False
+    """True if it lies in space, not in a plane."""
+
+    name: str
+    parameters: dict[str, Parameter] = field(default_factory=dict, init=False)
+    bodies: dict[str, Body] = field(default_factory=dict, init=False)
+    joints: dict[str, Joint] = field(default_factory=dict, init=False)
+    loads: dict[str, Load] = field(default_factory=dict, init=False)
+    constraints: dict[str, Constraint] = field(default_factory=dict, init=False)
+    rows: dict[str, Row] = field(default_factory=dict, init=False)
+    outputs: dict[str, UserOutput] = field(default_factory=dict, init=False)
+    paths: dict[str, Path] = field(default_factory=dict, init=False)
+    fitted: dict[str, Fittings] = field(default_factory=dict, init=False)
+    turning: dict[str, str] = field(default_factory=dict, init=False)
+    rough: dict[str, float] = field(default_factory=dict, init=False)
+    snapped: dict[str, tuple[float, float]] = field(default_factory=dict, init=False)
+    rounding: float = field(default=0.0, init=False)
+    outlines: dict[str, list[Outline]] = field(default_factory=dict, init=False)
+    rollers: dict[str, Roller] = field(default_factory=dict, init=False)
+    gravity: Vector = field(default=(0.0, -9.81, 0.0), init=False)
+    frozen: bool = field(default=False, init=False)
+    time: Any = field(default_factory=lambda: ca.SX.sym("t"), init=False)
+    measures: Measures = field(default_factory=Measures, init=False)
+    asked: list[Asked] = field(default_factory=list, init=False)
+
+    def __post_init__(self) -> None:
+        check_name("mechanism", self.name)
+        self.bodies["ground"] = Ground("ground")
+
+    @property
+    def ground(self) -> Ground:
+        """The fixed frame; ``ground.at(x, y)`` is a point of it, ``ground`` itself its origin."""
+        return cast(Ground, self.bodies["ground"])
+
+    @property
+    def moving(self) -> tuple[Link | PointMass, ...]:
+        """The links and point masses, in the order of declaration."""
+        return tuple(body for body in self.bodies.values() if isinstance(body, Link | PointMass))
+
+    @property
+    def links(self) -> dict[str, Link]:
+        """The links by name."""
+        return {name: body for name, body in self.bodies.items() if isinstance(body, Link)}
+
+    @property
+    def coordinates(self) -> dict[str, tuple[Joint, Axis]]:
+        """The coordinates by name, as the joint and its axis: ``JOINT``, or ``JOINT:NAME`` where a
+        joint has several.
+        """
+        return {
+            axis.coordinate: (joint, axis) for joint in self.joints.values() for axis in joint.axes
+        }
+
+    @property
+    def symbols(self) -> Expression:
+        """The parameters' symbols as one column, in the order of declaration."""
+        return column(parameter.symbol for parameter in self.parameters.values())
+
+    def number(self, expression: Expression, values: Mapping[str, float]) -> float:
+        """Return the value of an expression of parameters.
+
+        Parameters
+        ----------
+        expression : float or casadi.SX
+            The expression.
+        values : mapping
+            Values of all parameters by name, as of :meth:`.Mechanism.values`.
+
+        Returns
+        -------
+        float
+            Its value.
+
+        Raises
+        ------
+        DeclarationError
+            If it has other symbols, or a parameter has no value.
+        """
+        return value_of(
+            expression, {name: one.symbol for name, one in self.parameters.items()}, values
+        )
