@@ -35,3 +35,4 @@ from lagrange_casadi.results.verification.reference import arithmetic, reference
 from lagrange_casadi.studies.designs.engine import DesignEngine
 from lagrange_casadi.studies.designs.outcome import Outcome
 from lagrange_casadi.studies.peaks import rates
+from lagrange_casadi.views.shapes.readable import scale_for

@@ -4,11 +4,13 @@ numbers of their solutions to the digits shown; live pages find what the package
 
 import csv
 import io
+import json
 import re
 import struct
 import urllib.request
 import xml.etree.ElementTree as ET
 from dataclasses import replace
+from importlib import resources
 
 import alive
 import browser
@@ -16,6 +18,7 @@ import numpy as np
 import pytest
 from commands import command
 from drawn_scenes import every_kind
+from internals import scale_for
 from reports import HOSTILE, held, hostile, press, snowed, solved, wound
 from reports import page as page_of
 
@@ -69,17 +72,27 @@ def copied(one, caption):
     return list(csv.DictReader(io.StringIO(one.run("window.copied"))))
 
 
-NUMBER = re.compile(r"(-?[\d.]+)(?:·10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+))?(?: (.*))?")
+NUMBER = re.compile(r"(-?[\d.]+)(?:·10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+))?(?: ([kMµ]|m(?=[NWsm]))?.*)?")
 PLAIN = {0x2212: "-", 0xA0: " "} | str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 
 
 def number(text):
     """What a shown value is in SI, where its unit has a prefix."""
-    mantissa, exponent, unit = NUMBER.fullmatch(text).groups()
-    factor = {"k": 1e3, "M": 1e6, "µ": 1e-6}.get((unit or " ")[0], 1.0)
-    milli = re.match("m[NWs]|mm", unit or "")
-    value = float(f"{mantissa}e{(exponent or '0').translate(PLAIN)}")
-    return value * (1e-3 if milli else factor)
+    mantissa, exponent, prefix = NUMBER.fullmatch(text).groups()
+    factor = {"k": 1e3, "M": 1e6, "m": 1e-3, "µ": 1e-6}.get(prefix, 1.0)
+    return factor * float(f"{mantissa}e{(exponent or '0').translate(PLAIN)}")
+
+
+@pytest.mark.parametrize("unit", ["N", "N m", "Pa", "m", "kg"])
+def test_pages_write_numbers_as_figures_do(page, unit):
+    """With a prefix by the size, to as many digits; but for a point between the parts of a unit."""
+    values = [0.0] + [v * 10.0**k for v in (1, -2.5, 3.14159, -9.9996) for k in range(-3, 3)]
+    source = (resources.files("lagrange_casadi") / "views/report/assets/units.js").read_text()
+    written = f"{json.dumps(values)}.map((value) => shown(value, '{unit}', 4))"
+    assert page(press()).run(f"(() => {{ {source}; return {written}; }})()") == [
+        scale_for(unit, abs(value)).said(value).replace("N m", "N·m").replace(" ", "\u00a0")
+        for value in values
+    ]
 
 
 @pytest.mark.parametrize("name", ["slider_crank", "rssr"])
@@ -115,8 +128,7 @@ def test_it_plays_pauses_steps_and_scrubs(page):
     assert one.run(instant) == at + 1
     scrub = "bar.value = 50; bar.dispatchEvent(new Event('input'));"
     one.run(f"{{ const bar = document.querySelector('.transport input'); {scrub} }}")
-    readout = one.run("document.querySelector('.readout').textContent")
-    assert readout.replace("\u00a0", " ") == "t = 314 ms"
+    assert one.run("document.querySelector('.readout').textContent") == "t = 314\u00a0ms"
     quiet(one)
 
 
@@ -354,8 +366,9 @@ def test_sliders_change_all_that_is_read_and_back_again(crank):
     assert "not certified" in one.run(badge)
     one.run("document.querySelector('.alive .copy').click()")
     # The case by its name where it is the one of the package, else by its path.
-    line = r"lagrange-casadi run (\S+/)?slider_crank --set l=0\.3125"
-    assert re.fullmatch(line, one.run("window.copied"))
+    assert re.fullmatch(
+        r"lagrange-casadi run (\S+/)?slider_crank --set l=0\.3125", one.run("window.copied")
+    )
     one.run("document.querySelector('.alive .sign').click()")
     alive.wait(one, f"{badge} === '✓ certified'")
     assert peaks(one) == file
@@ -374,9 +387,8 @@ def test_a_design_that_cannot_be_assembled_says_so_in_place_of_numbers(crank):
     )
     assert set(peaks(one).values()) <= {"NaN", "0"}
     put(one, "l", -1.0)
-    words = one.run("document.querySelector('.alive .alarm').textContent").replace("\u00a0", " ")
-    assert words == (
-        "There is no such design: l = \u22121 m is out of range; it must be at least 0 m."
+    assert one.run("document.querySelector('.alive .alarm').textContent") == (
+        "There is no such design: l = \u22121\u00a0m is out of range; it must be at least 0\u00a0m."
     )
     put(one, "l", 0.2)
     assert one.run("document.querySelector('.alive .alarm').hidden")

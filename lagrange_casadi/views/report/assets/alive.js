@@ -26,10 +26,9 @@ class Alive {
   read() {
     const { live } = this;
     const of = new Map(live.of);
-    const rows = new Map(contents.rows.map((row) => [row.name, row]));
     const single = (number) => of.get(number)[0] - live.layout.inputs;
     const named = new Map(contents.series.map((one) => [one.values, one.name]));
-    this.targets = live.of.map(([number, sources]) => ({ array: array(number), sources, row: rows.get(named.get(number)) }));
+    this.targets = live.of.map(([number, sources]) => ({ array: array(number), sources, row: rowByName.get(named.get(number)) }));
     this.column = new Float64Array(BLOCK);
     this.paths = contents.bodies.flatMap((body) => {
       const sources = live.poses[body.name];
@@ -41,7 +40,7 @@ class Alive {
       const curve = new Along(entry, live.links[entry.link], this.engine, single);
       entry.forces.forEach((force, k) => {
         const one = seriesByName.get(`section:${entry.link}:${force.name}`);
-        const row = rows.get(`section:${entry.link}:${force.name}`);
+        const row = rowByName.get(`section:${entry.link}:${force.name}`);
         if (one) curve.series.set(k, [{ array: array(one.values) }, { array: array(one.places) }]);
         if (row && !row.open) curve.rowOf.set(k, row);
       });
@@ -339,9 +338,7 @@ function unwrap(view, stride, start, count, before) {
 function complete(pose) {
   for (let i = 0; i < pose[0].length; i += 1) {
     const x = [3, 4, 5].map((k) => pose[k][i]);
-    const least = [0, 1, 2].reduce((best, k) => (Math.abs(x[k]) < Math.abs(x[best]) ? k : best), 0);
-    const y = unit(cross([0, 1, 2].map((k) => Number(k === least)), x));
-    const z = cross(x, y);
+    const [y, z] = acrossOf(x).map((axis) => times(axis, -1));
     for (let k = 0; k < 3; k += 1) [pose[6 + k][i], pose[9 + k][i]] = [y[k], z[k]];
   }
 }

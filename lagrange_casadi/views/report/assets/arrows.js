@@ -79,30 +79,20 @@ function arrowEnds(kinds, scale) {
 /** A straight arrow; of a moment with two heads. Heads differ by kind, for those who see no colours. */
 function arrow(paper, from, to, ink, action, caption) {
   const [a, b] = [paper.on(from), paper.on(to)];
-  const length = Math.hypot(b[0] - a[0], b[1] - a[1]);
+  const [length, x, y] = wayTo(a, b);
   if (length < 2) return;
-  const [x, y] = [(b[0] - a[0]) / length, (b[1] - a[1]) / length];
   const head = Math.min(11, 0.7 * length);
   const tip = (back) => [b[0] - back * x, b[1] - back * y];
   paper.put(ORDER.arrows, b[2], (context) => {
-    context.strokeStyle = context.fillStyle = ink;
-    context.lineWidth = action.kind === "effort" ? 3 : 2;
-    if (action.kind === "load") context.setLineDash([6, 3]);
     context.lineCap = "butt";
     lineThrough(context, [a, tip(0.8 * head)]);
-    context.stroke();
-    context.setLineDash([]);
+    shaft(context, action.kind, ink);
     for (const back of action.moment ? [0, 0.8 * head] : [0]) {
       const [px, py] = tip(back);
       const wing = (side) => [px - head * x - side * 0.42 * head * y, py - head * y + side * 0.42 * head * x];
       lineThrough(context, [[px, py], wing(1), wing(-1)], true);
-      if (action.kind === "load") {
-        context.fillStyle = paper.inks.sheet;
-        context.lineWidth = 1.5;
-        context.stroke();
-      }
-      context.fill();
-      context.fillStyle = ink;
+      if (action.kind === "load") strokeWith(context, ink, 1.5);
+      fillWith(context, action.kind === "load" ? paper.inks.sheet : ink);
     }
     if (caption) writeBeside(paper, context, caption, action.kind === "load" ? [a[0] - 8 * x, a[1] - 8 * y] : [b[0] + 8 * x, b[1] + 8 * y], x, ink);
   });
@@ -116,30 +106,29 @@ function turnArrow(paper, place, sweep, ink, kind, caption) {
   if (Math.abs(angle) * r < 3) return;
   const [start, stop] = [Math.PI / 2, Math.PI / 2 + angle];
   paper.put(ORDER.arrows, depth, (context) => {
-    context.strokeStyle = context.fillStyle = ink;
-    context.lineWidth = kind === "effort" ? 3 : 2;
-    if (kind === "load") context.setLineDash([6, 3]);
     context.beginPath();
     context.arc(x, y, r, -start, -stop, angle > 0);
-    context.stroke();
-    context.setLineDash([]);
+    shaft(context, kind, ink);
     const [ex, ey] = [x + r * Math.cos(stop), y - r * Math.sin(stop)];
     const lead = stop + Math.sign(angle) * (Math.PI / 2 + 0.18);
     const [tx, ty] = [Math.cos(lead), -Math.sin(lead)];
     const tip = [ex + 7 * tx, ey + 7 * ty];
     lineThrough(context, [tip, [ex - 4 * tx - 5 * ty, ey - 4 * ty + 5 * tx], [ex - 4 * tx + 5 * ty, ey - 4 * ty - 5 * tx]], true);
-    context.fill();
+    fillWith(context, ink);
     if (caption) writeBeside(paper, context, caption, [x + r + 6, y - r], 1, ink);
   });
+}
+
+/** The line of an arrow, by what acts. */
+function shaft(context, kind, ink) {
+  context.setLineDash(kind === "load" ? [6, 3] : []);
+  strokeWith(context, ink, kind === "effort" ? 3 : 2);
+  context.setLineDash([]);
 }
 
 function writeBeside(paper, context, words, [x, y], way, ink) {
   context.font = "600 11px system-ui, sans-serif";
   context.textAlign = way >= 0 ? "left" : "right";
   context.textBaseline = "middle";
-  context.strokeStyle = paper.inks.sheet;
-  context.lineWidth = 3.5;
-  context.strokeText(words, x, y);
-  context.fillStyle = ink;
-  context.fillText(words, x, y);
+  writeOn(context, words, x, y, ink, paper.inks.sheet, 3.5);
 }

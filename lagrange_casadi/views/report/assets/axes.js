@@ -1,16 +1,38 @@
 // What charts have in common: curves, scales, axes, and the words beside the pointer.
 
+const BODY_COLOURS = 8;
+const DASHES = ["", "7 3", "2 3", "10 3 2 3", "4 2", "1 2"];
+const FIELD = { left: 62, right: 14, top: 20, bottom: 40, height: 150, between: 24 };
+
+/** How the curve with a number is drawn, so that curves are distinguished without colours too. */
+const lineOf = (k) => ({ class: `curve of-${k % BODY_COLOURS}`, "stroke-dasharray": DASHES[k % DASHES.length] });
+
+/** A piece of that curve, for a legend. */
+function swatch(k) {
+  return drawn("svg", { width: 26, height: 8, "aria-hidden": "true" }, drawn("line", { x1: 1, x2: 25, y1: 4, y2: 4, ...lineOf(k) }));
+}
+
 /** A sheet of two layers: what stands still, and above it what goes with the motion, so that curves are painted once. */
 class Sheet {
-  constructor(kind, words, { hover, press }) {
+  /** Its plot says what is `under` an event, if anything; `describe` has the words for that, `point` marks it, and `press` takes it. */
+  constructor(kind, words, plot) {
     [this.still, this.moving] = [drawn("svg"), drawn("svg", { class: "moving", "aria-hidden": "true" })];
     this.body = element("div", { class: `chart ${kind}`, tabindex: 0, role: "img", "aria-label": words }, this.still, this.moving);
     this.cursor = drawn("g", { class: "cursor" });
     this.pointer = drawn("g", { class: "cursor pointed" });
     this.moving.append(this.cursor, this.pointer);
+    const hover = (event) => {
+      const found = event && plot.under(event);
+      if (found === null) this.pointer.replaceChildren();
+      else plot.point?.(found);
+      showTip(found === null ? null : event, ...(found === null ? [] : plot.describe(found)));
+    };
     this.body.addEventListener("pointermove", hover);
     this.body.addEventListener("pointerleave", () => hover(null));
-    this.body.addEventListener("click", press);
+    this.body.addEventListener("click", (event) => {
+      const found = plot.under(event);
+      if (found !== null) plot.press?.(found);
+    });
   }
 
   /** Give it a size, and what stands still on it. */
@@ -31,7 +53,6 @@ class Sheet {
 
 /** Show the instant that a reader has pressed on. */
 function seekTo(instant) {
-  if (instant === null || instant === undefined) return;
   player.pause();
   player.seek(instant);
 }
@@ -53,11 +74,16 @@ function curveOfSection(section, force, ratio) {
   return { name: "", title: force.what, unit: force.unit, values, renew };
 }
 
+/** What a series or row is called where its kind is plain: "rod: bending moment". */
+function titleOf(one) {
+  return one.part && one.what ? `${one.part}: ${one.what}` : one.part || one.what;
+}
+
 /** The entries of a list of quantities, by kind. */
-function seriesEntries(wanted = () => true) {
+function seriesEntries(series = contents.series) {
   const found = [];
   for (const [group, head] of Object.entries(contents.groups)) {
-    const own = contents.series.filter((one) => one.group === group && wanted(one));
+    const own = series.filter((one) => one.group === group);
     const words = group === "section" ? `${head}, largest along the link` : head;
     if (own.length) found.push([words, own.map((one) => [one.name, titleOf(one)])]);
   }
@@ -97,7 +123,7 @@ function scaled([low, high], [from, to], unit, title, room = 0) {
     const text = stripped(tick.toFixed(Math.min(8, decimals + 1)));
     return minus(text === "-0" ? "0" : text);
   };
-  return { at, back, ticks, describe, factor, unit: readable, label: labelled(title, readable), from, to, low: a, high: b };
+  return { at, back, ticks, describe, factor, unit: readable, title, label: labelled(title, readable), from, to, low: a, high: b };
 }
 
 /** Whether values with these ends are all on a scale, and take up much of it. */
@@ -105,8 +131,8 @@ function fitsIn([low, high], scale) {
   return low >= scale.low && high <= scale.high && high - low >= 0.4 * (scale.high - scale.low);
 }
 
-/** The lines and numbers of two scales around a field. */
-function axesOf(x, y, { ground = true, bottom = true } = {}) {
+/** The lines, numbers and words of two scales around a field; a scale upwards without a title has its unit above it. */
+function axesOf(x, y, bottom = true) {
   const group = drawn("g", { class: "axes" });
   for (const [at, tick] of y.ticks) {
     group.append(drawn("line", { x1: x.from, x2: x.to, y1: at, y2: at, class: tick === 0 ? "zero" : "net" }));
@@ -116,8 +142,18 @@ function axesOf(x, y, { ground = true, bottom = true } = {}) {
     group.append(drawn("line", { x1: at, x2: at, y1: y.from, y2: y.to, class: "net" }));
     if (bottom) group.append(drawn("text", { x: at, y: y.from + 15, class: "x" }, x.describe(tick)));
   }
-  if (ground) group.append(drawn("line", { x1: x.from, x2: x.to, y1: y.from, y2: y.from, class: "edge" }));
+  group.append(drawn("line", { x1: x.from, x2: x.to, y1: y.from, y2: y.from, class: "edge" }));
+  const middle = (y.from + y.to) / 2;
+  if (y.title) group.append(drawn("text", { x: 14, y: middle, class: "label", transform: `rotate(-90 14 ${middle})` }, y.label));
+  else group.append(drawn("text", { x: x.from - 7, y: y.to - 7, class: "unit" }, y.unit || "1"));
+  if (bottom) group.append(drawn("text", { x: (x.from + x.to) / 2, y: y.from + FIELD.bottom - 6, class: "label" }, x.label));
   return group;
+}
+
+/** The words at a bar of colours, whose middle is at `x`: the ends of its values, and their unit. */
+function keyOf(scale, x, up, low, high) {
+  const text = (words, y) => drawn("text", { x, y, class: "key" }, words);
+  return [text(format(high * scale.factor, 3), up.to + 9), text(format(low * scale.factor, 3), up.from - 18), text(scale.unit, up.from - 2)];
 }
 
 /** A curve as the path of an element, broken where there are no numbers. Of more instants than its columns, each so many points wide,
@@ -155,10 +191,7 @@ const tip = element("div", { class: "tip", role: "presentation", hidden: true })
 function showTip(event, head, lines) {
   tip.hidden = !event;
   if (!event) return;
-  tip.replaceChildren(
-    element("div", { class: "head" }, head),
-    element("dl", {}, lines.flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value)])),
-  );
+  tip.replaceChildren(element("div", { class: "head" }, head), listOf(lines));
   const { width, height } = tip.getBoundingClientRect();
   const x = event.clientX + 16 + width > window.innerWidth ? event.clientX - 16 - width : event.clientX + 16;
   const y = Math.max(4, Math.min(window.innerHeight - height - 4, event.clientY + 14));
@@ -166,12 +199,17 @@ function showTip(event, head, lines) {
   tip.style.top = `${y}px`;
 }
 
-/** When an instant is, in words. */
-function whenIs(instant) {
-  return whenOf(instants.t[instant], over ? array(over.values)[instant] : null);
+/** Of so many things the number of the one that is least away, and less than `within`; else null. */
+function closest(count, awayOf, within = Infinity) {
+  let [best, least] = [null, within];
+  for (let k = 0; k < count; k += 1) {
+    const away = awayOf(k);
+    if (away < least) [best, least] = [k, away];
+  }
+  return best;
 }
 
 /** The number of the value that is nearest to another. */
 function nearest(values, wanted) {
-  return values.reduce((best, value, k) => (Math.abs(value - wanted) < Math.abs(values[best] - wanted) ? k : best), 0);
+  return closest(values.length, (k) => Math.abs(values[k] - wanted)) ?? 0;
 }

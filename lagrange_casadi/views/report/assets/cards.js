@@ -2,16 +2,13 @@
 
 const deck = { cards: [], list: null, stage: null };
 
-/** A card: a head with what is chosen, and a plot that is made anew when that changes. */
-class Card {
-  constructor(title, choices, make) {
-    this.make = make;
-    this.title = element("h3", {}, title);
-    this.field = element("div", { class: "field" });
-    this.choices = element("div", { class: "choices" });
+/** A card whose plot goes with the motion, and with the sliders. */
+class MovingCard extends Card {
+  constructor(title, state, make) {
+    super(title, state, make);
     this.legend = element("ul", { class: "legend" });
-    const close = signButton("✕", "Remove this plot", () => this.remove(), { class: "sign small" });
-    this.body = element("section", { class: "card" }, element("header", {}, this.title, this.choices, saveList(this), close), this.legend, this.field);
+    this.field.before(this.legend);
+    this.head.append(saveList(this), signButton("✕", "Remove this plot", () => this.remove(), { class: "sign small" }));
     this.seen = true;
     // What is out of sight need not go with the motion.
     this.watcher = new IntersectionObserver(([entry]) => {
@@ -19,7 +16,6 @@ class Card {
       this.mark(player.instant);
     });
     this.watcher.observe(this.body);
-    choices(this);
   }
 
   remove() {
@@ -38,8 +34,8 @@ class Card {
     }
     showTip(null);
     const without = designState() === "none";
-    this.plot = without ? null : this.make(this);
-    const words = without ? "There is no such design." : (this.lacking?.() ?? "Nothing is chosen.");
+    this.plot = without ? null : this.make();
+    const words = without ? "There is no such design." : (this.lacking ?? "Nothing is chosen.");
     this.field.replaceChildren(this.plot ? this.plot.sheet.body : element("p", { class: "none" }, words));
     this.drawLegend();
     this.draw();
@@ -74,10 +70,8 @@ class Card {
       ...curves.map((curve, k) => {
         const value = element("b", {});
         this.values.push([curve, value]);
-        const swatch = drawn("svg", { width: 26, height: 8, "aria-hidden": "true" },
-          drawn("line", { x1: 1, x2: 25, y1: 4, y2: 4, class: `curve of-${k % BODY_COLOURS}`, "stroke-dasharray": DASHES[k % DASHES.length] }));
         const drop = this.drop && signButton("✕", `Leave ${curve.title} out`, () => this.drop(k), { class: "sign tiny" });
-        return element("li", {}, swatch, element("span", {}, curve.title), value, drop);
+        return element("li", {}, swatch(k), element("span", {}, curve.title), value, drop);
       }),
       ...(this.plot?.described?.() ?? []),
     );
@@ -96,30 +90,18 @@ function addCard(card, focus) {
 function chartCard(names, along = alongInstants, focus = false) {
   const axes = [["Instants", [["t", "time"], ...(over ? [["over", over.joint]] : [])]], ...seriesEntries()];
   const state = { x: along, names: [...names] };
-  const title = () => {
+  const card = new MovingCard("", state, () => {
     const groups = [...new Set(state.names.map((name) => contents.groups[seriesByName.get(name).group]))];
-    return groups.length === 1 ? groups[0] : "Chart";
-  };
-  const card = new Card(
-    title(),
-    (own) => {
-      const add = chooser("Add a curve", [["", "+ curve"], ...seriesEntries()], "", (name) => {
-        if (name && !state.names.includes(name)) state.names.push(name);
-        add.value = "";
-        own.renew();
-      });
-      add.classList.add("curves");
-      const x = chooser("Over", axes, state.x, (name) => {
-        state.x = name;
-        own.renew();
-      });
-      own.choices.append(add, element("label", {}, "over ", x));
-    },
-    (own) => {
-      own.title.textContent = title();
-      return state.names.length ? new Chart(curveOf(state.x), state.names.map(curveOf)) : null;
-    },
-  );
+    card.title.textContent = groups.length === 1 ? groups[0] : "Chart";
+    return state.names.length ? new Chart(curveOf(state.x), state.names.map(curveOf)) : null;
+  });
+  const add = chooser("Add a curve", [["", "+ curve"], ...seriesEntries()], "", (name) => {
+    if (name && !state.names.includes(name)) state.names.push(name);
+    add.value = "";
+    card.renew();
+  });
+  add.classList.add("curves");
+  card.choices.append(add, element("label", {}, "over ", card.choose("x", "Over", axes)));
   card.drop = (k) => {
     state.names.splice(k, 1);
     card.renew();
@@ -127,41 +109,32 @@ function chartCard(names, along = alongInstants, focus = false) {
   return addCard(card, focus);
 }
 
+const linkEntries = (links) => links.map(({ link }) => [link, link]);
+
 /** All forces of one section over the instants. */
 function sectionCard(section, ratio, focus = false) {
   const state = { section, ratio };
-  const card = new Card(
-    "A section",
-    (own) => {
-      const described = element("output", { class: "ratio" });
-      const slider = element("input", {
-        type: "range", min: 0, max: section.xi.length - 1, value: ratio, "aria-label": "Place along the link, ξ/l",
-        input: () => own.pin({ section: state.section, ratio: Number(slider.value) }),
-      });
-      const link = chooser("Link", sections.map((one) => [one.link, one.link]), section.link, (name) =>
-        own.pin({ section: sectionByLink.get(name), ratio: state.ratio }),
-      );
-      own.pin = (pinned) => {
-        Object.assign(state, pinned);
-        link.value = state.section.link;
-        slider.value = state.ratio;
-        own.renew();
-        deck.stage.pinned = { section: state.section, ratio: state.ratio };
-        deck.stage.draw();
-      };
-      own.describe = () => {
-        const xi = state.section.xi[state.ratio];
-        described.textContent = `ξ/l = ${format(xi, 3)}, ${shown(xi * state.section.length, "m", 4, state.section.length)} from the base`;
-      };
-      own.choices.append(link, slider, described);
-    },
-    (own) => {
-      own.describe();
-      const forces = knownForces(state.section).filter((force) => !contents.space || ["axial", "shear", "torsion", "bending"].includes(force.name));
-      return forces.length ? new Chart(curveOf(alongInstants), forces.map((force) => curveOfSection(state.section, force, state.ratio))) : null;
-    },
-  );
-  card.ofSection = true;
+  const described = element("output", { class: "ratio" });
+  const card = new MovingCard("A section", state, () => {
+    const xi = state.section.xi[state.ratio];
+    described.textContent = `ξ/l = ${format(xi, 3)}, ${shown(xi * state.section.length, "m", 4, state.section.length)} from the base`;
+    const forces = knownForces(state.section).filter((force) => !contents.space || ["axial", "shear", "torsion", "bending"].includes(force.name));
+    return forces.length ? new Chart(curveOf(alongInstants), forces.map((force) => curveOfSection(state.section, force, state.ratio))) : null;
+  });
+  const slider = element("input", {
+    type: "range", min: 0, max: section.xi.length - 1, value: ratio, "aria-label": "Place along the link, ξ/l",
+    input: () => card.pin({ section: state.section, ratio: Number(slider.value) }),
+  });
+  const link = chooser("Link", linkEntries(sections), section.link, (name) => card.pin({ section: sectionByLink.get(name), ratio: state.ratio }));
+  card.pin = (pinned) => {
+    Object.assign(state, pinned);
+    link.value = state.section.link;
+    slider.value = state.ratio;
+    card.renew();
+    deck.stage.pinned = { ...state };
+    deck.stage.draw();
+  };
+  card.choices.append(link, slider, described);
   return addCard(card, focus);
 }
 
@@ -173,7 +146,7 @@ function showSection(link, xi) {
 
 /** Pin a section: the card of sections shows it, and the picture marks it. */
 function pinSection(pinned, focus = true) {
-  const card = deck.cards.find((one) => one.ofSection) ?? sectionCard(pinned.section, pinned.ratio, focus);
+  const card = deck.cards.find((one) => one.pin) ?? sectionCard(pinned.section, pinned.ratio, focus);
   card.pin(pinned);
   const xi = format(pinned.section.xi[pinned.ratio], 3);
   announce(`${pinned.section.link} at xi/l = ${xi}: ${sectionLines(pinned.section, pinned.ratio, player.instant).map((line) => line.join(" ")).join(", ")}`);
@@ -191,80 +164,44 @@ function mappedOf(link) {
 function mapCard(link, name, focus = false) {
   const state = { link, name };
   const chosen = () => mappedOf(state.link).find((one) => one.name === state.name);
-  const card = new Card(
-    "Section map",
-    (own) => {
-      const what = element("span");
-      const offer = () =>
-        what.replaceChildren(
-          chooser("What is mapped", mappedOf(state.link).map((one) => [one.name, one.what]), state.name, (name) => {
-            state.name = name;
-            own.renew();
-          }),
-        );
-      const known = sections.filter((one) => knownForces(one).length).map((one) => [one.link, one.link]);
-      const links = chooser("Link", known, link, (name) => {
-        state.link = name;
-        if (!chosen()) state.name = mappedOf(name)[0].name;
-        offer();
-        own.renew();
-      });
-      offer();
-      own.choices.append(links, what);
-      own.lacking = () => "This map shows the file's design only; charts and peaks of stresses follow the sliders.";
-    },
-    () => {
-      const one = chosen();
-      return one.ofFile && designState() !== "file" ? null : new Heat(one.field());
-    },
-  );
+  const card = new MovingCard("Section map", state, () => {
+    const one = chosen();
+    return one.ofFile && designState() !== "file" ? null : new Heat(one.field());
+  });
+  card.lacking = "This map shows the file's design only; charts and peaks of stresses follow the sliders.";
+  const offered = () => mappedOf(state.link).map((one) => [one.name, one.what]);
+  const what = card.choose("name", "What is mapped", offered());
+  const links = card.choose("link", "Link", linkEntries(sections.filter((one) => knownForces(one).length)), () => {
+    if (!chosen()) state.name = offered()[0][0];
+    offer(what, offered(), state.name);
+  });
+  card.choices.append(links, what);
   return addCard(card, focus);
 }
 
 /** N, V and M along a link, at the instant that governs it or at that which is shown. */
 function diagramCard(link, focus = false) {
   const state = { link, when: "governs" };
-  const card = new Card(
-    "Diagrams",
-    (own) => {
-      const choose = (key, label, entries) => chooser(label, entries, state[key], (value) => {
-        state[key] = value;
-        own.renew();
-      });
-      own.choices.append(
-        choose("link", "Link", diagramLinks().map((one) => [one.link, one.link])),
-        choose("when", "Instant", [["governs", "at the instant that governs"], ["shown", "at the instant shown"]]),
-      );
-    },
-    () => new Diagram(sectionByLink.get(state.link), state.when),
+  const card = new MovingCard("Diagrams", state, () => new Diagram(sectionByLink.get(state.link), state.when));
+  card.choices.append(
+    card.choose("link", "Link", linkEntries(diagramLinks())),
+    card.choose("when", "Instant", [["governs", "at the instant that governs"], ["shown", "at the instant shown"]]),
   );
   return addCard(card, focus);
 }
 
 function polarCard(joint, focus = false) {
-  const state = { joint, way: 0 };
-  const card = new Card(
-    "Bearing load",
-    (own) => {
-      const ways = element("span");
-      const offer = () =>
-        ways.replaceChildren(
-          chooser("Axes", polarWays(state.joint).map((way, k) => [String(k), way.words]), String(state.way), (value) => {
-            state.way = Number(value);
-            own.renew();
-          }),
-        );
-      const joints = chooser("Joint", polarJoints().map((one) => [one.name, one.name]), joint.name, (name) => {
-        state.joint = contents.joints.find((one) => one.name === name);
-        state.way = 0;
-        offer();
-        own.renew();
-      });
-      offer();
-      own.choices.append(joints, ways);
-    },
-    () => new Polar(state.joint, polarWays(state.joint)[state.way] ?? polarWays(state.joint)[0]),
-  );
+  const state = { joint: joint.name, way: "0" };
+  const joints = polarJoints();
+  const chosen = () => joints.find((one) => one.name === state.joint);
+  const card = new MovingCard("Bearing load", state, () => new Polar(chosen(), polarWays(chosen())[state.way]));
+  const offered = () => polarWays(chosen()).map((way, k) => [String(k), way.words]);
+  const ways = card.choose("way", "Axes", offered());
+  const list = card.choose("joint", "Joint", joints.map(({ name }) => [name, name]), () => {
+    state.way = "0";
+    offer(ways, offered(), "0");
+  });
+  card.choices.append(list, ways);
   return addCard(card, focus);
 }
 

@@ -1,17 +1,15 @@
 // Charts: quantities over time, over a drive, or over one another, those of each unit in a field of their own.
 
-const DASHES = ["", "7 3", "2 3", "10 3 2 3", "4 2", "1 2"];
-const FIELD = { left: 62, right: 14, top: 20, bottom: 40, height: 150, between: 24 };
-
 class Chart {
+  press = seekTo;
+
+  point = (instant) => this.mark(instant, this.sheet.pointer);
+
   /** `x` is a curve, `curves` are those over it. Where x only ever rises, or falls, it is `ordered`, and an instant has one place on it. */
   constructor(x, curves) {
     this.x = x;
     this.curves = curves;
-    this.sheet = new Sheet("curves", `${curves.map((curve) => curve.title).join("; ")}; over ${x.title}`, {
-      hover: (event) => this.hover(event),
-      press: (event) => seekTo(this.instantUnder(event)),
-    });
+    this.sheet = new Sheet("curves", `${curves.map((curve) => curve.title).join("; ")}; over ${x.title}`, this);
     this.order();
   }
 
@@ -51,25 +49,14 @@ class Chart {
       // The rounding of nothing is drawn as nothing.
       const nothing = Math.max(-ends[0], ends[1]) <= UNSEEN * (sizesOfUnits().get(unit) ?? 0);
       const up = scaled(nothing ? [0, 0] : ends, [top + high, top], unit, "", 0.06);
-      return { up, own, top, bottom: top + high, lines: own.map((curve) => this.line(curve, up)) };
+      return { up, own, top, bottom: top + high, lines: own.map((curve) => drawn("path", { d: this.pathOf(curve, up), ...lineOf(this.curves.indexOf(curve)) })) };
     });
     this.sheet.fill(
       width, height,
-      ...this.fields.map(({ up }, k) => axesOf(across, up, { bottom: k === this.fields.length - 1 })),
-      ...this.fields.map(({ up, top }) => drawn("text", { x: FIELD.left - 7, y: top - 7, class: "unit" }, up.unit || "1")),
-      drawn("text", { x: (FIELD.left + width - FIELD.right) / 2, y: height - 6, class: "label" }, across.label),
+      ...this.fields.map(({ up }, k) => axesOf(across, up, k === this.fields.length - 1)),
       ...this.fields.flatMap(({ lines }) => lines),
     );
     this.mark(player.instant);
-  }
-
-  line(curve, up) {
-    const number = this.curves.indexOf(curve);
-    return drawn("path", {
-      d: this.pathOf(curve, up),
-      class: `curve of-${number % BODY_COLOURS}`,
-      "stroke-dasharray": DASHES[number % DASHES.length],
-    });
   }
 
   /** Mark an instant: a line where the axis has one place for it, and a dot on every curve. */
@@ -84,28 +71,19 @@ class Chart {
     group.replaceChildren(...line, ...dots);
   }
 
-  instantUnder(event) {
+  /** The instant under the pointer. */
+  under(event) {
     const [px, py] = this.sheet.at(event);
-    let [best, away] = [null, Infinity];
-    for (let i = 0; i < instants.count; i += 1) {
+    return closest(instants.count, (i) => {
       const dx = this.across.at(this.x.values[i]) - px;
       const dy = this.ordered ? 0 : Math.min(...this.fields.flatMap(({ up, own }) => own.map((curve) => Math.abs(up.at(curve.values[i]) - py))));
-      const d = Math.hypot(dx, dy);
-      if (d < away) [best, away] = [i, d];
-    }
-    return best;
+      return Math.hypot(dx, dy);
+    });
   }
 
-  hover(event) {
-    const found = event && this.instantUnder(event);
-    if (found === null || found === undefined) {
-      this.sheet.pointer.replaceChildren();
-      showTip(null);
-      return;
-    }
-    this.mark(found, this.sheet.pointer);
-    const lines = this.ordered ? [] : [[this.x.title, shown(this.x.values[found], this.x.unit, 5, largestOf(this.x.values))]];
-    showTip(event, whenIs(found), [...lines, ...this.curves.map((curve) => [curve.title, this.reads(curve, found)])]);
+  describe(instant) {
+    const lines = this.ordered ? [] : [[this.x.title, shown(this.x.values[instant], this.x.unit, 5, largestOf(this.x.values))]];
+    return [whenIs(instant), [...lines, ...this.curves.map((curve) => [curve.title, this.reads(curve, instant)])]];
   }
 
   /** What is saved as CSV: of all instants that are shown, in SI. */

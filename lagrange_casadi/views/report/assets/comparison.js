@@ -5,14 +5,12 @@ const runs = contents.runs.map((run) => ({ ...run, seriesByName: new Map(run.ser
 /** Quantities that both have, in the order of the first. */
 const shared = runs[0].series.filter((one) => runs[1].seriesByName.get(one.name)?.unit === one.unit);
 
-const titleOf = (one) => (one.part && one.what ? `${one.part}: ${one.what}` : one.part || one.what);
-
 /** How the instants of both are shown: over the drive where both are asked for over the same joint, else over time. */
 const along = runs.map((run) => (contents.clock.name === "over" ? { name: "over", title: run.over.joint, unit: run.over.unit, values: array(run.over.values) } : { name: "t", title: "time", unit: "s", values: array(run.t) }));
 
 function buildComparison() {
   const root = document.getElementById("report");
-  const cards = firstNames().map((name) => new Comparison(name));
+  const cards = firstNames().map(comparisonCard);
   const frames = runs.map((run, k) => element("section", { class: "left looked-at" },
     element("header", {}, swatch(k), element("h3", {}, run.name)),
     element("iframe", { name: `run ${k + 1}`, sandbox: "allow-scripts allow-modals allow-downloads", title: `${run.name}, in motion`, srcdoc: run.frame })));
@@ -25,13 +23,7 @@ function buildComparison() {
     element("div", { class: "tables" }, largestTable(), parameterTable()), tip, said);
   const renew = () => cards.forEach((card) => card.draw());
   reading.watchers.add(renew);
-  let width = 0;
-  new ResizeObserver(() => {
-    if (root.clientWidth === width) return;
-    width = root.clientWidth;
-    renew();
-  }).observe(root);
-  window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", renew);
+  drawWith(root, renew);
   window.addEventListener("beforeprint", () => {
     document.documentElement.dataset.theme = "light";
     cards.forEach((card) => card.draw(330));
@@ -42,26 +34,16 @@ function buildComparison() {
   });
 }
 
-/** The line by which a run is drawn: the second one is dashed, so that both are distinguished without colours. */
-function swatch(k) {
-  return drawn("svg", { width: 26, height: 8, "aria-hidden": "true" }, drawn("line", { x1: 1, x2: 25, y1: 4, y2: 4, class: `curve of-${k}`, "stroke-dasharray": k ? "7 3" : "" }));
-}
-
 function headOf(send) {
-  const si = element("button", { type: "button", class: "switch", "aria-pressed": "false", title: "Units of the file: SI, without prefixes", click: () => {
-    setSi(!reading.si);
-    si.setAttribute("aria-pressed", String(reading.si));
-    send({ act: "si", given: [reading.si] });
-  } }, "SI units");
   const names = runs.map((run, k) => element("span", { class: "run" }, swatch(k), ` ${run.name}${run.certified ? "" : ", not certified"}`));
-  return element("header", { class: "head" },
-    element("div", {}, element("h1", {}, `${contents.case}: two runs`), element("p", { class: "subtitle" }, names),
-      contents.same && element("p", { class: "alarm" }, "Both runs are the same: all their values are equal.")),
-    element("div", { class: "switches" }, si, element("button", { type: "button", class: "switch", click: () => {
-      // Both pictures are at rest, and at the same time, before they are printed.
-      send({ act: "pause", given: [] });
-      setTimeout(() => window.print(), 200);
-    } }, "Print")));
+  const same = contents.same && element("p", { class: "alarm" }, "Both runs are the same: all their values are equal.");
+  const si = siSwitch(() => send({ act: "si", given: [reading.si] }));
+  const print = printSwitch(() => {
+    // Both pictures are at rest, and at the same time, before they are printed.
+    send({ act: "pause", given: [] });
+    setTimeout(() => window.print(), 200);
+  });
+  return headWith(`${contents.case}: two runs`, [element("p", { class: "subtitle" }, names), same], null, si, print);
 }
 
 /** The quantities that are charted first: the largest effort, reaction and section forces. */
@@ -72,58 +54,55 @@ function firstNames() {
   return found.length ? found : shared.slice(0, 1).map((one) => one.name);
 }
 
+/** A card with a chart of one quantity of both runs. */
+function comparisonCard(name) {
+  const card = new Card("", { name }, () => {
+    const plot = new Comparison(card.state.name);
+    card.title.textContent = plot.title;
+    return plot;
+  });
+  card.legend = element("ul", { class: "legend" }, runs.map((run, k) => element("li", {}, swatch(k), element("span", {}, run.name))));
+  card.field.before(card.legend);
+  card.choices.append(card.choose("name", "Quantity", seriesEntries(shared)));
+  card.head.append(saveList(card));
+  card.renew();
+  return card;
+}
+
 /** A chart of one quantity of both runs. */
 class Comparison {
   constructor(name) {
-    this.name = name;
-    this.title = element("h3", {}, "");
-    this.field = element("div", { class: "field" });
-    this.legend = element("ul", { class: "legend" }, runs.map((run, k) => element("li", {}, swatch(k), element("span", {}, run.name))));
-    const groups = Object.entries(contents.groups).map(([group, head]) => [head, shared.filter((one) => one.group === group).map((one) => [one.name, titleOf(one)])]).filter(([, entries]) => entries.length);
-    const list = chooser("Quantity", groups, name, (chosen) => {
-      this.name = chosen;
-      this.draw();
-    });
-    this.choices = element("div", { class: "choices" }, list);
-    this.plot = this;
-    this.body = element("section", { class: "card" }, element("header", {}, this.title, this.choices, saveList(this)), this.legend, this.field);
-    this.sheet = new Sheet("curves", "", { hover: (event) => this.hover(event), press: () => {} });
-    this.field.append(this.sheet.body);
+    const series = runs.map((run) => run.seriesByName.get(name));
+    Object.assign(this, { name, title: titleOf(series[0]), unit: series[0].unit, curves: series.map((one) => array(one.values)) });
+    this.sheet = new Sheet("curves", `${this.title} of both runs, over ${along[0].title}`, this);
   }
 
-  draw(width = this.field.clientWidth) {
-    if (!width) return;
-    this.curves = runs.map((run) => array(run.seriesByName.get(this.name).values));
-    const { unit } = runs[0].seriesByName.get(this.name);
-    this.title.textContent = titleOf(runs[0].seriesByName.get(this.name));
-    this.sheet.body.setAttribute("aria-label", `${this.title.textContent} of both runs, over ${along[0].title}`);
-    const [left, right, top, height] = [62, 14, 20, 240];
-    this.across = scaled(endsOf(along.map(({ values }) => values), false), [left, width - right], along[0].unit, along[0].title);
-    this.up = scaled(endsOf(this.curves, true), [height - 40, top], unit, "", 0.06);
+  draw(width) {
+    const height = 240;
+    this.across = scaled(endsOf(along.map(({ values }) => values), false), [FIELD.left, width - FIELD.right], along[0].unit, along[0].title);
+    this.up = scaled(endsOf(this.curves, true), [height - FIELD.bottom, FIELD.top], this.unit, "", 0.06);
     this.sheet.fill(width, height, axesOf(this.across, this.up),
-      drawn("text", { x: left - 7, y: top - 7, class: "unit" }, this.up.unit || "1"),
-      drawn("text", { x: (left + width - right) / 2, y: height - 6, class: "label" }, this.across.label),
-      ...this.curves.map((values, k) => drawn("path", { d: pathOf(along[k].values, values, this.across, this.up, 0.5), class: `curve of-${k}`, "stroke-dasharray": k ? "7 3" : "" })));
+      ...this.curves.map((values, k) => drawn("path", { d: pathOf(along[k].values, values, this.across, this.up, 0.5), ...lineOf(k) })));
   }
 
-  hover(event) {
-    if (!event) {
-      this.sheet.pointer.replaceChildren();
-      showTip(null);
-      return;
-    }
+  /** The instant of each run under the pointer. */
+  under(event) {
     const x = this.across.back(this.sheet.at(event)[0]);
-    const { unit } = runs[0].seriesByName.get(this.name);
-    const most = Math.max(...this.curves.map(largestOf));
-    const at = along.map(({ values }) => nearest(values, x));
+    return along.map(({ values }) => nearest(values, x));
+  }
+
+  point(at) {
     this.sheet.pointer.replaceChildren(...at.map((i, k) => drawn("circle", { cx: this.across.at(along[k].values[i]), cy: this.up.at(this.curves[k][i]), r: 3.6, class: `of-${k}` })));
-    showTip(event, `${along[0].title} = ${shown(along[0].values[at[0]], along[0].unit)}`, runs.map((run, k) => [run.name, shownOf(this.curves[k][at[k]], unit, most)]));
+  }
+
+  describe(at) {
+    const most = Math.max(...this.curves.map(largestOf));
+    return [`${along[0].title} = ${shown(along[0].values[at[0]], along[0].unit)}`, runs.map((run, k) => [run.name, shownOf(this.curves[k][at[k]], this.unit, most)])];
   }
 
   /** What is saved as CSV: both runs below each other, for their instants may differ. */
   table() {
-    const { unit } = runs[0].seriesByName.get(this.name);
-    return { heads: ["run", `${along[0].name === "t" ? "t" : along[0].title} [${along[0].unit}]`, `${this.name} [${unit}]`], rows: runs.flatMap((run, k) => Array.from(this.curves[k], (value, i) => [k + 1, along[k].values[i], value])) };
+    return { heads: ["run", `${along[0].name === "t" ? "t" : along[0].title} [${along[0].unit}]`, `${this.name} [${this.unit}]`], rows: runs.flatMap((run, k) => Array.from(this.curves[k], (value, i) => [k + 1, along[k].values[i], value])) };
   }
 }
 
@@ -145,9 +124,7 @@ function largestTable() {
     ["change", words, change],
   ];
   const plain = [["name", (row) => row.name], ["unit", (row) => row.unit], ...runs.flatMap((run, k) => [[run.name, (row) => row.values[k]], [`t [s] of ${run.name}`, (row) => row.t[k]], [`xi/l of ${run.name}`, (row) => row.xi[k]]])];
-  const table = sortedTable("Largest in both", heads, () => rows, { plain });
-  table.body.classList.add("compared");
-  return table.body;
+  return sortedTable("Largest in both", heads, () => rows, { plain, kind: "compared" }).body;
 }
 
 /** The parameters of both; those that differ first. */
@@ -158,9 +135,7 @@ function parameterTable() {
   const differs = (name) => runs[0].parameters[name]?.[0] !== runs[1].parameters[name]?.[0];
   const rows = names.map((name) => ({ name })).sort((a, b) => differs(b.name) - differs(a.name));
   const heads = [["parameter", (row) => row.name], ...runs.map((run, k) => [run.name, (row) => value(row.name, k)]), ["", (row) => (differs(row.name) ? "differs" : "")]];
-  const table = sortedTable("Parameters", heads, () => rows);
-  table.body.classList.add("compared");
-  return table.body;
+  return sortedTable("Parameters", heads, () => rows, { kind: "compared" }).body;
 }
 
 buildComparison();

@@ -76,12 +76,16 @@ function filter(text) {
   return "";
 }
 
+/** The rows, of those that meet the conditions, that have a number in all of some columns. */
+function comparable(...wanted) {
+  return picked.met.filter((row) => status[row] === 0 && wanted.every((column) => Number.isFinite(costOf(column, row))));
+}
+
 /** The rows, of those that meet the conditions, of which no other is as good in both columns and better in one: less is better. */
 function frontOf(first, second) {
-  const known = picked.met.filter((row) => status[row] === 0 && Number.isFinite(costOf(first, row)) && Number.isFinite(costOf(second, row)));
-  known.sort((a, b) => costOf(first, a) - costOf(first, b) || costOf(second, a) - costOf(second, b));
   let least = Infinity;
-  return known.filter((row) => {
+  const cheapest = (a, b) => costOf(first, a) - costOf(first, b) || costOf(second, a) - costOf(second, b);
+  return comparable(first, second).sort(cheapest).filter((row) => {
     const better = costOf(second, row) < least;
     if (better) least = costOf(second, row);
     return better;

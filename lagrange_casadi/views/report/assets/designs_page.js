@@ -11,17 +11,12 @@ function buildSweep() {
   root.append(sweepHead(), conditionBar(), element("div", { class: "desk" }, looked, element("div", { class: "right" }, cards)), element("div", { class: "tables" }, designTable()), tip, said);
   const plots = [...mapCards(), frontCard()].filter(Boolean);
   cards.append(...plots.map((card) => card.body));
+  plots.forEach((card) => card.renew());
   lookedAt(looked);
   const renew = () => plots.forEach((card) => card.draw());
   picked.watchers.add(renew);
   reading.watchers.add(renew);
-  let width = 0;
-  new ResizeObserver(() => {
-    if (cards.clientWidth === width) return;
-    width = cards.clientWidth;
-    renew();
-  }).observe(cards);
-  window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", renew);
+  drawWith(cards, renew);
   const [first, second] = pair;
   pick(first ? frontOf(first, second ?? first)[0] ?? 0 : 0);
 }
@@ -30,13 +25,8 @@ function sweepHead() {
   const { shown: many, total } = contents.designs;
   const counts = contents.counts.map(([words, count]) => `${count} ${words}`).join("; ");
   const some = many < total ? `, ${many} of them in this page: those of the front, and others evenly spread` : "";
-  const si = element("button", { type: "button", class: "switch", "aria-pressed": "false", click: () => {
-    setSi(!reading.si);
-    si.setAttribute("aria-pressed", String(reading.si));
-  } }, "SI units");
-  return element("header", { class: "head" },
-    element("div", {}, element("h1", {}, contents.case), element("p", { class: "subtitle" }, `${total} designs over ${contents.parameters.map((one) => one.name).join(", ")}: ${counts}${some}`)),
-    element("div", { class: "switches" }, si, element("button", { type: "button", class: "switch", click: () => window.print() }, "Print")));
+  const described = element("p", { class: "subtitle" }, `${total} designs over ${contents.parameters.map((one) => one.name).join(", ")}: ${counts}${some}`);
+  return headWith(contents.case, described, null, siSwitch(), printSwitch());
 }
 
 /** Where the reader says which designs are shown. */
@@ -50,23 +40,6 @@ function conditionBar() {
   picked.watchers.add(describe);
   describe();
   return element("div", { class: "conditions" }, field, count, wrong);
-}
-
-/** A card with a plot that is made anew when what is chosen changes. */
-function plotCard(title, choices, make) {
-  const field = element("div", { class: "field" });
-  const body = element("section", { class: "card" }, element("header", {}, element("h3", {}, title), element("div", { class: "choices" }, choices((() => renew()))) ), field);
-  let plot = null;
-  const renew = () => {
-    plot = make();
-    field.replaceChildren(plot.sheet.body);
-    draw();
-  };
-  const draw = () => {
-    if (!plot) renew();
-    else if (field.clientWidth) plot.draw(field.clientWidth);
-  };
-  return { body, draw };
 }
 
 const columnEntries = () => (varying.length ? varying : columns).map((one) => [one.name, one.title]);
@@ -85,35 +58,27 @@ function sameLine() {
   return element("p", { class: "fine" }, `The same in all designs: ${same.map((one) => `${one.title} ${columnWords(one, Math.max(first, 0))}`).join("; ")}.`);
 }
 
+/** A card of designs: its state has columns by their names, and `make` takes these columns. */
+function designCard(title, state, make) {
+  return new Card(title, state, () => make(...Object.values(state).map((name) => columnOf.get(name))));
+}
+
 function mapCards() {
-  const names = contents.varied;
-  const column = ranked[0] ?? columnOf.get(contents.columns[0]?.name);
-  if (!column || !names.length) return [];
-  if (names.length === 1) {
-    const state = { column };
-    return [plotCard(`Over ${names[0]}`, (renew) => chooser("Column", columnEntries(), column.name, (name) => {
-      state.column = columnOf.get(name);
-      renew();
-    }), () => new DesignFront(columnOf.get(names[0]), state.column))];
-  }
-  const state = { column, x: columnOf.get(names[0]), y: columnOf.get(names[1]) };
-  const choose = (what, words, entries, renew) => chooser(words, entries, state[what].name, (name) => {
-    state[what] = columnOf.get(name);
-    renew();
-  });
-  const parameters = names.map((name) => [name, name]);
-  return [plotCard("Map", (renew) => [choose("column", "Column", columnEntries(), renew), element("label", {}, "over ", choose("x", "Across", parameters, renew)), element("label", {}, "and ", choose("y", "Up", parameters, renew))],
-    () => new DesignMap(state.column, state.x, state.y))];
+  const [x, y] = contents.varied;
+  const column = (ranked[0] ?? contents.columns[0])?.name;
+  if (!column || !x) return [];
+  const card = y ? designCard("Map", { column, x, y }, (...chosen) => new DesignMap(...chosen)) : designCard(`Over ${x}`, { x, column }, (...chosen) => new DesignFront(...chosen));
+  const parameters = contents.varied.map((name) => [name, name]);
+  card.choices.append(card.choose("column", "Column", columnEntries()));
+  if (y) card.choices.append(element("label", {}, "over ", card.choose("x", "Across", parameters)), element("label", {}, "and ", card.choose("y", "Up", parameters)));
+  return [card];
 }
 
 function frontCard() {
   if (!pair.length) return null;
-  const state = { x: pair[0], y: pair[1] ?? columnOf.get(contents.parameters[0].name) };
-  const choose = (what, words, renew) => chooser(words, columnEntries(), state[what].name, (name) => {
-    state[what] = columnOf.get(name);
-    renew();
-  });
-  return plotCard("Front: less is better", (renew) => [choose("y", "Up", renew), element("label", {}, "against ", choose("x", "Across", renew))], () => new DesignFront(state.x, state.y));
+  const card = designCard("Front: less is better", { x: pair[0].name, y: (pair[1] ?? contents.parameters[0]).name }, (...chosen) => new DesignFront(...chosen));
+  card.choices.append(card.choose("y", "Up", columnEntries()), element("label", {}, "against ", card.choose("x", "Across", columnEntries())));
+  return card;
 }
 
 /** The table of designs that meet the conditions. */
@@ -125,8 +90,7 @@ function designTable() {
     ...chosen.map((one) => [one.title.replaceAll(":", ":\u200b"), (row) => (status[row.at] && !parameters.includes(one) ? "–" : columnWords(one, row.at)), (row) => costOf(one, row.at)]),
     ["result", (row) => (status[row.at] ? contents.statuses[status[row.at]] : "ok")]];
   const plain = [["design", (row) => designs.numbers[row.at]], ...columns.map((one) => [`${one.name} [${one.unit}]`, (row) => one.values[row.at]]), ["status", (row) => status[row.at]]];
-  const table = sortedTable("Designs", heads, () => picked.met.map((at) => ({ at, name: `design ${designs.numbers[at]}` })), { chosen: (row) => pick(row.at), described: "Look at this design", aside: sameLine(), plain, most: MOST_ROWS });
-  table.body.classList.add("designs");
+  const table = sortedTable("Designs", heads, () => picked.met.map((at) => ({ at, name: `design ${designs.numbers[at]}` })), { chosen: (row) => pick(row.at), described: "Look at this design", aside: sameLine(), plain, most: MOST_ROWS, kind: "designs" });
   let met = picked.met;
   picked.watchers.add(() => {
     if (met !== picked.met) table.fill();
@@ -139,12 +103,8 @@ function designTable() {
 function lookedAt(body) {
   const words = element("h3", {});
   const list = element("dl", { class: "readings" });
-  const copy = element("button", { type: "button", class: "copy", click: async () => {
-    const set = contents.parameters.map((one) => `--set ${one.name}=${columnOf.get(one.name).values[picked.row]}`);
-    await copyText([contents.command, ...set].join(" "));
-    copy.textContent = "copied";
-    setTimeout(() => (copy.textContent = "copy as --set"), 1500);
-  } }, "copy as --set");
+  const set = () => contents.parameters.map((one) => `--set ${one.name}=${columnOf.get(one.name).values[picked.row]}`);
+  const copy = copyButton("copy as --set", () => [contents.command, ...set()].join(" "), "command line");
   body.append(element("header", {}, words, copy), list);
   const frame = contents.frame && element("iframe", { sandbox: "allow-scripts allow-modals allow-downloads", title: "The mechanism of the design, in motion", srcdoc: contents.frame });
   const send = () => frame?.contentWindow?.postMessage({ design: Object.fromEntries(contents.parameters.map((one) => [one.name, columnOf.get(one.name).values[picked.row]])) }, "*");

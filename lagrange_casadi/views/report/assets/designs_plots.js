@@ -5,27 +5,23 @@ const SPOT = 3.2;
 /** A plot in which each design that is shown has a spot; `plot.spots` are [across, down, row]. */
 class DesignPlot {
   constructor(kind, words) {
-    this.sheet = new Sheet(kind, words, { hover: (event) => this.hover(event), press: (event) => pick(this.under(event)) });
+    this.sheet = new Sheet(kind, words, this);
     this.spots = [];
   }
 
+  /** The number of the spot under the pointer. */
   under(event) {
     const [px, py] = this.sheet.at(event);
-    let [best, away] = [null, 30];
-    for (const [x, y, row] of this.spots) {
-      const d = Math.hypot(x - px, y - py);
-      if (d < away) [best, away] = [row, d];
-    }
-    return best;
+    return closest(this.spots.length, (k) => Math.hypot(this.spots[k][0] - px, this.spots[k][1] - py), 30);
   }
 
-  hover(event) {
-    const row = event && this.under(event);
-    if (row === null || row === undefined || !event) {
-      showTip(null);
-      return;
-    }
-    showTip(event, designWords(row), status[row] ? [["no result", contents.statuses[status[row]]]] : this.described.map((column) => [column.title, columnWords(column, row)]));
+  press(spot) {
+    pick(this.spots[spot][2]);
+  }
+
+  describe(spot) {
+    const [, , row] = this.spots[spot];
+    return [designWords(row), status[row] ? [["no result", contents.statuses[status[row]]]] : this.described.map((column) => [column.title, columnWords(column, row)])];
   }
 
   mark() {
@@ -50,7 +46,7 @@ class DesignMap extends DesignPlot {
     const field = { left: FIELD.left, right: width - FIELD.right - 62, top: FIELD.top, bottom: height - FIELD.bottom };
     const scales = [[this.x, places[0], field.left, field.right], [this.y, places[1], field.bottom, field.top]].map(([one, at, from, to]) => (cells ? cellsOf(one, at, from, to) : scaled(endsOf([at], false), [from, to], one.unit, one.name, 0.04)));
     const values = rows.filter((row) => status[row] === 0).map((row) => costOf(this.column, row)).filter(Number.isFinite);
-    const [low, high] = values.length ? [values.reduce((a, b) => Math.min(a, b)), values.reduce((a, b) => Math.max(a, b))] : [0, 1];
+    const [low, high] = endsOf([values], false);
     const part = (row) => (high > low ? (costOf(this.column, row) - low) / (high - low) : 0.5);
     this.spots = rows.map((row) => [scales[0].at(this.x.values[row]), scales[1].at(this.y.values[row]), row]);
     const [across, up] = cells ? [scales[0].step, scales[1].step] : [0, 0];
@@ -59,13 +55,9 @@ class DesignMap extends DesignPlot {
       const style = known ? `fill: color-mix(in oklab, var(--map-positive) ${(8 + 92 * part(row)).toFixed(1)}%, var(--map-none))` : "fill: none; stroke: var(--line)";
       return cells ? drawn("rect", { x: x - across / 2, y: y - up / 2, width: across + 0.4, height: up + 0.4, style }) : drawn("circle", { cx: x, cy: y, r: SPOT + 1, style });
     });
-    const scale = scaleFor(this.column.unit, high);
-    const key = (words, y) => drawn("text", { x: width - FIELD.right - 30, y, class: "key" }, words);
     this.sheet.fill(width, height, axesOf(scales[0], scales[1]), ...shapes,
-      drawn("text", { x: (field.left + field.right) / 2, y: height - 6, class: "label" }, scales[0].label),
-      drawn("text", { x: 14, y: (field.top + field.bottom) / 2, class: "label", transform: `rotate(-90 14 ${(field.top + field.bottom) / 2})` }, scales[1].label),
       ...[0, 1, 2, 3, 4, 5, 6, 7].map((k) => drawn("rect", { x: width - FIELD.right - 36, y: field.top + 20 + (k * (field.bottom - field.top - 52)) / 8, width: 12, height: (field.bottom - field.top - 52) / 8 + 0.5, style: `fill: color-mix(in oklab, var(--map-positive) ${8 + (92 * (7 - k)) / 7}%, var(--map-none))` })),
-      key(format(high * scale.factor, 3), field.top + 12), key(format(low * scale.factor, 3), field.bottom - 18), key(scale.unit, field.bottom - 2));
+      ...keyOf(scaleFor(this.column.unit, high), width - FIELD.right - 30, scales[1], low, high));
     this.mark();
   }
 }
@@ -74,11 +66,10 @@ class DesignMap extends DesignPlot {
 function cellsOf(column, values, from, to) {
   const step = (to - from) / Math.max(values.length, 1);
   const place = new Map(values.map((value, k) => [value, from + (k + 0.5) * step]));
-  const most = values.reduce((size, value) => Math.max(size, Math.abs(value)), 0);
-  const { factor, unit } = scaleFor(column.unit, most);
+  const { factor, unit } = scaleFor(column.unit, largestOf(values));
   const stride = Math.max(1, Math.ceil(values.length / Math.max(2, Math.floor(Math.abs(to - from) / 62))));
   const ticks = values.map((value, k) => [place.get(value), value * factor, k]).filter(([, , k]) => k % stride === 0);
-  return { at: (value) => place.get(value), step: Math.abs(step), ticks, describe: (tick) => format(tick, 4), label: labelled(column.name, unit), from, to };
+  return { at: (value) => place.get(value), step: Math.abs(step), ticks, describe: (tick) => format(tick, 4), title: column.name, label: labelled(column.name, unit), from, to };
 }
 
 /** Two columns against each other: all designs faint, those that no other beats in both strong and joined. */
@@ -90,20 +81,18 @@ class DesignFront extends DesignPlot {
 
   draw(width) {
     const height = 280;
-    const rows = picked.met.filter((row) => status[row] === 0 && Number.isFinite(costOf(this.x, row)) && Number.isFinite(costOf(this.y, row)));
+    const rows = comparable(this.x, this.y);
     const ends = [this.x, this.y].map((one) => endsOf([rows.map((row) => costOf(one, row))], false));
     const words = (one) => (one.sized ? `size of ${one.title}` : one.title);
     const across = scaled(ends[0], [FIELD.left, width - FIELD.right], this.x.unit, words(this.x), 0.04);
-    const up = scaled(ends[1], [height - FIELD.bottom, FIELD.top], this.y.unit, words(this.y), 0.04);
+    const up = scaled(ends[1], [height - FIELD.bottom, FIELD.top], this.y.unit, "", 0.04);
     const at = (row) => [across.at(costOf(this.x, row)), up.at(costOf(this.y, row)), row];
     const front = frontOf(this.x, this.y);
     const best = new Set(front);
     this.spots = [...rows.filter((row) => !best.has(row)), ...front].map(at);
     const dots = this.spots.map(([cx, cy, row]) => drawn("circle", { cx, cy, r: best.has(row) ? SPOT + 0.8 : SPOT - 0.8, class: best.has(row) ? "best" : "dot" }));
-    const steps = front.map(at).map(([x, y], k, all) => (k ? `H${x.toFixed(1)}V${y.toFixed(1)}` : `M${x.toFixed(1)} ${y.toFixed(1)}`) + (all.length ? "" : "")).join("");
+    const steps = front.map(at).map(([x, y], k) => (k ? `H${x.toFixed(1)}V${y.toFixed(1)}` : `M${x.toFixed(1)} ${y.toFixed(1)}`)).join("");
     this.sheet.fill(width, height, axesOf(across, up), ...(steps ? [drawn("path", { d: steps, class: "front" })] : []), ...dots,
-      drawn("text", { x: (FIELD.left + width) / 2, y: height - 6, class: "label" }, across.label),
-      drawn("text", { x: FIELD.left - 7, y: FIELD.top - 7, class: "unit" }, up.unit || "1"),
       drawn("text", { x: FIELD.left + 6, y: FIELD.top - 7, class: "aside" }, words(this.y)));
     this.mark();
   }

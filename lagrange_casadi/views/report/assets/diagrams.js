@@ -42,13 +42,12 @@ function marksOf({ ratios, values }) {
 }
 
 class Diagram {
+  follow = this.draw;
+
   constructor(section, when) {
     Object.assign(this, { section, middle: when === "shown" });
     this.forces = knownForces(section).filter(signed);
-    this.sheet = new Sheet("diagram", `${section.link}: ${this.forces.map((force) => force.what).join(", ")} along the link`, {
-      hover: (event) => this.hover(event),
-      press: () => seekTo(this.instant),
-    });
+    this.sheet = new Sheet("diagram", `${section.link}: ${this.forces.map((force) => force.what).join(", ")} along the link`, this);
   }
 
   get instant() {
@@ -73,14 +72,11 @@ class Diagram {
       // Below its name a force has room for numbers, and on the sides of the link on which it is.
       const along = this.along(force);
       const [up, down] = [1, -1].map((sign) => (along.values.some((value) => sign * value > 0) ? half : 0));
-      parts.push(drawn("text", { x: 4, y: top + 11, class: "name" }, this.nameOf(force, along)), ...this.panel(force, along, top + 29 + up, half, across));
+      const name = labelled(force.what, scaleFor(force.unit, largestOf(along.values)).unit);
+      parts.push(drawn("text", { x: 4, y: top + 11, class: "name" }, name), ...this.panel(force, along, top + 29 + up, half, across));
       top += 48 + up + down;
     }
     this.sheet.fill(width, top + 14, ...parts, drawn("text", { x: from, y: top + 10, class: "x" }, "base"), drawn("text", { x: to, y: top + 10, class: "x" }, "tip"));
-  }
-
-  nameOf(force, { values }) {
-    return labelled(force.what, scaleFor(force.unit, largestOf(values)).unit);
   }
 
   panel(force, { ratios, values }, y0, half, across) {
@@ -107,10 +103,6 @@ class Diagram {
     return parts;
   }
 
-  follow(width) {
-    this.draw(width);
-  }
-
   mark() {
     if (this.middle && this.sheet.width) this.draw(this.sheet.width);
   }
@@ -122,15 +114,18 @@ class Diagram {
     return [element("li", {}, words), element("li", {}, "action of the tip's side on the base's")];
   }
 
-  hover(event) {
-    if (!event) {
-      showTip(null);
-      return;
-    }
+  /** The number of the ratio under the pointer. */
+  under(event) {
     const { from, to } = this.across;
-    const last = this.section.xi.length - 1;
-    const ratio = Math.round(Math.max(0, Math.min(1, (this.sheet.at(event)[0] - from) / (to - from))) * last);
-    showTip(event, `${this.section.link} at ξ/l = ${format(this.section.xi[ratio], 3)}; ${whenIs(this.instant)}`, sectionLines(this.section, ratio, this.instant));
+    return Math.round(Math.max(0, Math.min(1, (this.sheet.at(event)[0] - from) / (to - from))) * (this.section.xi.length - 1));
+  }
+
+  press() {
+    seekTo(this.instant);
+  }
+
+  describe(ratio) {
+    return [`${placeWords({ section: this.section, ratio })}; ${whenIs(this.instant)}`, sectionLines(this.section, ratio, this.instant)];
   }
 
   /** What is saved as CSV. */

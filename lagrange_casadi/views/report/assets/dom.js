@@ -25,6 +25,16 @@ function say(one, words) {
   if (one.textContent !== words) one.textContent = words;
 }
 
+/** A list of names and what they are. */
+function listOf(lines, attributes = {}) {
+  return element("dl", attributes, lines.flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value)]));
+}
+
+/** A text with a head. */
+function textSection(head, ...children) {
+  return element("section", { class: "text" }, element("h2", {}, head), children);
+}
+
 /** A button with a sign on it and words for those who do not see it. */
 function signButton(sign, words, press, attributes = {}) {
   return element("button", { type: "button", class: "sign", title: words, "aria-label": words, click: press, ...attributes }, sign);
@@ -44,12 +54,18 @@ function icon(name) {
 
 /** A list to choose from: entries are [value, words], or [head, entries] for a group. */
 function chooser(label, entries, chosen, change) {
+  const list = element("select", { "aria-label": label, change: () => change(list.value) });
+  offer(list, entries, chosen);
+  return list;
+}
+
+/** Have a list offer entries, one of them chosen. */
+function offer(list, entries, chosen) {
   const option = ([value, words]) => element("option", { value, selected: value === chosen }, words);
   const options = entries.map(([head, inner]) =>
     Array.isArray(inner) ? element("optgroup", { label: head }, inner.map(option)) : option([head, inner]),
   );
-  const list = element("select", { "aria-label": label, change: () => change(list.value) }, options);
-  return list;
+  list.replaceChildren(...options);
 }
 
 const said = element("div", { class: "unseen", role: "status", "aria-live": "polite" });
@@ -57,6 +73,17 @@ const said = element("div", { class: "unseen", role: "status", "aria-live": "pol
 /** Announce to those who do not see the page. */
 function announce(words) {
   said.textContent = words;
+}
+
+/** A button that copies a text, and says so for a while. */
+function copyButton(words, textOf, copied) {
+  const button = element("button", { type: "button", class: "copy", click: async () => {
+    await copyText(textOf());
+    button.textContent = "copied";
+    announce(`${copied} copied`);
+    setTimeout(() => (button.textContent = words), 1500);
+  } }, words);
+  return button;
 }
 
 /** Put a text on the clipboard; where a browser allows none to a page of a file, by a selection. */

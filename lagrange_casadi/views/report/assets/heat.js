@@ -3,12 +3,11 @@
 /** What a map shows of a section force: its values at an instant, in words too, and where it is largest. */
 function fieldOfForce(section, force) {
   const row = rowByName.get(`section:${section.link}:${force.name}`);
-  const { values } = curveOf(alongInstants);
   return {
     link: section.link, what: force.what, unit: force.unit, signed: signed(force), xi: section.xi, where: "",
-    row: () => row,
-    peak: () => (!row || row.open ? null : isNothing(row) ? { ...row.peak, value: 0 } : row.peak),
-    column: (place, near) => (over ? nearest(values, place, near) : instantAt(place)),
+    nothing: () => Boolean(row) && isNothing(row),
+    peak: () => (!row || row.open ? null : row.peak),
+    column: instantOn,
     fill: (column, found, step) => (row && isNothing(row) ? found.fill(0) : sectionForces(section, force.name, column, found, step)),
     describe: (column, ratio) => [whenIs(column), sectionLines(section, ratio, column)],
     show: () => showRow(row),
@@ -21,8 +20,9 @@ function fieldOfMap(map) {
   const at = (column) => values.subarray(column * xi.length, (column + 1) * xi.length);
   return {
     link: map.link, what: map.what, unit: map.unit, signed: map.signed, xi, where: map.where, ofFile: true,
+    nothing: () => false,
     peak: () => map.peak,
-    column: (place) => nearest(places, place, 0),
+    column: (place) => nearest(places, place),
     fill: (column, found) => found.set(at(column)),
     describe: (column, ratio) => [whenOf(t[column], over ? places[column] : null), [[map.what, shown(at(column)[ratio], map.unit)]]],
     show: () => {
@@ -38,14 +38,7 @@ class Heat {
     this.field = field;
     this.x = curveOf(alongInstants);
     this.values = new Float64Array(field.xi.length);
-    this.sheet = new Sheet("map", `${field.link}: ${field.what} over the cycle and along the link`, {
-      hover: (event) => this.hover(event),
-      press: (event) => {
-        const at = this.under(event);
-        seekTo(at?.instant);
-        if (at) showSection(field.link, at.xi);
-      },
-    });
+    this.sheet = new Sheet("map", `${field.link}: ${field.what} over the cycle and along the link`, this);
     this.canvas = element("canvas", { class: "heat", "aria-hidden": "true" });
     this.context = this.canvas.getContext("2d");
     this.marks = drawn("g");
@@ -55,7 +48,7 @@ class Heat {
   draw(width) {
     const height = 244;
     this.across = scaled(endsOf([this.x.values], false), [FIELD.left, width - FIELD.right - 58], this.x.unit, this.x.title);
-    this.up = scaled([0, 1], [height - FIELD.bottom, FIELD.top], "1", "");
+    this.up = scaled([0, 1], [height - FIELD.bottom, FIELD.top], "1", "ξ/l, base to tip");
     const { across, up } = this;
     const place = { x: across.from, y: up.to, width: across.to - across.from, height: up.from - up.to };
     // On the sheet it keeps its place at every size, as the drawing around it does.
@@ -64,9 +57,7 @@ class Heat {
     this.sheet.fill(
       width, height,
       axesOf(across, up),
-      drawn("text", { x: 14, y: (up.from + up.to) / 2, class: "label", transform: `rotate(-90 14 ${(up.from + up.to) / 2})` }, "ξ/l, base to tip"),
-      drawn("text", { x: (across.from + across.to) / 2, y: height - 6, class: "label" }, across.label),
-      drawn("image", { x: width - FIELD.right - 44, y: up.to + 16, width: 12, height: up.from - up.to - 46, href: barOf(this.colours, this.field.signed), preserveAspectRatio: "none" }),
+      drawn("image", { x: width - FIELD.right - 44, y: up.to + 16, width: 12, height: up.from - up.to - 46, href: barOf(coloursNow(), this.field.signed), preserveAspectRatio: "none" }),
       this.marks,
     );
     this.paint(Math.max(2, Math.round(place.width)));
@@ -83,11 +74,10 @@ class Heat {
   /** Write the ends of the colours, and where the force is largest. */
   markEnds() {
     const { field, up } = this;
-    const row = field.row?.();
-    const peak = row && isNothing(row) ? null : field.peak();
+    const peak = field.nothing() ? null : field.peak();
     this.most = Math.abs(peak?.value ?? 0) || 1;
     const scale = scaleFor(field.unit, this.most);
-    this.marks.replaceChildren(...this.key(scale, this.sheet.width - FIELD.right - 44, up), ...(peak ? this.peakMark(peak, scale) : []));
+    this.marks.replaceChildren(...keyOf(scale, this.sheet.width - FIELD.right - 38, up, this.field.signed ? -this.most : 0, this.most), ...(peak ? this.peakMark(peak, scale) : []));
   }
 
   /** Where and when it is largest, as a button that shows it. */
@@ -95,8 +85,7 @@ class Heat {
     const { field } = this;
     const peak = field.peak();
     if (!peak || !Number.isFinite(peak.value)) return [];
-    const row = field.row?.();
-    if (row && isNothing(row)) return [element("li", {}, "it is 0")];
+    if (field.nothing()) return [element("li", {}, "it is 0")];
     const words = `largest: ${shown(peak.value, field.unit)} at ξ/l = ${format(peak.xi, 3)}, ${whenOf(peak.t, peak.over)}${field.where ? `, ${field.where}` : ""}`;
     return [element("li", {}, element("button", { type: "button", class: "peak-button", title: "Show when and where", click: field.show }, words))];
   }
@@ -110,20 +99,6 @@ class Heat {
       drawn("path", { d: `M${x - 7} ${y}H${x + 7}M${x} ${y - 7}V${y + 7}`, class: "peak" }),
       drawn("text", { x: x + (right ? 10 : -10), y: low, class: `peak-text ${right ? "" : "end"}` }, words),
     ];
-  }
-
-  /** The ends of the bar of colours. */
-  key(scale, x, up) {
-    const least = this.field.signed ? -this.most : 0;
-    const text = (value, y) => drawn("text", { x: x + 6, y, class: "key" }, `${format(value * scale.factor, 3)}`);
-    return [
-      text(this.most, up.to + 9), text(least, up.from - 18), drawn("text", { x: x + 6, y: up.from - 2, class: "key" }, scale.unit),
-    ];
-  }
-
-  /** The colours that the page has now; the stage reads all of them at once. */
-  get colours() {
-    return coloursOf(deck.stage.paper.inks);
   }
 
   /** Paint the map, with its marks; a coarse one while a slider moves. */
@@ -140,13 +115,12 @@ class Heat {
       this.image = context.createImageData(wide, high);
     }
     const pixels = new Uint32Array(this.image.data.buffer);
-    const { colours } = this;
+    const colours = coloursNow();
     const places = Array.from({ length: high }, (_, row) => step * Math.round(((high - 1 - row) / (high - 1)) * ((rows - 1) / step)));
-    let seen = 0;
     let known = -1;
     for (let column = 0; column < wide; column += 1) {
       const x = this.across.back(this.across.from + ((column + 0.5) / wide) * (this.across.to - this.across.from));
-      seen = field.column(x, seen);
+      const seen = field.column(x);
       if (seen !== known) field.fill(seen, values, step);
       known = seen;
       for (let row = 0; row < high; row += 1) pixels[row * wide + column] = pixelOf(values[places[row]] / this.most, column + row, colours);
@@ -160,7 +134,7 @@ class Heat {
     const found = new Float64Array(field.xi.length);
     const rows = Array.from(x.values, (value) => {
       found.fill(0);
-      field.fill(field.column(value, 0), found, 1);
+      field.fill(field.column(value), found, 1);
       return [value, ...found];
     });
     return { heads: [headOfCurve(x), ...Array.from(field.xi, (xi) => `${field.what} [${field.unit}] at xi/l = ${Number(xi.toFixed(6))}`)], rows };
@@ -176,43 +150,32 @@ class Heat {
     const { across, up } = this;
     if (px < across.from || px > across.to || py < up.to || py > up.from) return null;
     const x = across.back(px);
-    const instant = over ? nearest(this.x.values, x, 0) : instantAt(x);
-    return { instant, x, xi: Math.max(0, Math.min(1, up.back(py))) };
+    return { instant: instantOn(x), x, xi: Math.max(0, Math.min(1, up.back(py))) };
   }
 
-  hover(event) {
-    const at = event && this.under(event);
-    if (!at) {
-      showTip(null);
-      return;
-    }
+  press({ instant, xi }) {
+    seekTo(instant);
+    showSection(this.field.link, xi);
+  }
+
+  describe({ x, xi }) {
     const { field } = this;
-    const ratio = Math.round(at.xi * (field.xi.length - 1));
-    const [when, lines] = field.describe(field.column(at.x, 0), ratio);
-    showTip(event, `${field.link} at ξ/l = ${format(field.xi[ratio], 3)}; ${when}`, lines);
+    const ratio = Math.round(xi * (field.xi.length - 1));
+    const [when, lines] = field.describe(field.column(x), ratio);
+    return [`${field.link} at ξ/l = ${format(field.xi[ratio], 3)}; ${when}`, lines];
   }
-}
-
-/** The instant whose value is nearest to one. */
-function nearest(values, value, from) {
-  let [best, away] = [from, Infinity];
-  for (let i = 0; i < values.length; i += 1) {
-    const d = Math.abs(values[i] - value);
-    if (d < away) [best, away] = [i, d];
-  }
-  return best;
 }
 
 const LEVELS = 255;
 
 const palettes = new Map();
 
-/** The points of a map in the colours of the page: `plain` and `lined` have one for each level, from all negative to all positive. */
-function coloursOf(inks) {
-  const names = ["map-positive", "map-negative", "map-none"].map((name) => inks[name]);
+/** The points of a map in the colours that the page has now: `plain` and `lined` have one for each level, from all negative to all positive. */
+function coloursNow() {
+  const names = ["map-positive", "map-negative", "map-none"].map((name) => deck.stage.paper.inks[name]);
   const key = names.join();
   if (!palettes.has(key)) {
-    const [positive, negative, none] = names.map((text) => [1, 3, 5].map((k) => parseInt(text.slice(k, k + 2), 16)));
+    const [positive, negative, none] = names.map(partsOfInk);
     const point = (level, dark) => {
       const share = Math.abs(level) / LEVELS;
       const part = share ** 0.85;

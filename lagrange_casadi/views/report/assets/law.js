@@ -6,7 +6,9 @@ const sections = contents.sections.map((entry) => {
     return { name, ...Object.fromEntries(Object.entries(members).map(([member, number]) => [member, array(number)])) };
   });
   const forces = new Map(entry.forces.map((force) => [force.name, force]));
-  return { link: entry.link, length: entry.length, slack: entry.slack, xi: array(entry.xi), loads, forces };
+  const xi = array(entry.xi);
+  // `own` is room for the parts of a size, one after another.
+  return { link: entry.link, length: entry.length, slack: entry.slack, xi, loads, forces, own: new Float64Array(xi.length) };
 });
 
 const sectionByLink = new Map(sections.map((section) => [section.link, section]));
@@ -19,15 +21,6 @@ function edgeAt({ slack }, xi, side = "tip") {
 /** A force at an instant, at the ratio with a number, on the tip's side of a station. */
 function sectionForce(section, name, instant, ratio) {
   return forceAt(section, section.forces.get(name), instant, section.xi[ratio], (row) => row[ratio], "tip");
-}
-
-/** A force at any ratio, by straight lines between those of which the functions along the link are known. */
-function sectionForceAt(section, name, instant, xi, side = "tip") {
-  const last = section.xi.length - 1;
-  const left = Math.max(0, Math.min(last - 1, Math.floor(xi * last)));
-  const part = xi * last - left;
-  const between = (row) => (part ? row[left] + part * (row[left + 1] - row[left]) : row[left]);
-  return forceAt(section, section.forces.get(name), instant, xi, between, side);
 }
 
 function forceAt(section, force, instant, xi, along, side) {
@@ -53,7 +46,7 @@ function sectionForces(section, name, instant, found, step = 1) {
   const { xi } = section;
   found.fill(0);
   if (force.parts.length) {
-    const own = sizesRoom(xi.length);
+    const { own } = section;
     for (const part of force.parts) {
       sectionForces(section, part, instant, own, step);
       for (let k = 0; k < found.length; k += step) found[k] += own[k] * own[k];
@@ -73,14 +66,6 @@ function sectionForces(section, name, instant, found, step = 1) {
   return found;
 }
 
-let sizes = new Float64Array();
-
-/** Room for the parts of a size, one after another. */
-function sizesRoom(count) {
-  if (sizes.length !== count) sizes = new Float64Array(count);
-  return sizes;
-}
-
 /** A force at one ratio of a link at all instants, on the tip's side of stations, into `found`. */
 function sectionOverInstants(section, name, ratio, found) {
   const force = section.forces.get(name);
@@ -95,14 +80,19 @@ function sectionOverInstants(section, name, ratio, found) {
   }
 }
 
-/** A force along a link at an instant: ratios and values, twice at each station. */
+/** A force along a link at an instant: ratios and values, twice at each station; by straight lines between the ratios of which the functions
+ *  along the link are known. */
 function forceAlong(section, name, instant, step = 2) {
   const ratios = [];
   const values = [];
   const stations = [...new Set(section.loads.map((load) => load.station[instant]))].filter((u) => u > 0 && u < 1).sort((a, b) => a - b);
+  const last = section.xi.length - 1;
   const put = (xi, side) => {
+    const left = Math.max(0, Math.min(last - 1, Math.floor(xi * last)));
+    const part = xi * last - left;
+    const between = (row) => (part ? row[left] + part * (row[left + 1] - row[left]) : row[left]);
     ratios.push(xi);
-    values.push(sectionForceAt(section, name, instant, xi, side));
+    values.push(forceAt(section, section.forces.get(name), instant, xi, between, side));
   };
   let next = 0;
   for (let k = 0; k < section.xi.length; k += step) {

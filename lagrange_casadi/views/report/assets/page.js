@@ -72,26 +72,18 @@ function headOf() {
   verdict();
   reading.watchers.add(verdict);
   const shownOf = instants.count < instants.total ? `, ${instants.count} of them shown` : "";
-  const span = () => `${instants.total} instant${instants.total > 1 ? "s" : ""}${shownOf}, t = ${[0, -1].map((k) => shown(instants.t.at(k), "s", 5, Math.abs(instants.t.at(-1)))).join(" to ")}`;
+  const span = () => `${instants.total} instant${instants.total > 1 ? "s" : ""}${shownOf}, t = ${[0, -1].map((k) => timeWords(instants.t.at(k))).join(" to ")}`;
   const described = element("p", { class: "subtitle" }, span());
   reading.watchers.add(() => say(described, span()));
-  const si = element("button", { type: "button", class: "switch", "aria-pressed": "false", title: "Units of the file: SI, without prefixes", click: () => {
-    setSi(!reading.si);
-    si.setAttribute("aria-pressed", String(reading.si));
-  } }, "SI units");
   const themes = ["auto", "light", "dark"];
-  const theme = element("button", { type: "button", class: "switch", title: "Light or dark", click: () => {
+  const theme = switchButton("◐ auto", "Light or dark", () => {
     const next = themes[(themes.indexOf(document.documentElement.dataset.theme ?? "auto") + 1) % 3];
     if (next === "auto") delete document.documentElement.dataset.theme;
     else document.documentElement.dataset.theme = next;
     theme.textContent = `◐ ${next}`;
     repaint();
-  } }, "◐ auto");
-  const print = element("button", { type: "button", class: "switch", click: () => window.print() }, "Print");
-  return element("header", { class: "head" },
-    element("div", {}, element("h1", {}, contents.case), described),
-    badge,
-    element("div", { class: "switches" }, si, theme, print));
+  });
+  return headWith(contents.case, described, badge, siSwitch(), theme, printSwitch());
 }
 
 /** What is largest, at a glance: press one to see when and where it is. */
@@ -106,14 +98,13 @@ function glanceOf() {
     place.tile = element("button", { type: "button", class: "tile", title: "Show when and where", click: () => showRow(place.row) }, place.what, place.value, place.where);
     return place;
   });
-  const fill = () => tiles().forEach((row, k) => {
+  const fill = (sizes = sizesOfUnits()) => tiles().forEach((row, k) => {
     const known = Number.isFinite(row.peak.value);
-    const nothing = known && isNothing(row);
     const where = row.peak.xi === null ? "" : ` · ξ/l = ${row.peak.xi.toFixed(2)}`;
     places[k].row = row;
     say(places[k].what, `Largest ${row.what.replace("resultant ", "")}`);
-    say(places[k].value, known ? shown(nothing ? 0 : row.peak.value, row.unit, 4) : "–");
-    say(places[k].where, nothing ? "" : known ? `${row.part}${where} · ${whenOf(row.peak.t, row.peak.over)}` : "no result");
+    say(places[k].value, peakWords(row, sizes));
+    say(places[k].where, isNothing(row, sizes) ? "" : known ? `${row.part}${where} · ${whenOf(row.peak.t, row.peak.over)}` : "no result");
   });
   fill();
   reading.watchers.add(fill);
@@ -138,9 +129,8 @@ function linksTable() {
   const lines = links.map(([link, rows]) => element("tr", {}, element("th", { scope: "row" }, link), columns.map((k) => cellOf(rows[k]))));
   const fill = (sizes = sizesOfUnits()) => cells.forEach(([row, value, when]) => {
     const { peak } = row;
-    const known = Number.isFinite(peak.value) && !isNothing(row, sizes);
-    say(value, known ? shown(peak.value, row.unit, 4) : Number.isFinite(peak.value) ? shown(0, row.unit) : "–");
-    say(when, !known ? "" : over ? shown(peak.over, over.unit, 4) : whenOf(peak.t, null));
+    say(value, peakWords(row, sizes));
+    say(when, !Number.isFinite(peak.value) || isNothing(row, sizes) ? "" : over ? shown(peak.over, over.unit, 4) : whenOf(peak.t, null));
   });
   fill();
   reading.watchers.add(() => fill());
@@ -163,17 +153,12 @@ function showRow(row) {
 }
 
 function pointAt(stage, found, event) {
-  const same = (a, b) => a === b || (a && b && a.section === b.section && a.ratio === b.ratio);
-  if (!same(found, stage.pointed)) {
-    stage.pointed = found;
-    if (!player.playing) stage.draw();
-  }
-  if (!found) {
-    showTip(null);
-    return;
-  }
-  const xi = found.section.xi[found.ratio];
-  showTip(event, `${found.section.link} at ξ/l = ${format(xi, 3)}`, sectionLines(found.section, found.ratio, stage.instant));
+  const { pointed } = stage;
+  stage.pointed = found;
+  const same = found?.section === pointed?.section && found?.ratio === pointed?.ratio;
+  if (!same && !player.playing) stage.draw();
+  if (found) showTip(event, placeWords(found), sectionLines(found.section, found.ratio, stage.instant));
+  else showTip(null);
 }
 
 function viewBar(stage, gestures) {
@@ -202,7 +187,7 @@ function showBar(stage) {
   const signs = element("span", { class: "signs" }, element("i", { class: "positive" }), " + ", element("i", { class: "negative" }), " −");
   return element("div", { class: "shows", role: "group", "aria-label": "Shown on the mechanism" },
     ribbons, ribbons && signs, kinds.map(([kind, words]) => box(kind, words)), box("values", "values"), box("names", "names"), contents.paths.length > 0 && box("traces", "paths"), box("ways", "joints' paths"),
-    (kinds.length || ribbons) && element("label", { class: "scale" }, "scale ", size));
+    (kinds.length > 0 || ribbons) && element("label", { class: "scale" }, "scale ", size));
 }
 
 /** Draw all anew, in the colours that the page has now. */
@@ -225,17 +210,10 @@ function watch(stage, canvas) {
     stage.draw();
     for (const card of deck.cards) card.follow();
   });
-  let width = 0;
-  const watcher = new ResizeObserver(() => {
-    stage.layOut();
-    if (deck.list.clientWidth !== width) {
-      width = deck.list.clientWidth;
-      for (const card of deck.cards) card.draw();
-    }
-  });
+  const watcher = new ResizeObserver(() => stage.layOut());
   // The sheet's own size too: it goes with the window's height, and with the controls below it.
   for (const element of [deck.list.parentElement.parentElement, stage.paper.canvas]) watcher.observe(element);
-  window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", repaint);
+  drawWith(deck.list, repaint);
   listenToKeys(stage);
   listenToPrinter(stage);
 }

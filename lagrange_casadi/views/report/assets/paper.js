@@ -4,7 +4,6 @@
 // that does at the rate of the screen; and it opens on every machine, also where there is no graphics card or a remote desktop,
 // and prints as sharp as the text around it.
 
-const BODY_COLOURS = 8;
 const ORDER = { floor: 0, traces: 1, rails: 2, ribbons: 3, solids: 4, joints: 5, arrows: 6, names: 7 };
 
 class Paper {
@@ -57,14 +56,11 @@ class Paper {
   fit(others = [], reach = [0, 0]) {
     const camera = this.camera;
     camera.centre = extent.middle;
-    let [x, y] = [1e-9, 1e-9];
-    const at = [...allPlaces, ...others].map((place) => {
-      const from = less(place, camera.centre);
-      return [dot(from, camera.right), dot(from, camera.up)];
-    });
-    const ends = [0, 1].map((k) => [Math.min(...at.map((p) => p[k])), Math.max(...at.map((p) => p[k]))]);
-    [x, y] = ends.map(([low, high]) => Math.max(high - low, 0.25 * extent.size));
-    camera.scale = Math.min((this.width - 2 * margin(this.width)) / Math.max(x, reach[0]), (this.height - 2 * margin(this.height)) / Math.max(y, reach[1]));
+    const at = [...allPlaces, ...others].map((place) => less(place, camera.centre));
+    const ends = [camera.right, camera.up].map((axis) => endsOf([at.map((from) => dot(from, axis))], false));
+    const [x, y] = ends.map(([low, high]) => Math.max(high - low, 0.25 * extent.size));
+    const [wide, high] = [this.width, this.height].map((side) => side - 2 * Math.min(56, 0.12 * side));
+    camera.scale = Math.min(wide / Math.max(x, reach[0]), high / Math.max(y, reach[1]));
     const middle = ends.map(([low, high]) => (low + high) / 2);
     camera.shift = [-camera.scale * middle[0], camera.scale * middle[1]];
     return [x, y];
@@ -114,13 +110,9 @@ class Paper {
       tile.width = tile.height = Math.round(size * this.ratio);
       const context = tile.getContext("2d");
       context.scale(tile.width / size, tile.width / size);
-      context.strokeStyle = colour;
-      context.lineWidth = 1.1;
       for (const from of [-size, 0, size]) {
-        context.beginPath();
-        context.moveTo(from - 1, size + 1);
-        context.lineTo(from + size + 1, -1);
-        context.stroke();
+        lineThrough(context, [[from - 1, size + 1], [from + size + 1, -1]]);
+        strokeWith(context, colour, 1.1);
       }
       this.hatch = this.context.createPattern(tile, "repeat");
       this.hatch.setTransform(new DOMMatrix().scale(1 / this.ratio));
@@ -129,9 +121,8 @@ class Paper {
   }
 }
 
-function margin(side) {
-  return Math.min(56, 0.12 * side);
-}
+/** Red, green and blue of a colour like #1f5fbf, from 0 to 255. */
+const partsOfInk = (colour) => [1, 3, 5].map((k) => parseInt(colour.slice(k, k + 2), 16));
 
 const shades = new Map();
 
@@ -139,9 +130,8 @@ const shades = new Map();
 function shade(colour, part) {
   const key = `${colour} ${part}`;
   if (!shades.has(key)) {
-    const [r, g, b] = [1, 3, 5].map((k) => parseInt(colour.slice(k, k + 2), 16));
     const to = part > 0 ? 255 : 0;
-    const mixed = [r, g, b].map((value) => Math.round(value + Math.abs(part) * (to - value)));
+    const mixed = partsOfInk(colour).map((value) => Math.round(value + Math.abs(part) * (to - value)));
     shades.set(key, `rgb(${mixed.join(" ")})`);
   }
   return shades.get(key);
@@ -149,12 +139,49 @@ function shade(colour, part) {
 
 /** The same colour, through which one sees. */
 function sheer(colour, part) {
-  const [r, g, b] = [1, 3, 5].map((k) => parseInt(colour.slice(k, k + 2), 16));
-  return `rgb(${r} ${g} ${b} / ${part})`;
+  return `rgb(${partsOfInk(colour).join(" ")} / ${part})`;
 }
 
 function lineThrough(context, points, closed = false) {
   context.beginPath();
   points.forEach(([x, y], k) => (k ? context.lineTo(x, y) : context.moveTo(x, y)));
   if (closed) context.closePath();
+}
+
+/** Add a line to the path that stands. */
+function addLine(context, from, to) {
+  context.moveTo(from[0], from[1]);
+  context.lineTo(to[0], to[1]);
+}
+
+function circleAround(context, x, y, r) {
+  context.beginPath();
+  context.arc(x, y, r, 0, 2 * Math.PI);
+}
+
+function fillWith(context, ink) {
+  context.fillStyle = ink;
+  context.fill();
+}
+
+function strokeWith(context, ink, width) {
+  context.strokeStyle = ink;
+  context.lineWidth = width;
+  context.stroke();
+}
+
+/** Words on what is drawn already: an edge parts them from that. */
+function writeOn(context, words, x, y, ink, edge, width) {
+  context.strokeStyle = edge;
+  context.lineWidth = width;
+  context.strokeText(words, x, y);
+  context.fillStyle = ink;
+  context.fillText(words, x, y);
+}
+
+/** From a point of the sheet to another: how far, and the direction. */
+function wayTo(a, b) {
+  const [x, y] = [b[0] - a[0], b[1] - a[1]];
+  const length = Math.hypot(x, y);
+  return length ? [length, x / length, y / length] : [0, 1, 0];
 }

@@ -68,6 +68,12 @@ function acrossOf(axis) {
   return [first, cross(axis, first)];
 }
 
+/** The corners by which a circle about a middle is drawn; `x` and `y` are two directions at right angles. */
+function circleOf(middle, x, y, radius) {
+  const angles = Array.from({ length: 48 }, (_, k) => (2 * Math.PI * k) / 48);
+  return angles.map((angle) => plus(plus(middle, x, radius * Math.cos(angle)), y, radius * Math.sin(angle)));
+}
+
 /** All places between which something is drawn, at some instants of the whole. */
 function cloud() {
   const found = [];
@@ -92,17 +98,10 @@ let allPlaces = cloud();
 let extent = extentNow();
 
 function extentNow() {
-  const low = [Infinity, Infinity, Infinity];
-  const high = [-Infinity, -Infinity, -Infinity];
-  for (const place of allPlaces) {
-    for (let k = 0; k < 3; k += 1) {
-      low[k] = Math.min(low[k], place[k]);
-      high[k] = Math.max(high[k], place[k]);
-    }
-  }
-  const middle = low.map((value, k) => (value + high[k]) / 2);
-  const floor = allPlaces.reduce((least, place) => Math.min(least, dot(place, contents.upright[2])), Infinity);
-  return { low, high, middle, floor, size: Math.max(...high.map((value, k) => value - low[k])) || 1 };
+  const endsAlong = (axis) => endsOf([allPlaces.map((place) => dot(place, axis))], false);
+  const ends = GROUND.slice(1).map(endsAlong);
+  const [floor] = endsAlong(contents.upright[2]);
+  return { middle: ends.map(([low, high]) => (low + high) / 2), floor, size: Math.max(...ends.map(([low, high]) => high - low)) || 1 };
 }
 
 /** Find both anew. */

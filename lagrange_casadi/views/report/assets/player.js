@@ -44,11 +44,6 @@ class Player {
     for (const watcher of this.watchers) watcher(this.instant);
   }
 
-  toggle() {
-    if (this.playing) this.pause();
-    else this.play();
-  }
-
   tick(now) {
     if (!this.playing) return;
     if (this.before !== null) {
@@ -66,10 +61,11 @@ class Player {
 
 const player = new Player();
 
+const toggle = () => (player.playing ? player.pause() : player.play());
+
 /** The bar under the picture: play, pause, steps, the instant, the speed. */
 function transportBar() {
-  const over = contents.instants.over;
-  const play = signButton(icon("play"), "Play", () => player.toggle(), { class: "sign play" });
+  const play = signButton(icon("play"), "Play", toggle, { class: "sign play" });
   const slider = element("input", {
     type: "range", min: 0, max: instants.count - 1, step: 1, value: 0, "aria-label": "Instant",
     input: () => {
@@ -98,7 +94,7 @@ function transportBar() {
     play.setAttribute("aria-label", words);
     play.title = `${words} (space)`;
     slider.value = instant;
-    const when = whenOf(instants.t[instant], over ? array(over.values)[instant] : null);
+    const when = whenIs(instant);
     slider.setAttribute("aria-valuetext", when);
     say(readout, when);
   };
@@ -121,7 +117,7 @@ function listenToKeys(stage) {
     if (event.ctrlKey || event.metaKey || event.altKey || of.matches?.("input, select, textarea, [contenteditable]")) return;
     if (event.key === " " && of.matches?.("button, a, summary")) return;
     const keys = {
-      " ": () => player.toggle(),
+      " ": toggle,
       ArrowLeft: () => player.step(event.shiftKey ? -10 : -1),
       ArrowRight: () => player.step(event.shiftKey ? 10 : 1),
       Home: () => player.step(-player.instant),

@@ -4,21 +4,14 @@
 function polarWays(joint) {
   const column = (member) => seriesByName.get(`reaction:${joint.name}:${member}`);
   const pairs = contents.space ? [["fx", "fy"], ["fy", "fz"], ["fx", "fz"], ["fu", "fv"], ["fv", "fw"], ["fu", "fw"]] : [["fx", "fy"]];
-  const found = [];
-  for (const pair of pairs) {
-    const columns = pair.map(column);
-    if (!columns.every(Boolean)) continue;
+  const found = pairs.filter((pair) => pair.every(column)).map((pair) => {
     const own = "uvw".includes(pair[0][1]);
     const words = contents.space ? `${pair.join(", ")} ${own ? "on the joint's own axes" : "in ground axes"}` : "in ground axes";
-    found.push({ words, pair, columns: columns.map((one) => array(one.values)), body: null });
-  }
-  if (!contents.space && found.length) {
-    for (const body of new Set([joint.parent.body, joint.child.body])) {
-      if (body === "ground" || bodies.get(body).kind === "point") continue;
-      found.push({ ...found[0], pair: ["along", "across"], words: `on ${body}, along and across its axis`, body });
-    }
-  }
-  return found;
+    return { words, pair, columns: pair.map((member) => array(column(member).values)), body: null };
+  });
+  if (contents.space || !found.length) return found;
+  const along = [...new Set([joint.parent.body, joint.child.body])].filter((body) => body !== "ground" && bodies.get(body).kind !== "point");
+  return [...found, ...along.map((body) => ({ ...found[0], pair: ["along", "across"], words: `on ${body}, along and across its axis`, body }))];
 }
 
 /** Joints whose reactions can be plotted. */
@@ -27,13 +20,14 @@ function polarJoints() {
 }
 
 class Polar {
+  press = seekTo;
+
+  point = (instant) => this.mark(instant, this.sheet.pointer);
+
   constructor(joint, way) {
     this.joint = joint;
     this.way = way;
-    this.sheet = new Sheet("polar", `reaction of ${joint.name}, ${way.words}`, {
-      hover: (event) => this.hover(event),
-      press: (event) => seekTo(this.instantUnder(event)),
-    });
+    this.sheet = new Sheet("polar", `reaction of ${joint.name}, ${way.words}`, this);
     this.place();
   }
 
@@ -57,26 +51,13 @@ class Polar {
 
   /** The largest force. */
   most() {
-    let found = 0;
-    for (const [x, y] of this.points) {
-      const size = Math.sqrt(x * x + y * y);
-      if (size > found) found = size;
-    }
-    return found || 1;
+    return largestOf(this.points.map(([x, y]) => Math.sqrt(x * x + y * y))) || 1;
   }
 
-  /** The curve; while a slider moves, without points that are next to those before. */
   path() {
-    const [[cx, cy], { scale, points }] = [this.middle, this];
-    let [path, pen, before] = ["", "M", [Infinity, Infinity]];
-    const near = live.moving ? 2 : 0;
-    points.forEach(([x, y], i) => {
-      const at = [cx + x * scale, cy - y * scale];
-      if (i && i < points.length - 1 && Math.abs(at[0] - before[0]) + Math.abs(at[1] - before[1]) < near) return;
-      path += `${pen}${Math.round(10 * at[0]) / 10} ${Math.round(10 * at[1]) / 10}`;
-      [pen, before] = ["L", at];
-    });
-    return path;
+    const [xs, ys] = [0, 1].map((k) => this.points.map((point) => point[k]));
+    const [x, y] = [1, -1].map((way, k) => ({ low: 0, high: 1, from: this.middle[k], to: this.middle[k] + way * this.scale }));
+    return pathOf(xs, ys, x, y);
   }
 
   draw(width) {
@@ -118,30 +99,19 @@ class Polar {
     group.replaceChildren(drawn("line", { x1: cx, y1: cy, x2: px, y2: py, class: "arm" }), drawn("circle", { cx: px, cy: py, r: 4, class: "of-0" }));
   }
 
-  instantUnder(event) {
+  /** The instant under the pointer. */
+  under(event) {
     const [at, down] = this.sheet.at(event);
     const [px, py] = [at - this.middle[0], this.middle[1] - down];
-    let [best, away] = [0, Infinity];
-    this.points.forEach(([x, y], i) => {
-      const d = Math.hypot(x * this.scale - px, y * this.scale - py);
-      if (d < away) [best, away] = [i, d];
-    });
-    return best;
+    return closest(instants.count, (i) => Math.hypot(this.points[i][0] * this.scale - px, this.points[i][1] * this.scale - py));
   }
 
-  hover(event) {
-    if (!event) {
-      this.sheet.pointer.replaceChildren();
-      showTip(null);
-      return;
-    }
-    const found = this.instantUnder(event);
-    this.mark(found, this.sheet.pointer);
-    const [x, y] = this.points[found];
+  describe(instant) {
+    const [x, y] = this.points[instant];
     const most = this.most();
     const described = (value) => shownOf(value, "N", most);
     const turn = ((Math.atan2(y, x) * 180) / Math.PI).toFixed(1);
     const [right, up] = this.way.pair;
-    showTip(event, whenIs(found), [[right, described(x)], [up, described(y)], ["size", described(Math.hypot(x, y))], ["direction", `${minus(turn)} deg`]]);
+    return [whenIs(instant), [[right, described(x)], [up, described(y)], ["size", described(Math.hypot(x, y))], ["direction", `${minus(turn)} deg`]]];
   }
 }

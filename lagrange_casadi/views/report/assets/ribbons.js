@@ -19,15 +19,9 @@ function sideOf(link, name, instant) {
   return directionOf(link, name === "shear_z" || name === "bending_y" ? [0, 0, 1] : [0, 1, 0], instant);
 }
 
-/** The ribbons of a force on all links; `scale` is in metres of the sheet for a unit. */
-function drawRibbons(paper, instant, name, scale) {
-  for (const section of sections) {
-    const force = section.forces.get(name);
-    if (!force.open) drawRibbon(paper, section, force, instant, scale);
-  }
-}
-
+/** The ribbon of a force on a link; `scale` is in metres of the sheet for a unit. */
 function drawRibbon(paper, section, force, instant, scale) {
+  if (force.open) return;
   const { ratios, values } = forceAlong(section, force.name, instant);
   const side = sideOf(section.link, force.name, instant);
   const [base, tip] = [0, section.length].map((x) => placeOf(section.link, [x, 0, 0], instant));
@@ -43,15 +37,11 @@ function drawRibbon(paper, section, force, instant, scale) {
         part.forEach(([x, y], k) => (k ? context.lineTo(x, y) : context.moveTo(x, y)));
         context.closePath();
       }
-      context.fillStyle = sheer(ink, sign > 0 ? 0.34 : 0.16);
-      context.fill();
+      fillWith(context, sheer(ink, sign > 0 ? 0.34 : 0.16));
       if (sign < 0) {
-        context.fillStyle = paper.hatched(ink);
-        context.fill();
+        fillWith(context, paper.hatched(ink));
       }
-      context.strokeStyle = ink;
-      context.lineWidth = 1.3;
-      context.stroke();
+      strokeWith(context, ink, 1.3);
     }
   });
 }
@@ -97,10 +87,12 @@ function sectionUnder(paper, instant, x, y, within = 18) {
   return best;
 }
 
+/** A section by its link and the number of its ratio, in words. */
+function placeWords({ section, ratio }) {
+  return `${section.link} at ξ/l = ${format(section.xi[ratio], 3)}`;
+}
+
 /** What a section bears at an instant, in words: lines of a name and a value. */
 function sectionLines(section, ratio, instant) {
-  return knownForces(section).map((force) => {
-    const value = sectionForce(section, force.name, instant, ratio);
-    return [force.what, shown(value, force.unit)];
-  });
+  return knownForces(section).map((force) => [force.what, shown(sectionForce(section, force.name, instant, ratio), force.unit)]);
 }

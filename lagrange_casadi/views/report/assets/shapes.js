@@ -8,7 +8,7 @@ const FLAT = 1e-6; // Over a body's size: points that are no farther from a plan
  */
 function shapeOf(kind, length, centre, spots, outlines) {
   const own = spots.map((spot) => spot.at);
-  const rollers = spots.filter((spot) => spot.radius).map(roundOf);
+  const rollers = spots.filter((spot) => spot.radius).map(({ at: [x, y], radius }) => circleOf([x, y, 0], [1, 0, 0], [0, 1, 0], radius));
   const places = own.filter((at, k) => own.findIndex((other) => other.every((value, i) => value === at[i])) === k);
   if (kind === "point") return { length: null, axis: [], arms: [], plates: [], centre: [0, 0, 0], disc: 0 };
   if (kind === "rigid") {
@@ -22,12 +22,6 @@ function shapeOf(kind, length, centre, spots, outlines) {
   const plates = beside.length ? platesOf([...axis, ...beside]) : [];
   const arms = plates.length ? [] : beside.map((at) => [[Math.min(Math.max(at[0], 0), length), 0, 0], at]);
   return { length, axis, arms, plates: [...outlines, ...plates, ...rollers], centre: null, disc: 0 };
-}
-
-/** The edge of a roller, as a polygon. */
-function roundOf({ at, radius }) {
-  const angles = Array.from({ length: 48 }, (_, k) => (2 * Math.PI * k) / 48);
-  return angles.map((angle) => [at[0] + radius * Math.cos(angle), at[1] + radius * Math.sin(angle), 0]);
 }
 
 /** The convex polygon of three places or more that lie in one plane and not in a line; else nothing. */

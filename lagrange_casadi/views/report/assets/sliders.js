@@ -53,7 +53,6 @@ function rangeOf({ value, low, high }) {
 }
 
 function slidersOf(engine) {
-  const fields = [];
   const rows = contents.parameters.map((one, k) => {
     const [low, high] = rangeOf(one);
     const set = (value, from) => {
@@ -67,24 +66,14 @@ function slidersOf(engine) {
     }, change: settle });
     const reads = element("output", {});
     const describe = () => (reads.textContent = ["m", "rad", "1"].includes(one.unit) && !scaleFor(one.unit, Math.abs(engine.values[k])).unit ? "" : shown(engine.values[k], one.unit, 5));
-    fields.push({ slider, field, describe });
     live.fields.push([slider, field]);
     describe();
+    reading.watchers.add(describe);
     return element("label", {}, element("span", { class: "name" }, one.name), slider, field, reads);
   });
-  const own = signButton("↺", "The design of the file", () => {
-    engine.file.values.forEach((value, k) => (fields[k].slider.value = fields[k].field.value = value));
-    ask(engine.file.values);
-    settle();
-  });
-  const copy = element("button", { type: "button", class: "copy", click: async () => {
-    await copyText(commandOf(engine));
-    copy.textContent = "copied";
-    announce("command line copied");
-    setTimeout(() => (copy.textContent = "copy as --set"), 1500);
-  } }, "copy as --set");
+  const own = signButton("↺", "The design of the file", () => setAll(engine.file.values));
+  const copy = copyButton("copy as --set", () => commandOf(engine), "command line");
   live.alarm = element("p", { class: "alarm", role: "alert", hidden: true });
-  reading.watchers.add(() => fields.forEach((one) => one.describe()));
   return [element("header", {}, element("h3", {}, "Parameters"), own, copy), element("div", { class: "sliders" }, rows), live.alarm];
 }
 
@@ -98,12 +87,7 @@ function shortest(value, wide) {
 function listenToPage() {
   window.addEventListener("message", (event) => {
     if (event.source !== window.parent || typeof event.data?.design !== "object") return;
-    contents.parameters.forEach((one, k) => {
-      const value = Number(event.data.design[one.name] ?? live.engine.file.values[k]);
-      for (const field of live.fields[k]) field.value = value;
-    });
-    ask(contents.parameters.map((one, k) => Number(event.data.design[one.name] ?? live.engine.file.values[k])));
-    settle();
+    setAll(contents.parameters.map((one, k) => Number(event.data.design[one.name] ?? live.engine.file.values[k])));
   });
   window.parent.postMessage("alive", "*");
   // The page around this one has room for all that is largest in links.
@@ -119,6 +103,13 @@ function commandOf(engine) {
   const quoted = (word) => (/^[\w@%+=:,./-]+$/.test(word) ? word : `'${word.replaceAll("'", `'"'"'`)}'`);
   const changed = contents.parameters.filter((_, k) => engine.values[k] !== engine.file.defaults[k]);
   return [contents.live.command, ...changed.map((one) => `--set ${quoted(`${one.name}=${one.value}`)}`)].join(" ");
+}
+
+/** Have a design shown, and its values in all fields. */
+function setAll(values) {
+  values.forEach((value, k) => live.fields[k].forEach((field) => (field.value = value)));
+  ask(values);
+  settle();
 }
 
 /** Have a design shown, once for each picture of the screen. */

@@ -4,19 +4,18 @@ const PIECE = 14;
 
 /** A round bar between two places, behind another where it is `within` that; in space in pieces, so that bars which cross hide each other where they do. */
 function bar(paper, start, stop, half, colour, within = false) {
-  const order = ORDER.solids;
   const back = within ? 2.5 * half : 0;
   const [a, b] = [paper.on(start), paper.on(stop)];
   const width = Math.max(2.2, half * paper.camera.scale);
-  const length = Math.hypot(b[0] - a[0], b[1] - a[1]);
+  const [length] = wayTo(a, b);
   const count = contents.space ? Math.max(1, Math.min(live.moving ? 4 : 16, Math.ceil(length / PIECE / 2))) : 1;
   const at = (part) => [0, 1, 2].map((k) => a[k] + part * (b[k] - a[k]));
   for (let k = 0; k < count; k += 1) {
     const ends = [at(k / count), at((k + 1) / count)];
     const cap = count === 1 ? "round" : "butt";
-    paper.put(order, (ends[0][2] + ends[1][2]) / 2 - back, (context) => paintBar(context, ends, width, colour, cap));
+    paper.put(ORDER.solids, (ends[0][2] + ends[1][2]) / 2 - back, (context) => paintBar(context, ends, width, colour, cap));
   }
-  if (count > 1) for (const end of [a, b]) paper.put(order, end[2] - back - 1e-9, (context) => paintBar(context, [end, end], width, colour, "round"));
+  if (count > 1) for (const end of [a, b]) paper.put(ORDER.solids, end[2] - back - 1e-9, (context) => paintBar(context, [end, end], width, colour, "round"));
 }
 
 function paintBar(context, [a, b], half, colour, cap) {
@@ -26,64 +25,53 @@ function paintBar(context, [a, b], half, colour, cap) {
     [colour, 2 * half - 2, 0, 0.8],
     [shade(colour, 0.38), 0.5 * half, 0.38 * half, 0.8],
   ];
-  const length = Math.hypot(b[0] - a[0], b[1] - a[1]);
-  const [x, y] = length > 1e-6 ? [(b[0] - a[0]) / length, (b[1] - a[1]) / length] : [0, 0];
+  const [length, x, y] = wayTo(a, b);
   let [nx, ny] = length > 1e-6 ? [y, -x] : [-0.6, -0.8];
   if (0.55 * nx + 0.83 * ny > 0) [nx, ny] = [-nx, -ny];
   context.lineCap = cap;
   for (const [ink, width, aside, beyond] of strokes) {
     if (width <= 0.4) continue;
     const more = cap === "butt" ? beyond : 0;
-    context.strokeStyle = ink;
-    context.lineWidth = width;
     lineThrough(context, [
       [a[0] + aside * nx - more * x, a[1] + aside * ny - more * y],
       [b[0] + aside * nx + more * x + 1e-3, b[1] + aside * ny + more * y],
     ]);
-    context.stroke();
+    strokeWith(context, ink, width);
   }
 }
 
 /** A plate between places. */
-function plate(paper, places, colour, order = ORDER.solids) {
+function plate(paper, places, colour) {
   const corners = places.map((place) => paper.on(place));
   const depth = corners.reduce((sum, corner) => sum + corner[2], 0) / corners.length;
   const [first, second] = [less(places[1], places[0]), less(places[2], places[0])];
   const lit = Math.abs(dot(unit(cross(first, second)), unit(plus(paper.camera.toward, paper.camera.up, 0.5))));
-  paper.put(order, depth - 0.02 * extent.size, (context) => {
+  paper.put(ORDER.solids, depth - 0.02 * extent.size, (context) => {
     lineThrough(context, corners, true);
-    context.fillStyle = sheer(colour, contents.space ? 0.72 : 0.3);
-    context.fill();
+    fillWith(context, sheer(colour, contents.space ? 0.72 : 0.3));
     if (contents.space) {
-      context.fillStyle = `rgb(255 255 255 / ${0.22 * lit})`;
-      context.fill();
+      fillWith(context, `rgb(255 255 255 / ${0.22 * lit})`);
     }
-    context.strokeStyle = shade(colour, -0.2);
-    context.lineWidth = 1.6;
-    context.stroke();
+    strokeWith(context, shade(colour, -0.2), 1.6);
   });
 }
 
 /** A ball [half its width in points of the sheet]. */
-function ball(paper, place, half, colour, order = ORDER.solids) {
+function ball(paper, place, half, colour) {
   const [x, y, depth] = paper.on(place);
-  paper.put(order, depth, (context) => {
+  paper.put(ORDER.solids, depth, (context) => {
     const light = context.createRadialGradient(x - 0.35 * half, y - 0.4 * half, 0.1 * half, x, y, half);
     light.addColorStop(0, shade(colour, 0.6));
     light.addColorStop(0.5, colour);
     light.addColorStop(1, shade(colour, -0.35));
-    context.beginPath();
-    context.arc(x, y, half, 0, 7);
-    context.fillStyle = light;
-    context.fill();
-    context.strokeStyle = shade(colour, -0.5);
-    context.lineWidth = 0.9;
-    context.stroke();
+    circleAround(context, x, y, half);
+    fillWith(context, light);
+    strokeWith(context, shade(colour, -0.5), 0.9);
   });
 }
 
 /** A cylinder about an axis: its middle, half its length and its radius [m]. */
-function cylinder(paper, middle, axis, half, radius, colour, order = ORDER.solids) {
+function cylinder(paper, middle, axis, half, radius, colour) {
   const facing = dot(axis, paper.camera.toward);
   const near = facing >= 0 ? 1 : -1;
   const ends = [-near, near].map((side) => paper.on(plus(middle, axis, side * half)));
@@ -91,7 +79,7 @@ function cylinder(paper, middle, axis, half, radius, colour, order = ORDER.solid
   const [dx, dy] = paper.along(axis);
   const turn = Math.atan2(dy, dx);
   const flat = Math.max(Math.abs(facing), 1e-3);
-  paper.put(order, paper.on(middle)[2], (context) => {
+  paper.put(ORDER.solids, paper.on(middle)[2], (context) => {
     const [n, m] = [-Math.sin(turn) * r, Math.cos(turn) * r];
     const side = context.createLinearGradient(ends[0][0] - n, ends[0][1] - m, ends[0][0] + n, ends[0][1] + m);
     const dark = shade(colour, -0.3);
@@ -103,24 +91,18 @@ function cylinder(paper, middle, axis, half, radius, colour, order = ORDER.solid
     context.lineTo(ends[1][0] - n, ends[1][1] - m);
     context.lineTo(ends[0][0] - n, ends[0][1] - m);
     context.closePath();
-    context.fillStyle = side;
-    context.strokeStyle = shade(colour, -0.6);
-    context.lineWidth = 1.6;
-    context.stroke();
-    context.fill();
+    strokeWith(context, shade(colour, -0.6), 1.6);
+    fillWith(context, side);
     context.beginPath();
     context.ellipse(ends[1][0], ends[1][1], flat * r, r, turn, 0, 2 * Math.PI);
-    context.fillStyle = shade(colour, 0.45);
-    context.fill();
-    context.lineWidth = 0.9;
-    context.stroke();
+    fillWith(context, shade(colour, 0.45));
+    strokeWith(context, shade(colour, -0.6), 0.9);
   });
 }
 
 /** A box: its middle, three directions at right angles, and half its sides along them [m]. */
-function box(paper, middle, directions, halves, colour, order = ORDER.solids) {
-  const depth = paper.on(middle)[2];
-  paper.put(order, depth, (context) => {
+function box(paper, middle, directions, halves, colour) {
+  paper.put(ORDER.solids, paper.on(middle)[2], (context) => {
     for (let k = 0; k < 3; k += 1) {
       const facing = dot(directions[k], paper.camera.toward);
       if (Math.abs(facing) < 1e-6) continue;
@@ -131,11 +113,8 @@ function box(paper, middle, directions, halves, colour, order = ORDER.solids) {
       );
       lineThrough(context, corners, true);
       const lit = Math.abs(dot(directions[k], unit(plus(paper.camera.toward, paper.camera.up, 0.8))));
-      context.fillStyle = shade(colour, 0.5 * lit - 0.12);
-      context.fill();
-      context.strokeStyle = shade(colour, -0.55);
-      context.lineWidth = 1;
-      context.stroke();
+      fillWith(context, shade(colour, 0.5 * lit - 0.12));
+      strokeWith(context, shade(colour, -0.55), 1);
     }
   });
 }
@@ -143,8 +122,7 @@ function box(paper, middle, directions, halves, colour, order = ORDER.solids) {
 /** A spring between two places: coils that stretch. */
 function coil(paper, start, stop, colour) {
   const [a, b] = [paper.on(start), paper.on(stop)];
-  const length = Math.hypot(b[0] - a[0], b[1] - a[1]);
-  const [x, y] = length ? [(b[0] - a[0]) / length, (b[1] - a[1]) / length] : [1, 0];
+  const [length, x, y] = wayTo(a, b);
   const wide = Math.max(4, 1.5 * girth * paper.camera.scale);
   const straight = Math.min(0.12 * length, 12);
   const turns = 9;
@@ -157,8 +135,6 @@ function coil(paper, start, stop, colour) {
   points.push(b);
   paper.put(ORDER.solids, (a[2] + b[2]) / 2, (context) => {
     lineThrough(context, points);
-    context.strokeStyle = colour;
-    context.lineWidth = 1.6;
-    context.stroke();
+    strokeWith(context, colour, 1.6);
   });
 }

@@ -3,33 +3,31 @@
 /** A table: heads as [words, how a cell is written, what it is sorted by]; `chosen` hears of a row that is pressed, and `described` says what that does; of more rows than `most` the first are shown.
  *
  * `plain` are heads for the copy, whose numbers are those of the file: SI, with all their digits. */
-function sortedTable(caption, heads, rows, { chosen = null, described = "Show this instant", aside = null, plain = heads, most = Infinity } = {}) {
+function sortedTable(caption, heads, rows, { chosen = null, described = "Show this instant", aside = null, plain = heads, most = Infinity, kind = "" } = {}) {
   let order = { column: -1, down: false };
   const body = element("tbody");
   const more = element("p", { class: "fine" });
-  const buttons = heads.map(([words], k) =>
-    element("button", { type: "button", click: () => sort(k) }, words),
+  const cells = heads.map(([words, , by], k) =>
+    element("th", { scope: "col", class: by ? "number" : "" }, element("button", { type: "button", click: () => sort(k) }, words)),
   );
-  const cells = heads.map(([, , by], k) => element("th", { scope: "col", class: by ? "number" : "" }, buttons[k]));
   const fill = () => {
+    const found = ordered();
     body.replaceChildren(
-      ...rows().slice(0, most).map((row) => {
+      ...found.slice(0, most).map((row) => {
         const line = element("tr", {}, heads.map(([, describe, by], k) => element(k ? "td" : "th", { class: by ? "number" : "", scope: k ? null : "row" }, describe(row))));
         if (chosen) {
           line.classList.add("pressable");
           line.addEventListener("click", () => chosen(row));
-          const first = line.firstChild;
-          const go = element("button", { type: "button", class: "go", title: described, "aria-label": `${described}: ${row.name}` }, "▸");
-          first.prepend(go);
+          line.firstChild.prepend(element("button", { type: "button", class: "go", title: described, "aria-label": `${described}: ${row.name}` }, "▸"));
         }
         return line;
       }),
     );
-    const left = rows.all().length - most;
+    const left = found.length - most;
     more.textContent = left > 0 ? `and ${left} more, which the copy has` : "";
   };
   const ordered = () => {
-    const found = [...rows.all()];
+    const found = [...rows()];
     if (order.column < 0) return found;
     const [, describe, by] = heads[order.column];
     const key = by ?? describe;
@@ -39,9 +37,6 @@ function sortedTable(caption, heads, rows, { chosen = null, described = "Show th
     });
     return order.down ? found.reverse() : found;
   };
-  const source = rows;
-  rows = () => ordered();
-  rows.all = source;
   const sort = (column) => {
     const numeric = Boolean(heads[column][2]);
     order = { column, down: order.column === column ? !order.down : numeric };
@@ -51,17 +46,11 @@ function sortedTable(caption, heads, rows, { chosen = null, described = "Show th
     });
     fill();
   };
-  const copy = element("button", { type: "button", class: "copy", click: async () => {
-    await copyText(csvOf(plain, rows()));
-    copy.textContent = "copied";
-    announce(`${caption} copied`);
-    setTimeout(() => (copy.textContent = "copy as CSV"), 1500);
-  } }, "copy as CSV");
-  const table = element("table", {}, element("thead", {}, element("tr", {}, cells)), body);
-  table.setAttribute("aria-label", caption);
+  const copy = copyButton("copy as CSV", () => csvOf(plain, ordered()), caption);
+  const table = element("table", { "aria-label": caption }, element("thead", {}, element("tr", {}, cells)), body);
   reading.tables.add(fill);
   fill();
-  return { fill, body: element("section", { class: "table" }, element("header", {}, element("h2", {}, caption), aside, copy), element("div", { class: "scroll" }, table), more) };
+  return { fill, body: element("section", { class: `table ${kind}` }, element("header", {}, element("h2", {}, caption), aside, copy), element("div", { class: "scroll" }, table), more) };
 }
 
 /** Rows as text for a spreadsheet, with a plain minus sign. */

@@ -1,5 +1,7 @@
 // The picture of the mechanism: everything that is drawn of an instant, and what is chosen to be drawn.
 
+const ROUND = [1, 2, 5, 10]; // Times a power of ten: distances of nets, and lengths of bars.
+
 const LONGEST = 0.2; // The longest arrow or ordinate, over the mechanism's size.
 
 class Stage {
@@ -101,15 +103,20 @@ class Stage {
 
   draw(instant = this.instant) {
     this.instant = instant;
-    const { paper, shows } = this;
+    const { paper } = this;
     paper.begin();
     drawFloor(paper);
-    if (designState() === "none") {
-      paper.end();
-      return;
-    }
+    const known = designState() !== "none";
+    if (known) this.drawMechanism(instant);
+    paper.end();
+    if (known) drawScales(this);
+  }
+
+  drawMechanism(instant) {
+    const { paper, shows } = this;
     drawTraces(paper, this.traces);
-    if (shows.ribbon && this.scale.ribbon) drawRibbons(paper, instant, shows.ribbon, this.scale.ribbon);
+    const { ribbon } = this.scale;
+    if (shows.ribbon && ribbon) for (const section of sections) drawRibbon(paper, section, section.forces.get(shows.ribbon), instant, ribbon);
     for (const body of bodies.values()) drawBody(paper, body, instant);
     for (const load of contents.loads) {
       if (load.kind === "spring") coil(paper, spotOf(load.spots[0], instant), spotOf(load.spots[1], instant), paper.inks.soft);
@@ -119,8 +126,6 @@ class Stage {
     drawActions(paper, instant, shows, this.scale, shows.values);
     if (shows.names) drawNames(paper, instant);
     for (const section of [this.pinned, this.pointed]) if (section) drawSection(paper, section, instant, section === this.pinned);
-    paper.end();
-    drawScales(this);
   }
 }
 
@@ -128,48 +133,33 @@ class Stage {
 function drawFloor(paper) {
   const { context } = paper;
   paper.put(ORDER.floor, 0, () => {
-    context.strokeStyle = paper.inks.faint;
-    context.lineWidth = 1;
     context.beginPath();
     if (contents.space) floorOfSpace(paper, context);
     else netOfPlane(paper, context);
-    context.stroke();
+    strokeWith(context, paper.inks.faint, 1);
   });
 }
 
 function netOfPlane(paper, context) {
-  const step = roundDistance(70 / paper.camera.scale);
+  const step = roundStep(70 / paper.camera.scale, ROUND);
   const [zeroX, zeroY] = paper.on([0, 0, 0]);
   const gap = step * paper.camera.scale;
-  for (let x = zeroX - Math.floor(zeroX / gap) * gap; x < paper.width; x += gap) {
-    context.moveTo(Math.round(x) + 0.5, 0);
-    context.lineTo(Math.round(x) + 0.5, paper.height);
-  }
-  for (let y = zeroY - Math.floor(zeroY / gap) * gap; y < paper.height; y += gap) {
-    context.moveTo(0, Math.round(y) + 0.5);
-    context.lineTo(paper.width, Math.round(y) + 0.5);
-  }
+  const places = (zero, side) => multiplesBetween(-zero, side - zero, gap).map((place) => Math.round(place + zero) + 0.5);
+  for (const x of places(zeroX, paper.width)) addLine(context, [x, 0], [x, paper.height]);
+  for (const y of places(zeroY, paper.height)) addLine(context, [0, y], [paper.width, y]);
 }
 
 function floorOfSpace(paper, context) {
   const [right, away, up] = contents.upright;
   const low = extent.floor - 0.06 * extent.size;
-  const step = roundDistance(extent.size / 8);
+  const step = roundStep(extent.size / 8, ROUND);
   const [a, b] = [right, away].map((axis) => Math.round(dot(extent.middle, axis) / step));
   const at = (i, j) => paper.on(plus(plus(times(right, (a + i) * step), away, (b + j) * step), up, low));
   const reach = 6;
   for (let k = -reach; k <= reach; k += 1) {
-    for (const [from, to] of [[at(k, -reach), at(k, reach)], [at(-reach, k), at(reach, k)]]) {
-      context.moveTo(from[0], from[1]);
-      context.lineTo(to[0], to[1]);
-    }
+    addLine(context, at(k, -reach), at(k, reach));
+    addLine(context, at(-reach, k), at(reach, k));
   }
-}
-
-/** The nearest of 1, 2, 5 times a power of ten. */
-function roundDistance(rough) {
-  const power = 10 ** Math.floor(Math.log10(rough));
-  return power * [1, 2, 5, 10].find((part) => part * power >= rough * 0.999);
 }
 
 /** The ways of declared points, and of joints, as far as they are shown and they move. */
@@ -189,9 +179,7 @@ function drawTraces(paper, traces) {
     const line = points.map((point) => paper.on(point));
     paper.put(ORDER.traces, Number(own), (context) => {
       lineThrough(context, line);
-      context.strokeStyle = own ? paper.inks.path : sheer(paper.inks.soft, 0.45);
-      context.lineWidth = own ? 1.8 : 1;
-      context.stroke();
+      strokeWith(context, own ? paper.inks.path : sheer(paper.inks.soft, 0.45), own ? 1.8 : 1);
     });
   }
 }
@@ -210,15 +198,12 @@ function drawPoint(paper, place) {
 function drawSection(paper, { section, ratio }, instant, pinned) {
   const at = placeOf(section.link, [section.xi[ratio] * section.length, 0, 0], instant);
   const [x, y] = paper.on(at);
-  const [dx, dy] = paper.along(directionOf(section.link, [1, 0, 0], instant));
-  const size = Math.hypot(dx, dy) || 1;
+  const [, dx, dy] = wayTo([0, 0], paper.along(directionOf(section.link, [1, 0, 0], instant)));
   const half = 2.2 * pinSize(paper);
   paper.put(ORDER.names, -1, (context) => {
-    context.strokeStyle = paper.inks.accent;
-    context.lineWidth = pinned ? 3 : 2;
     if (!pinned) context.setLineDash([4, 3]);
-    lineThrough(context, [[x - (half * dy) / size, y + (half * dx) / size], [x + (half * dy) / size, y - (half * dx) / size]]);
-    context.stroke();
+    lineThrough(context, [[x - half * dy, y + half * dx], [x + half * dy, y - half * dx]]);
+    strokeWith(context, paper.inks.accent, pinned ? 3 : 2);
   });
 }
 
@@ -258,16 +243,10 @@ function drawNames(paper, instant) {
       const best = boxes.reduce((least, box) => (cost(box) < cost(least) ? box : least));
       taken.push(best);
       if (best.far) {
-        context.strokeStyle = sheer(paper.inks.soft, 0.6);
-        context.lineWidth = 1;
         lineThrough(context, [[spot.x, spot.y], [Math.max(best.x, Math.min(best.x + wide, spot.x)), best.y]]);
-        context.stroke();
+        strokeWith(context, sheer(paper.inks.soft, 0.6), 1);
       }
-      context.strokeStyle = sheer(paper.inks.sheet, 0.85);
-      context.lineWidth = 3.5;
-      context.strokeText(spot.words, best.x, best.y);
-      context.fillStyle = paper.inks.ink;
-      context.fillText(spot.words, best.x, best.y);
+      writeOn(context, spot.words, best.x, best.y, paper.inks.ink, sheer(paper.inks.sheet, 0.85), 3.5);
     }
   });
 }
@@ -286,18 +265,12 @@ function drawScales(stage) {
   context.textBaseline = "middle";
   context.lineCap = "butt";
   bars.forEach(([unit, points, ink, words], k) => {
-    const value = roundDistance(55 / points);
+    const value = roundStep(55 / points, ROUND);
     const y = paper.height - 14 - 17 * (bars.length - 1 - k);
-    context.strokeStyle = ink;
-    context.lineWidth = 2;
     lineThrough(context, [[14, y - 4], [14, y], [14 + value * points, y], [14 + value * points, y - 4]]);
-    context.stroke();
+    strokeWith(context, ink, 2);
     const text = `${shown(value, unit)}${words ? ` · ${words}` : ""}`;
-    context.strokeStyle = sheer(paper.inks.sheet, 0.8);
-    context.lineWidth = 3;
-    context.strokeText(text, 22 + value * points, y - 2);
-    context.fillStyle = paper.inks.soft;
-    context.fillText(text, 22 + value * points, y - 2);
+    writeOn(context, text, 22 + value * points, y - 2, paper.inks.soft, sheer(paper.inks.sheet, 0.8), 3);
   });
   if (contents.space) drawTriad(paper, context);
   context.restore();
@@ -309,10 +282,8 @@ function drawTriad(paper, context) {
   context.textAlign = "center";
   GROUND.slice(1).forEach((axis, k) => {
     const [dx, dy] = paper.along(axis).map((part) => (part / paper.camera.scale) * 26);
-    context.strokeStyle = paper.inks.soft;
-    context.lineWidth = 1.5;
     lineThrough(context, [[x, y], [x + dx, y + dy]]);
-    context.stroke();
+    strokeWith(context, paper.inks.soft, 1.5);
     context.fillStyle = paper.inks.ink;
     context.fillText("xyz"[k], x + 1.35 * dx, y + 1.35 * dy);
   });

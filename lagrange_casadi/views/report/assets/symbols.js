@@ -21,14 +21,10 @@ function slides(joint) {
   return ["prismatic", "slot", "cylindrical"].includes(joint.kind);
 }
 
-function jointInk(paper, joint) {
-  return joint.driven.length ? paper.inks.effort : paper.inks.ink;
-}
-
 function inPlane(paper, joint, place, axis) {
   const [x, y] = paper.on(place);
   const r = pinSize(paper);
-  const ink = jointInk(paper, joint);
+  const ink = joint.driven.length ? paper.inks.effort : paper.inks.ink;
   const { sheet, metal } = paper.inks;
   const [dx, dy] = paper.along(axis);
   const turn = Math.atan2(dy, dx);
@@ -41,28 +37,22 @@ function inPlane(paper, joint, place, axis) {
       context.rotate(turn);
       context.beginPath();
       context.roundRect(-2.1 * r, -1.25 * r, 4.2 * r, 2.5 * r, 2.5);
-      context.fillStyle = metal;
-      context.fill();
+      fillWith(context, metal);
       context.stroke();
       if (joint.kind === "prismatic") return;
     }
     if (joint.kind === "weld") {
       context.beginPath();
       context.rect(-0.55 * r, -0.55 * r, 1.1 * r, 1.1 * r);
-      context.fillStyle = ink;
-      context.fill();
+      fillWith(context, ink);
       return;
     }
-    context.beginPath();
-    context.arc(0, 0, r, 0, 7);
-    context.fillStyle = sheet;
-    context.fill();
+    circleAround(context, 0, 0, r);
+    fillWith(context, sheet);
     context.stroke();
     if (joint.driven.length) {
-      context.beginPath();
-      context.arc(0, 0, 0.35 * r, 0, 7);
-      context.fillStyle = ink;
-      context.fill();
+      circleAround(context, 0, 0, 0.35 * r);
+      fillWith(context, ink);
     }
   });
 }
@@ -71,24 +61,23 @@ function inSpace(paper, joint, place, axes, instant) {
   const { metal, effort } = paper.inks;
   const colour = joint.driven.length ? effort : metal;
   const wide = pinSize(paper) / paper.camera.scale;
-  const order = ORDER.solids;
   const triad = (axis) => [axis, ...acrossOf(axis)];
-  if (joint.kind === "revolute") cylinder(paper, place, axes[0], 1.6 * wide, 1.2 * wide, colour, order);
-  else if (joint.kind === "prismatic") box(paper, place, triad(axes[0]), [2 * wide, 1.3 * wide, 1.3 * wide], colour, order);
-  else if (joint.kind === "cylindrical") cylinder(paper, place, axes[0], 2.2 * wide, 1.2 * wide, colour, order);
+  if (joint.kind === "revolute") cylinder(paper, place, axes[0], 1.6 * wide, 1.2 * wide, colour);
+  else if (joint.kind === "prismatic") box(paper, place, triad(axes[0]), [2 * wide, 1.3 * wide, 1.3 * wide], colour);
+  else if (joint.kind === "cylindrical") cylinder(paper, place, axes[0], 2.2 * wide, 1.2 * wide, colour);
   else if (joint.kind === "screw") screw(paper, place, axes[0], wide, colour);
-  else if (joint.kind === "spherical") ball(paper, place, pinSize(paper) * 1.15, colour, order);
+  else if (joint.kind === "spherical") ball(paper, place, pinSize(paper) * 1.15, colour);
   else if (joint.kind === "universal") {
     const second = joint.second ? directionOf(joint.child.body, joint.second, instant) : axes[1];
-    for (const axis of [axes[0], second]) if (axis) cylinder(paper, place, axis, 1.7 * wide, 0.5 * wide, colour, order);
-    ball(paper, place, pinSize(paper) * 0.75, colour, order);
+    for (const axis of [axes[0], second]) if (axis) cylinder(paper, place, axis, 1.7 * wide, 0.5 * wide, colour);
+    ball(paper, place, pinSize(paper) * 0.75, colour);
   } else if (joint.kind === "planar") {
     const normal = axes.length > 2 ? axes[2] : cross(axes[0], axes[1]);
-    box(paper, place, triad(unit(normal)), [0.25 * wide, 2 * wide, 2 * wide], colour, order);
+    box(paper, place, triad(unit(normal)), [0.25 * wide, 2 * wide, 2 * wide], colour);
   } else if (joint.kind === "slot") {
-    box(paper, place, triad(axes[0]), [1.8 * wide, 0.9 * wide, 0.9 * wide], colour, order);
-    ball(paper, place, pinSize(paper) * 0.9, colour, order);
-  } else if (joint.kind === "weld") box(paper, place, GROUND.slice(1), [0.6 * wide, 0.6 * wide, 0.6 * wide], colour, order);
+    box(paper, place, triad(axes[0]), [1.8 * wide, 0.9 * wide, 0.9 * wide], colour);
+    ball(paper, place, pinSize(paper) * 0.9, colour);
+  } else if (joint.kind === "weld") box(paper, place, GROUND.slice(1), [0.6 * wide, 0.6 * wide, 0.6 * wide], colour);
 }
 
 function screw(paper, place, axis, wide, colour) {
@@ -100,9 +89,7 @@ function screw(paper, place, axis, wide, colour) {
     const r = pinSize(paper) * 1.05;
     paper.put(ORDER.solids, depth + 1.2 * wide, (context) => {
       lineThrough(context, [[x - r * Math.sin(turn), y + r * Math.cos(turn)], [x + r * Math.sin(turn), y - r * Math.cos(turn)]]);
-      context.strokeStyle = shade(colour, -0.5);
-      context.lineWidth = 1;
-      context.stroke();
+      strokeWith(context, shade(colour, -0.5), 1);
     });
   }
 }
@@ -112,14 +99,12 @@ const reaches = new Map();
 /** Between which places a joint slides over all instants, along its parent's axis [m]. */
 function reachOf(joint) {
   if (!reaches.has(joint.name)) {
-    let [low, high] = [0, 0];
-    for (let i = 0; i < instants.count; i += Math.max(1, Math.floor(instants.count / 240))) {
-      const axis = directionOf(joint.parent.body, joint.axes[0], i);
-      const way = dot(less(spotOf(joint.child, i), spotOf(joint.parent, i)), axis);
-      if (i === 0) [low, high] = [way, way];
-      [low, high] = [Math.min(low, way), Math.max(high, way)];
-    }
-    reaches.set(joint.name, [low, high]);
+    const step = Math.max(1, Math.floor(instants.count / 240));
+    const ways = Array.from({ length: Math.ceil(instants.count / step) }, (_, k) => {
+      const axis = directionOf(joint.parent.body, joint.axes[0], k * step);
+      return dot(less(spotOf(joint.child, k * step), spotOf(joint.parent, k * step)), axis);
+    });
+    reaches.set(joint.name, endsOf([ways], false));
   }
   return reaches.get(joint.name);
 }
@@ -129,37 +114,31 @@ function rail(paper, joint, parent, axis, grounded) {
   const [low, high] = reachOf(joint);
   const more = 3.5 * pinSize(paper) / paper.camera.scale;
   const [a, b] = [paper.on(plus(parent, axis, low - more)), paper.on(plus(parent, axis, high + more))];
-  const bare = Math.hypot(b[0] - a[0], b[1] - a[1]) < 1;
+  const [length, x, y] = wayTo(a, b);
   const r = pinSize(paper);
-  if (bare) return;
+  if (length < 1) return;
   paper.put(ORDER.rails, a[2], (context) => {
-    context.strokeStyle = paper.inks.soft;
-    context.lineWidth = 1.2;
     if (!grounded || contents.space) {
       context.setLineDash([7, 4]);
       lineThrough(context, [a, b]);
-      context.stroke();
+      strokeWith(context, paper.inks.soft, 1.2);
       return;
     }
-    const length = Math.hypot(b[0] - a[0], b[1] - a[1]);
-    const [x, y] = [(b[0] - a[0]) / length, (b[1] - a[1]) / length];
-    const [n, m] = y * 0 + x >= -1e-9 ? [-y, x] : [y, -x];
+    const [n, m] = x >= -1e-9 ? [-y, x] : [y, -x];
     const edge = [a, b].map(([px, py]) => [px + 1.35 * r * n, py + 1.35 * r * m]);
     lineThrough(context, edge);
-    context.stroke();
+    strokeWith(context, paper.inks.soft, 1.2);
     hatchAlong(context, edge, [n, m], 0.8 * r);
   });
 }
 
 /** Short slanted strokes behind an edge of what stands still. */
 function hatchAlong(context, [a, b], [n, m], deep) {
-  const length = Math.hypot(b[0] - a[0], b[1] - a[1]);
-  const [x, y] = [(b[0] - a[0]) / length, (b[1] - a[1]) / length];
+  const [length, x, y] = wayTo(a, b);
   context.lineWidth = 0.9;
   context.beginPath();
   for (let at = 3; at < length; at += 6) {
-    context.moveTo(a[0] + at * x, a[1] + at * y);
-    context.lineTo(a[0] + (at - deep) * x + deep * n, a[1] + (at - deep) * y + deep * m);
+    addLine(context, [a[0] + at * x, a[1] + at * y], [a[0] + (at - deep) * x + deep * n, a[1] + (at - deep) * y + deep * m]);
   }
   context.stroke();
 }
@@ -172,11 +151,8 @@ function groundMark(paper, place) {
   paper.put(order, depth - 0.01 * extent.size, (context) => {
     const foot = y + 2.5 * r;
     lineThrough(context, [[x, y], [x + 1.5 * r, foot], [x - 1.5 * r, foot]], true);
-    context.fillStyle = sheer(paper.inks.metal, 0.75);
-    context.fill();
-    context.strokeStyle = paper.inks.soft;
-    context.lineWidth = 1.2;
-    context.stroke();
+    fillWith(context, sheer(paper.inks.metal, 0.75));
+    strokeWith(context, paper.inks.soft, 1.2);
     const edge = [[x - 2.3 * r, foot], [x + 2.3 * r, foot]];
     lineThrough(context, edge);
     context.stroke();
@@ -208,11 +184,7 @@ function drawBody(paper, body, instant) {
 /** A rotor: a wheel with a spoke by which one sees it turn. */
 function disc(paper, body, instant, colour) {
   const [origin, x, y] = [placeOf(body.name, body.centre, instant), ...acrossOf(body.around).map((d) => directionOf(body.name, d, instant))];
-  const around = Array.from({ length: 48 }, (_, k) => {
-    const angle = (2 * Math.PI * k) / 48;
-    return plus(plus(origin, x, body.disc * Math.cos(angle)), y, body.disc * Math.sin(angle));
-  });
-  plate(paper, around, colour);
+  plate(paper, circleOf(origin, x, y, body.disc), colour);
   bar(paper, origin, plus(origin, x, 0.85 * body.disc), 0.5 * girth, colour);
 }
 
@@ -228,11 +200,8 @@ function block(paper, place, colour) {
   paper.put(ORDER.solids, 0, (context) => {
     context.beginPath();
     context.roundRect(x - r, y - r, 2 * r, 2 * r, 3);
-    context.fillStyle = colour;
-    context.strokeStyle = shade(colour, -0.35);
-    context.lineWidth = 1.2;
-    context.fill();
-    context.stroke();
+    fillWith(context, colour);
+    strokeWith(context, shade(colour, -0.35), 1.2);
   });
 }
 
@@ -241,22 +210,16 @@ function centreMark(paper, place) {
   const [x, y, depth] = paper.on(place);
   const r = 0.55 * pinSize(paper) + 1.5;
   paper.put(ORDER.joints, depth, (context) => {
-    context.beginPath();
-    context.arc(x, y, r, 0, 7);
-    context.fillStyle = paper.inks.sheet;
-    context.fill();
+    circleAround(context, x, y, r);
+    fillWith(context, paper.inks.sheet);
     for (const from of [0, Math.PI]) {
       context.beginPath();
       context.moveTo(x, y);
       context.arc(x, y, r, from, from + Math.PI / 2);
       context.closePath();
-      context.fillStyle = paper.inks.ink;
-      context.fill();
+      fillWith(context, paper.inks.ink);
     }
-    context.beginPath();
-    context.arc(x, y, r, 0, 7);
-    context.strokeStyle = paper.inks.ink;
-    context.lineWidth = 1;
-    context.stroke();
+    circleAround(context, x, y, r);
+    strokeWith(context, paper.inks.ink, 1);
   });
 }

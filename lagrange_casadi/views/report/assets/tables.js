@@ -12,8 +12,13 @@ function isNothing(row, sizes = sizesOfUnits()) {
   return !row.open && Math.abs(row.peak.value) <= Math.max(2 * (row.error ?? 0), UNSEEN * sizes.get(row.unit));
 }
 
+/** A peak in words; nothing is 0. */
+function peakWords(row, sizes = sizesOfUnits()) {
+  if (!Number.isFinite(row.peak.value)) return "–";
+  return isNothing(row, sizes) ? shown(0, row.unit) : shown(row.peak.value, row.unit, 4);
+}
+
 const whatOf = (row) => row.what || row.part;
-const KIND_WORDS = { effort: "effort", reaction: "joint", section: "link", output: "output" };
 
 /** The two large tables: peaks, and what quantities are over the cycle. */
 function resultTables(show) {
@@ -40,7 +45,7 @@ function resultTables(show) {
     const rounding = (state.all && isNothing(row)) || Math.abs(one) <= Math.max(UNSEEN * size, row.error ?? 0);
     return Number.isNaN(one) ? "–" : rounding ? shown(0, row.unit) : shown(one, row.unit, 6, size);
   };
-  const when = (mark) => (mark && !Number.isNaN(mark.t) ? shown(mark.t, "s", 5, Math.max(Math.abs(instants.t[0]), Math.abs(instants.t.at(-1)))) : "");
+  const when = (mark) => (mark && !Number.isNaN(mark.t) ? timeWords(mark.t) : "");
   const names = [["name", (row) => row.name], ["part", (row) => row.part], ["quantity", whatOf], ["unit", (row) => row.unit]];
   const driveHead = over && [`${over.joint} [${over.unit}]`, (row) => row.peak.over];
   const drive = over ? [[over.joint, (row) => shown(row.peak.over, over.unit), (row) => row.peak.over]] : [];
@@ -69,12 +74,11 @@ function resultTables(show) {
       [
         ["part", (row) => row.part],
         ["quantity", whatOf],
-        ["smallest", (row) => value(row.smallest.value, row), (row) => row.smallest.value],
-        ["at t", (row) => when(row.smallest), (row) => row.smallest.t],
-        ["largest", (row) => value(row.largest.value, row), (row) => row.largest.value],
-        ["at t", (row) => when(row.largest), (row) => row.largest.t],
-        ["mean", (row) => value(row.mean, row), (row) => row.mean ?? -Infinity],
-        ["rms", (row) => value(row.rms, row), (row) => row.rms ?? -Infinity],
+        ...["smallest", "largest"].flatMap((end) => [
+          [end, (row) => value(row[end].value, row), (row) => row[end].value],
+          ["at t", (row) => when(row[end]), (row) => row[end].t],
+        ]),
+        ...["mean", "rms"].map((kind) => [kind, (row) => value(row[kind], row), (row) => row[kind] ?? -Infinity]),
       ],
       rows,
       {
@@ -107,25 +111,18 @@ function strengthTables() {
 
 /** The smaller tables and texts: parameters, parts, the certificate, what is open, how the numbers were made. */
 function factSections() {
-  const found = [];
   const range = ({ low, high, unit }) => (low === null && high === null ? "" : `${low === null ? "−∞" : shown(low, unit)} to ${high === null ? "∞" : shown(high, unit)}`);
-  if (contents.parameters.length) {
-    found.push(
-      sortedTable("Parameters", [["name", (row) => row.name], ["value", (row) => shown(row.value, row.unit, 7), (row) => row.value], ["range", range]], () => contents.parameters, {
-        plain: [["name", (row) => row.name], ["value", (row) => row.value], ["unit", (row) => row.unit]],
-      }).body,
-    );
-  }
   const length = (body) => (body.length === null ? "point mass" : shown(body.length, "m", 6));
-  found.push(
-    sortedTable("Bodies", [["name", (row) => row.name], ["length", length, (row) => row.length ?? -1], ["mass", (row) => shown(row.mass, "kg", 6), (row) => row.mass]], () => contents.bodies).body,
-  );
   const ends = (joint) => `${joint.parent.body} – ${joint.child.body}`;
-  found.push(
-    sortedTable("Joints", [["name", (row) => row.name], ["kind", (row) => row.kind], ["between", ends], ["driven", (row) => (row.driven.length ? "driven" : "")]], () => contents.joints).body,
-  );
-  found.push(certificateText(), ...openText(), provenanceText());
-  return found;
+  const name = ["name", (row) => row.name];
+  const parameters = [name, ["value", (row) => shown(row.value, row.unit, 7), (row) => row.value], ["range", range]];
+  const plain = [name, ["value", (row) => row.value], ["unit", (row) => row.unit]];
+  return [
+    contents.parameters.length > 0 && sortedTable("Parameters", parameters, () => contents.parameters, { plain }).body,
+    sortedTable("Bodies", [name, ["length", length, (row) => row.length ?? -1], ["mass", (row) => shown(row.mass, "kg", 6), (row) => row.mass]], () => contents.bodies).body,
+    sortedTable("Joints", [name, ["kind", (row) => row.kind], ["between", ends], ["driven", (row) => (row.driven.length ? "driven" : "")]], () => contents.joints).body,
+    certificateText(), ...openText(), provenanceText(),
+  ];
 }
 
 /** Whether the certificate is about forces too: it is where enough was wanted. */
@@ -144,22 +141,17 @@ function certificateText() {
   const sentence = forcesChecked ? forces : "The positions of all bodies were recomputed from the reported motion, by an independent program, at every instant.";
   const other = element("p", { class: "alarm other", hidden: true }, "This is the certificate of the file's design. Designs chosen by the sliders are evaluated by the same code and refused if they are impossible, but they are not certified: evaluate them from the command line for that.");
   reading.watchers.add(() => (other.hidden = designState() === "file"));
-  return element("section", { class: "text" }, element("h2", {}, "Certificate"), other, element("p", { class: `verdict ${state}` }, head), alarm,
-    state !== "none" && element("p", {}, sentence),
-    element("dl", {}, lines.flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value)])), limit, loops);
+  return textSection("Certificate", other, element("p", { class: `verdict ${state}` }, head), alarm, state !== "none" && element("p", {}, sentence), listOf(lines), limit, ...loops);
 }
 
 function openText() {
-  const found = [];
-  if (contents.undetermined.length) {
-    found.push(element("section", { class: "text" }, element("h2", {}, "Undetermined"),
+  const { undetermined, notes } = contents;
+  return [
+    undetermined.length > 0 && textSection("Undetermined",
       element("p", {}, "Equilibrium does not determine these: the mechanism is over-constrained."),
-      element("ul", {}, contents.undetermined.map((name) => element("li", {}, element("code", {}, name))))));
-  }
-  if (contents.notes.length) {
-    found.push(element("section", { class: "text" }, element("h2", {}, "Notes"), element("ul", {}, contents.notes.map((note) => element("li", {}, note)))));
-  }
-  return found;
+      element("ul", {}, undetermined.map((name) => element("li", {}, element("code", {}, name))))),
+    notes.length > 0 && textSection("Notes", element("ul", {}, notes.map((note) => element("li", {}, note)))),
+  ];
 }
 
 function provenanceText() {
@@ -170,7 +162,5 @@ function provenanceText() {
     ["method", [backend, precision, compiler, flags].filter(Boolean).join(", ")],
     ...Object.entries(versions),
   ];
-  return element("section", { class: "text" }, element("h2", {}, "How the numbers were made"),
-    element("dl", { class: "wide" }, lines.flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value)])),
-    element("p", { class: "fine" }, `${contents.conventions}.`));
+  return textSection("How the numbers were made", listOf(lines, { class: "wide" }), element("p", { class: "fine" }, `${contents.conventions}.`));
 }

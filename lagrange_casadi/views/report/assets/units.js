@@ -86,19 +86,19 @@ function labelled(words, unit) {
   return unit ? `${words} [${unit}]` : words;
 }
 
-/** When something is, in words: the time, and the drive's coordinate where instants are over one. */
-function whenOf(t, over) {
-  const time = `t = ${shown(t, "s", 5, Math.max(...[0, -1].map((k) => Math.abs(instants.t.at(k)))))}`;
-  const own = contents.instants.over;
-  return own && over !== null && over !== undefined ? `${own.joint} = ${shown(over, own.unit)}, ${time}` : time;
-}
-
 /** Round steps between two ends: about so many, at numbers that people count by. */
 function ticksBetween(low, high, about) {
   if (!(high > low)) return [low];
-  const rough = (high - low) / Math.max(about, 1);
-  const power = 10 ** Math.floor(Math.log10(rough));
-  const step = power * ([1, 2, 2.5, 5].find((part) => part * power >= rough * 0.999) ?? 10);
+  return multiplesBetween(low, high, roundStep((high - low) / Math.max(about, 1), [1, 2, 2.5, 5, 10]));
+}
+
+/** The least of some parts, the last of which is 10, times a power of ten, that is about a size or more. */
+function roundStep(size, parts) {
+  const power = 10 ** Math.floor(Math.log10(size));
+  return power * parts.find((part) => part * power >= size * 0.999);
+}
+
+function multiplesBetween(low, high, step) {
   const found = [];
   for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k += 1) found.push(k * step);
   return found;
@@ -108,8 +108,5 @@ function ticksBetween(low, high, about) {
 function angleTicks(low, high, about) {
   const steps = [1, 2, 5, 10, 15, 30, 45, 60, 90, 180, 360, 720, 1440];
   const step = steps.find((one) => (high - low) / one <= about * 1.2);
-  if (!step || high - low < 4) return ticksBetween(low, high, about);
-  const found = [];
-  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k += 1) found.push(k * step);
-  return found;
+  return step && high - low >= 4 ? multiplesBetween(low, high, step) : ticksBetween(low, high, about);
 }
