@@ -12,9 +12,9 @@ from lagrange_casadi.base.vocabulary import Backend
 from lagrange_casadi.engine.instants.evaluation_method import Provenance
 from lagrange_casadi.engine.instants.grids import empty
 from lagrange_casadi.engine.program import Program
-from lagrange_casadi.model.motion import polynomial
-from lagrange_casadi.results.laws import SectionLaw
+from lagrange_casadi.model.motion_laws import polynomial
 from lagrange_casadi.results.ordering import in_order
+from lagrange_casadi.results.section_laws import SectionLaw
 from lagrange_casadi.results.solution import Solution
 
 from .engine import columns_of

@@ -18,9 +18,9 @@ from lagrange_casadi.engine.instants.backends import rows, run
 from lagrange_casadi.engine.instants.evaluation_method import EvaluationMethod, Provenance
 from lagrange_casadi.engine.instants.grids import empty
 from lagrange_casadi.engine.program import Program
-from lagrange_casadi.model.motion import polynomial
-from lagrange_casadi.results.laws import SectionLaw
+from lagrange_casadi.model.motion_laws import polynomial
 from lagrange_casadi.results.ordering import in_order
+from lagrange_casadi.results.section_laws import SectionLaw
 from lagrange_casadi.results.solution import Solution
 from lagrange_casadi.studies.designs.engine import DesignEngine
 from lagrange_casadi.studies.designs.outcome import KEPT

@@ -33,7 +33,7 @@ from .results.histories import Peak
 from .results.holding import holding
 from .results.solution import Solution
 from .results.store.runs import check, load, save
-from .results.strength.bearings import BearingLoads, bearing_loads
+from .results.strength.bearing_life import BearingLoads, bearing_loads
 from .studies.case import Case, load_case
 from .studies.designs.prepared import Prepared, prepare
 from .studies.evaluate import evaluate
@@ -46,7 +46,7 @@ from .studies.identification import (
     read_measurements,
 )
 from .studies.optimise import Front, Optimum, optimise
-from .studies.peaks import refine
+from .studies.peaks_between import refine
 from .studies.sensitivities import Sensitivities, sensitivities
 from .studies.sizing import size
 from .studies.sweep import Sweep, best, read_designs, sweep

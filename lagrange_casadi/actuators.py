@@ -7,7 +7,7 @@ from .studies.actuators.choice import Choice, assess, select
 from .studies.actuators.duty import Duty, InertiaRatio, duty_of
 from .studies.actuators.inertia import inertia_at
 from .studies.actuators.motor import Motor
-from .views.charts.duty import plot_duty
+from .views.charts.duty_chart import plot_duty
 
 __all__ = [
     "Choice",

@@ -4,7 +4,7 @@ tables to choose from.
 
 from .model.elements.fitting import fit
 from .model.fitted import Pin, Plain, Rolling
-from .results.strength.bearings import bending_of_pin, equivalent_load, rated_hours
+from .results.strength.bearing_life import bending_of_pin, equivalent_load, rated_hours
 from .results.strength.rolling_bearings import (
     RollingBearing,
     deep_groove,

@@ -1,5 +1,5 @@
-"""Densities of links: the public part of :mod:`.model.density`."""
+"""Densities of links: the public part of :mod:`.model.link_density`."""
 
-from .model.density import Density, Slices, along, polynomial, tabulated, thick, uniform
+from .model.link_density import Density, Slices, along, polynomial, tabulated, thick, uniform
 
 __all__ = ["Density", "Slices", "along", "polynomial", "tabulated", "thick", "uniform"]

@@ -12,7 +12,7 @@ from .results.store.specs import (
     TimePlot,
     UtilisationPlot,
 )
-from .views.figures.figures import default_figures, draw
+from .views.figures.solution_figures import default_figures, draw
 
 __all__ = [
     "DeflectionPlot",

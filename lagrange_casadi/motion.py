@@ -1,8 +1,8 @@
-"""Laws of motion, for scenes: the public part of :mod:`.model.motion`, :mod:`.model.moves`,
+"""Laws of motion, for scenes: the public part of :mod:`.model.motion_laws`, :mod:`.model.moves`,
 :mod:`.model.recordings`.
 """
 
-from .model.motion import Motion, expression, harmonic, polynomial, samples
+from .model.motion_laws import Motion, expression, harmonic, polynomial, samples
 from .model.moves import Dwell, Move, dwell, move, moves
 from .model.recordings import read_motion, read_samples
 from .model.rest_laws import s_curve, trapezoid

@@ -20,7 +20,7 @@ from lagrange_casadi.engine.instants.backends import run
 from lagrange_casadi.engine.instants.evaluation_method import EvaluationMethod, Provenance
 from lagrange_casadi.engine.instants.refusing import refusal as refusal_refusal
 from lagrange_casadi.interop.formats import case_of
-from lagrange_casadi.model import laws
+from lagrange_casadi.model import sampled_laws
 from lagrange_casadi.model.even_points import points
 from lagrange_casadi.model.kinks import Smooth
 from lagrange_casadi.model.scene import Wanted
@@ -34,5 +34,5 @@ from lagrange_casadi.results.verification.certificate import certify
 from lagrange_casadi.results.verification.reference import arithmetic, reference
 from lagrange_casadi.studies.designs.engine import DesignEngine
 from lagrange_casadi.studies.designs.outcome import Outcome
-from lagrange_casadi.studies.peaks import rates
+from lagrange_casadi.studies.peaks_between import rates
 from lagrange_casadi.views.shapes.readable import scale_for

@@ -39,7 +39,7 @@ NUMBERS = (
     *("base/bernstein.py", "base/compensated.py", "base/frames.py", "base/interpret.py"),
     *("base/ipopt.py", "base/lookups.py", "base/rotation.py"),
     *("base/scalars.py", "base/vectors.py", "model", "engine", "results", "studies/designs"),
-    *("studies/peaks.py", "studies/forward", "studies/actuators", "studies/identification"),
+    *("studies/peaks_between.py", "studies/forward", "studies/actuators", "studies/identification"),
 )
 """Folders and modules that compute numbers, C that is compiled among them."""
 

@@ -5,7 +5,7 @@ straight on the ground.
 from math import pi, sqrt
 
 from lagrange_casadi import Mechanism, Scene
-from lagrange_casadi.model.parts import Link
+from lagrange_casadi.model.declared_parts import Link
 from lagrange_casadi.motion import polynomial
 
 PER_LENGTH = 0.4

@@ -3,7 +3,7 @@
 import casadi as ca
 
 from lagrange_casadi import Mechanism, Scene
-from lagrange_casadi.model.parts import Link
+from lagrange_casadi.model.declared_parts import Link
 from lagrange_casadi.motion import Motion, expression
 
 PERIOD = 4.0

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from typing import Any
 
 METHODS: dict[str, str] = {
-    "PostureError.drawn": "views.figures.postures:draw_postures",
+    "PostureError.drawn": "views.figures.posture_figures:draw_postures",
     "Scene._repr_html_": "views.report:scene_summary",
     "Scene.report": "views.report:scene_report",
     "Solution._repr_html_": "views.report:summary",
@@ -22,14 +22,14 @@ METHODS: dict[str, str] = {
     "Solution.notes": "results.elastic.vibration:swinging",
     "Solution.report": "views.report:write_report",
     "Solution.report_beside": "views.report:write_comparison",
-    "Solution.safety": "results.strength.parts:part_safety",
+    "Solution.safety": "results.strength.all_parts:part_safety",
     "Solution.stress": "results.strength.safety:stress",
     "Solution.view": "views.report:view",
-    "Spec.draw": "views.figures.figures:drawn",
+    "Spec.draw": "views.figures.solution_figures:drawn",
     "Sweep._repr_html_": "views.report.sweep_summary:summary",
     "Sweep.report": "views.report.of_sweep:write_sweep_report",
-    "figures.default_figures": "views.figures.figures:default_figures",
-    "figures.draw": "views.figures.figures:draw",
+    "figures.default_figures": "views.figures.solution_figures:default_figures",
+    "figures.draw": "views.figures.solution_figures:draw",
 }
 """Module and function of each method, by its name."""
 

@@ -11,7 +11,7 @@ from ..errors import StoreError
 from ..results.store import runs as store
 from ..results.store.opening import IDENTIFICATION, check_identification, kind_of
 from ..results.store.untrusted import check_shape
-from ..studies.optimise.file import check_optimum, is_optimum
+from ..studies.optimise.search_file import check_optimum, is_optimum
 from ..studies.sweep import is_sweep
 from ..studies.sweep.checking import check_sweep, flaws, progress, unfinished
 from .echo import echo

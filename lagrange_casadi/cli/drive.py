@@ -23,8 +23,8 @@ from ..studies.actuators.inertia import inertia_at
 from ..studies.actuators.motor import Motor
 from ..studies.case import load_case
 from ..studies.evaluate import evaluate
-from ..views.charts.duty import plot_duty
-from ..views.shapes.pictures import check_picture
+from ..views.charts.duty_chart import plot_duty
+from ..views.shapes.picture_files import check_picture
 from .echo import echo
 from .options import refuse
 

@@ -16,11 +16,11 @@ from ..model.torques import Law, dc_motor, induction_motor, power, torque
 from ..results.store.runs import check_target, save
 from ..results.verification.certificate import refuse_failed, summary
 from ..studies.case import load_case
-from ..studies.forward.motion import FreeMotion
+from ..studies.forward.free_motion import FreeMotion
 from ..studies.forward.running import flywheel
 from ..studies.forward.running import free as run
 from ..views.charts.free_cycle import plot_cycle
-from ..views.shapes.pictures import check_picture
+from ..views.shapes.picture_files import check_picture
 from .echo import echo
 from .options import HDF5, refuse, target
 

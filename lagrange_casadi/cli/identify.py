@@ -9,16 +9,16 @@ from typing import Any
 
 import click
 
-from ..base.table_file import aligned
+from ..base.table_writers import aligned
 from ..results.store.opening import IDENTIFICATION
 from ..results.store.runs import check_target
 from ..studies.case import load_case
 from ..studies.identification import Comparison, Identification, read_measurements
 from ..studies.identification import identify as estimate
-from ..studies.identification.file import save_identification
-from ..views.charts.identification import plot_identification
+from ..studies.identification.identification_file import save_identification
+from ..views.charts.identification_chart import plot_identification
 from ..views.charts.identification_page import check_page, report_identification
-from ..views.shapes.pictures import check_picture
+from ..views.shapes.picture_files import check_picture
 from .echo import echo
 from .options import HDF5, target
 

@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from ..base.files import check_writable
-from ..base.table_file import TableFile
+from ..base.table_writers import TableFile
 from ..base.vocabulary import LOAD_FORMATS, LoadFormat
 from ..errors import DeclarationError
 from ..interop.load_cases import LoadCase, link_load_cases, write_load_cases, write_spectrum
 from ..interop.load_cases.beam_model import modelled
-from ..results.strength.bearings import bearing_loads
+from ..results.strength.bearing_life import bearing_loads
 from ..results.verification.certificate import certified_outputs, refuse_failed, summary
 from ..studies.case import load_case
 from ..studies.evaluate import evaluate

@@ -11,8 +11,8 @@ from ..base.files import check_writable, writing
 from ..studies.case import load_case
 from ..studies.optimise import Front, Optimum
 from ..studies.optimise import optimise as search
-from ..views.figures.optimum import draw_front, draw_optimum
-from ..views.shapes.pictures import PICTURES
+from ..views.figures.optimum_figure import draw_front, draw_optimum
+from ..views.shapes.picture_files import PICTURES
 from .echo import echo
 from .executor import executor_at
 from .optimum_lines import front_lines, optimum_lines

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 
-from ..base.table_file import aligned
+from ..base.table_writers import aligned
 from ..studies.optimise import Front, Optimum
 from ..studies.optimise.front import FrontPoint
 

@@ -21,7 +21,7 @@ from .signatures import Parameter
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
-    from ..base.table_file import TableFile
+    from ..base.table_writers import TableFile
     from ..model.even_points import EvenPoints
     from ..model.times import Over
     from ..studies.sweep import Axis
@@ -399,7 +399,7 @@ def refuse(*misuses: tuple[object, str]) -> None:
 
 def table_file(place: Path | None, decimal_comma: bool) -> TableFile | None:
     """The table that ``--csv`` names, with the marks of ``--decimal-comma``."""
-    from ..base.table_file import TableFile
+    from ..base.table_writers import TableFile
 
     refuse((decimal_comma and not place, "--decimal-comma goes with --csv FILE.csv"))
     table = None if place is None else TableFile(place, decimal_comma)

@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from ..base.quantities import Output
-from ..base.table_file import aligned
+from ..base.table_writers import aligned
 from ..results.histories import Peak
 from ..results.ordering import error_of, ordered
 from ..results.solution import Solution

@@ -16,7 +16,7 @@ from ..base.arrays import Array
 from ..base.files import check_writable
 from ..base.quantities import AVERAGED, Output
 from ..base.streams import is_standard_output
-from ..base.table_file import TableFile
+from ..base.table_writers import TableFile
 from ..base.vocabulary import Backend
 from ..engine.instants.backends import peak_search
 from ..errors import CompilerError, DeclarationError
@@ -24,17 +24,17 @@ from ..model import revolutions
 from ..model.scene import Scene
 from ..model.times import Timing
 from ..model.wanted_names import among
+from ..results.data_frames import TIME, columns
 from ..results.elastic.vibration import vibration
-from ..results.frames import TIME, columns
 from ..results.ordering import ordered
-from ..results.sensitivity.peaks import PeakKind
+from ..results.sensitivity.peak_derivatives import PeakKind
 from ..results.solution import Solution
 from ..results.store.runs import check_target, save
 from ..results.store.specs import dump_specs
 from ..results.verification.certificate import refuse_failed, summary
 from ..studies.case import load_case
 from ..studies.evaluate import evaluate
-from ..studies.peaks import forces, refine, resultants
+from ..studies.peaks_between import forces, refine, resultants
 from ..studies.sensitivities import Changes, sensitivities
 from ..views.shapes.index import MANIFEST
 from .drawing import draw_with_progress

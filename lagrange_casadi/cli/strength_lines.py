@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection, Iterator, Sequence
 
-from ..engine.stress import KINDS
+from ..engine.section_stress import KINDS
 from ..errors import DeclarationError
 from ..model.scene import Scene
 from ..model.wanted_names import among
 from ..results.solution import Solution
-from ..results.strength.parts import not_evaluated
+from ..results.strength.all_parts import not_evaluated
 from ..results.strength.safety import Life, Safety
 from ..results.strength.stress import Stress, StressPeak
 from ..studies.strength_peaks import refine_safety, refine_stress

@@ -14,7 +14,7 @@ from ..studies.case import load_case
 from ..studies.sweep import Axis, Sweep, read_designs
 from ..studies.sweep import sweep as carry_out
 from ..studies.sweep.axes import counted, grouped
-from ..studies.sweep.notes import fatigue_notes, resting_note, turning_note
+from ..studies.sweep.sweep_notes import fatigue_notes, resting_note, turning_note
 from .echo import echo
 from .executor import executor_at
 from .options import HDF5, refuse, target

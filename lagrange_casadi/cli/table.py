@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ..base.streams import is_standard_output
-from ..base.table_file import aligned, head
+from ..base.table_writers import aligned, head
 from ..errors import NoDesignError
 from ..studies.sweep import Sweep, chosen
 from ..studies.sweep import best as find

@@ -9,7 +9,7 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
-from ..base.table_file import Cell, aligned
+from ..base.table_writers import Cell, aligned
 from ..studies.case import load_case
 from ..studies.tolerances import Spread, Spreads
 from ..studies.tolerances import tolerances as spreads

@@ -8,14 +8,14 @@ from pathlib import Path
 from typing import Any
 
 from ..base.files import check_writable, writing
-from ..base.table_file import aligned
+from ..base.table_writers import aligned
 from ..engine.instants.evaluation_method import EvaluationMethod
 from ..errors import DeclarationError
 from ..studies.case import load_case
 from ..studies.trade import METHODS, Trade
 from ..studies.trade import trade as measure
 from ..views.figures.trade_plot import draw_trade
-from ..views.shapes.pictures import PICTURES
+from ..views.shapes.picture_files import PICTURES
 from .echo import echo
 from .options import target
 from .progress import bar_of

@@ -9,11 +9,11 @@ import casadi as ca
 from ..base.arrays import Expression
 from ..base.frames import Velocities
 from ..base.vectors import AXES, ZERO, cross, dot, minus, nil, plus, times
+from ..model.declared_parts import Link, Point, Vector
 from ..model.joints import Axis, Joint
 from ..model.loads import Force, Friction, LineLoad, Load, Spring, Torque
-from ..model.parts import Link, Point, Vector
 from .growing import Grown
-from .joints import carried, reaction, residual_motion
+from .joint_closure import carried, reaction, residual_motion
 from .multibody import Applied, LoopEquations, RowGraph
 from .pressing import way_of
 

@@ -22,15 +22,15 @@ from ..base.vectors import AXES, ZERO, dot, minus, nil, times
 from ..errors import DeclarationError
 from ..model.constraints import Constraint, Row
 from ..model.corners import smooth_constraint
-from ..model.density import Density
+from ..model.declared_parts import Link, PointMass, RigidMass, Vector
 from ..model.joints import Axis, Joint
+from ..model.link_density import Density
 from ..model.mass_properties import second_moments
 from ..model.mechanism import Mechanism
-from ..model.parts import Link, PointMass, RigidMass, Vector
 from .applied import applied_by, held_by, push, work
 from .growing import Grown, coordinates_of
-from .joints import loop_residuals
-from .meshes import meshed_by
+from .joint_closure import loop_residuals
+from .mesh_forces import meshed_by
 from .multibody import Applied, LoopEquations, Multibody, RowGraph, change, released_forces
 from .tree import Tree
 from .two_force_links import TwoForceFrame

@@ -21,7 +21,7 @@ from ..base.arguments import Numeric, Positive, public
 from ..base.arrays import Array, Expression, Operand
 from ..model.beams.beam import SLIGHT
 from ..model.beams.properties import chosen, larger, smaller, symbolic
-from .stress import CrossSections
+from .section_stress import CrossSections
 
 _ROUNDS, _TINY = 8, 1e-12
 """Steps of Newton's method for bending about two axes, and how near Euler's load they begin."""

@@ -23,7 +23,7 @@ from ..base.quantities import Column, Output
 from ..base.scalars import column
 from ..model.mechanism import Mechanism
 from .strains import Moduli, moduli_of, strains
-from .strength import Loaded, Part, most, sampled
+from .utilisation import Loaded, Part, most, sampled
 
 _MORE = 6
 """More nodes where the cross-section changes."""

@@ -21,10 +21,10 @@ from ..base.scalars import column, graph
 from ..base.symbolic import symbolic
 from ..base.tables import Table, table_of
 from ..errors import AssemblyError, DeclarationError, MobilityError, PostureError
-from ..model.density import Density
+from ..model.declared_parts import Asked, Link
 from ..model.end_conditions import effective_lengths, ends_of
 from ..model.limits import END, FITS, MISSES
-from ..model.parts import Asked, Link
+from ..model.link_density import Density
 from ..model.scene import STRENGTH, Scene, Wanted
 from ..model.wanted_names import among
 from .deflections import deflections
@@ -42,8 +42,8 @@ from .program import Program
 from .reciprocals import share_reciprocals
 from .sampling import Sampling
 from .section_function import Place, Section
-from .strength import stresses, utilisation
 from .two_force_links import find_two_force_links, unaimed
+from .utilisation import stresses, utilisation
 
 _SERVES = 1e-10
 """Largest residual of redundant equations at the start for other parameters, for which the graphs

@@ -16,10 +16,10 @@ import casadi as ca
 from ..base.arrays import Expression
 from ..base.quantities import Column, Output
 from ..base.tables import table_of
-from ..model.density import Density, shifted
+from ..model.declared_parts import Link, Vector
+from ..model.link_density import Density, shifted
 from ..model.loads import LineLoad
 from ..model.mechanism import Mechanism
-from ..model.parts import Link, Vector
 from .multibody import Multibody
 
 

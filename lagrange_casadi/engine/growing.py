@@ -15,10 +15,10 @@ from ..base.frames import Carried, Frame
 from ..base.rotation import Rotation
 from ..base.scalars import column
 from ..base.vectors import AXES, ZERO, cross, dot, minus, plus, times
+from ..model.declared_parts import Link, Point, Vector
 from ..model.joints import Axis, Joint
 from ..model.mechanism import Mechanism
-from ..model.parts import Link, Point, Vector
-from .joints import turning_axes
+from .joint_closure import turning_axes
 from .multibody import Coordinate, Turned, motion_along, own_coordinate
 from .sizes import reach
 from .spherical import SphericalCoordinates

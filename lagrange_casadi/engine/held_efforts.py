@@ -12,7 +12,7 @@ from ..base.quantities import Check, Column, Output
 from ..base.scalars import column, graph
 from ..base.symbolic import Graphs, symbolic
 from ..model.scene import Scene, Wanted
-from .meshes import transmissions_of
+from .mesh_forces import transmissions_of
 from .mobility import internal_forces
 from .moving import Moving
 from .pressing import frictions_of

@@ -25,11 +25,11 @@ from ..model.directions import most_across
 from .blocks import Block, solving_order
 from .iteration import Iterated, NewtonLoop, Start, place_roughly
 from .linear import LinearSystem
+from .loop_turns import Guide
 from .loops import ClosedForm
 from .multibody import Coordinate, Multibody
 from .postures import Undecided, directions, is_angle, measured
 from .residuals import lengths, loop_residual, redundancy_residual
-from .revolutions import Guide
 from .screws import signed_volume
 from .sizes import reach
 from .spherical import SphericalCoordinates

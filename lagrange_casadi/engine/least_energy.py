@@ -30,18 +30,18 @@ from ..base.quantities import Column, Output, force_members
 from ..base.scalars import column, graph
 from ..base.tables import table_of
 from ..errors import DeclarationError, one_line
-from ..model.density import Density
+from ..model.declared_parts import Link
 from ..model.limits import END
+from ..model.link_density import Density
 from ..model.mechanism import Mechanism
-from ..model.parts import Link
 from ..model.scene import Wanted
 from ..model.scene_arguments import Elastic
 from .indeterminate import Forces
 from .section_function import Place, Section
+from .section_stress import FORCES
 from .sizes import extent
 from .strains import Moduli, moduli_of, resultants
-from .strength import Loaded
-from .stress import FORCES
+from .utilisation import Loaded
 
 _NONE = 1e-6
 """Relative change of forces that counts as none, in numbers of either precision."""

@@ -20,8 +20,8 @@ import numpy as np
 from ..base.arrays import Expression
 from ..base.quantities import Column, Output
 from ..base.scalars import column
+from ..model.declared_parts import Link
 from ..model.limits import END
-from ..model.parts import Link
 from .mobility import load_points_of
 from .multibody import Coordinate
 from .sampling import Sampling, drawn

@@ -33,19 +33,19 @@ from ..base.rotation import Rotation
 from ..base.scalars import column
 from ..base.tables import table_of
 from ..base.vectors import ZERO, cross, dot, plus, times
-from ..model.density import Density
+from ..model.declared_parts import Link, Point, PointMass, Vector
 from ..model.joints import Joint
 from ..model.limits import at_end
+from ..model.link_density import Density
 from ..model.mechanism import Mechanism
-from ..model.parts import Link, Point, PointMass, Vector
 from ..model.scene import Scene, Wanted
 from .assembly import line_reaction
 from .distributed_loads import distributed_loads, rotary
 from .drives import solve_efforts
 from .friction import Solved, needed, solve
-from .joints import carried, reaction, supported
+from .joint_closure import carried, reaction, supported
 from .kinematics import Kinematics
-from .meshes import braking, pressing_apart, transmissions_of
+from .mesh_forces import braking, pressing_apart, transmissions_of
 from .multibody import Multibody, own_coordinate, released_forces
 from .multipliers import multipliers_of
 from .pressing import frictions_of, joint_friction

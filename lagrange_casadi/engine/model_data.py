@@ -23,12 +23,12 @@ from ..base.vocabulary import PRECISIONS, Precision
 from ..errors import UnknownNameError
 from ..model.beams.beam import Beam
 from ..model.corners import Corners
-from ..model.density import Density
+from ..model.declared_parts import Link, Parameter
 from ..model.description import Description
-from ..model.laws import Laws
+from ..model.link_density import Density
 from ..model.loads import LineLoad
 from ..model.mass_properties import ALL
-from ..model.parts import Link, Parameter
+from ..model.sampled_laws import Laws
 from ..model.scene import Scene
 from ..model.stated import Stated
 from ..model.times import Timing

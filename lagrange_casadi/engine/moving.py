@@ -17,19 +17,19 @@ from ..base.scalars import column
 from ..base.tables import ANGLE
 from ..base.vectors import ZERO, dot
 from ..errors import DeclarationError
-from ..model.ends import beyond_ends
-from ..model.laws import Laws
+from ..model.beyond_ends import beyond_ends
 from ..model.limits import parameters_note
 from ..model.mechanism import Mechanism
+from ..model.sampled_laws import Laws
 from ..model.scene import Scene, Wanted
 from . import kinematics
 from .assembly import assemble
 from .drives import pushed
 from .iteration import Start
+from .loop_turns import Guide, depends_on_turns
 from .mobility import needed_reactions
 from .model_data import template
 from .multibody import Coordinate, Multibody, own_coordinate
-from .revolutions import Guide, depends_on_turns
 from .tree import span
 from .two_force_links import across_link
 

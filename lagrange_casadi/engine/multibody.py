@@ -22,11 +22,11 @@ from ..base.scalars import column
 from ..base.vectors import AXES, ZERO
 from ..errors import DeclarationError
 from ..model.constraints import Row
+from ..model.declared_parts import Point, Vector
 from ..model.joints import Axis, Joint
 from ..model.limits import APART
 from ..model.mechanism import Mechanism
-from ..model.parts import Point, Vector
-from .joints import slide, slide_motion, turned, turning
+from .joint_closure import slide, slide_motion, turned, turning
 from .lagrange import LagrangeSystem
 from .spherical import SphericalCoordinates
 from .three_rotations import ThreeRotations

@@ -11,7 +11,7 @@ import casadi as ca
 from ..base.scalars import column
 from .blocks import Block
 from .kinematics import Kinematics
-from .meshes import transmissions_of
+from .mesh_forces import transmissions_of
 from .multibody import LoopEquations, Multibody
 
 

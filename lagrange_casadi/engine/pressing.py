@@ -11,11 +11,11 @@ import casadi as ca
 from ..base.arrays import Expression
 from ..base.frames import Frame
 from ..base.vectors import dot, minus, norm, times
+from ..model.declared_parts import Vector
 from ..model.joints import Joint
 from ..model.loads import Friction
 from ..model.mechanism import Mechanism
 from ..model.meshes import Loss, Transmission
-from ..model.parts import Vector
 from .growing import Grown
 from .multibody import Multibody
 from .sizes import reach

@@ -20,11 +20,11 @@ from ..base.templates import Leaf, Template, dumps, loads
 from ..base.vocabulary import Precision
 from ..errors import PickleError
 from ..model.corners import Corners
+from ..model.declared_parts import Parameter
 from ..model.description import DESCRIBED, Description
 from ..model.kinks import Smooth
-from ..model.laws import Laws
 from ..model.limits import END, FITS
-from ..model.parts import Parameter
+from ..model.sampled_laws import Laws
 from ..model.scene import Wanted
 from ..model.stated import Entry, Equation, LoadLaw, Stated, Touch
 from ..model.times import Timing

@@ -7,7 +7,7 @@ import casadi as ca
 from ..base.arrays import Expression
 from ..base.scalars import column
 from .blocks import Block, Equation
-from .joints import held_directions, off
+from .joint_closure import held_directions, off
 from .multibody import Multibody
 from .sizes import reach
 

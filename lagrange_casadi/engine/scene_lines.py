@@ -11,9 +11,9 @@ import numpy as np
 from ..base.arrays import Expression
 from ..base.lookups import PREFIX
 from ..model.constraints import Constraint
-from ..model.laws import motion_function
 from ..model.loads import Force, Friction, LineLoad, Load, Torque
-from ..model.motion import Motion
+from ..model.motion_laws import Motion
+from ..model.sampled_laws import motion_function
 from ..model.scene import Scene
 from .kinematics import describe_coordinate
 

@@ -17,7 +17,7 @@ from ..base.scalars import column
 from ..base.vectors import AXES, ZERO, Vector, cross, minus, times
 from ..model.joints import Joint
 from .blocks import Block
-from .joints import turning_axes
+from .joint_closure import turning_axes
 from .linear import LinearSystem
 from .multibody import Multibody
 from .sampling import Sampling

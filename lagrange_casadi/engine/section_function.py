@@ -33,7 +33,7 @@ from ..base.quantities import Column, Output, parts_along
 from ..base.scalars import graph
 from ..base.tables import Table, Terms, table_of
 from ..model.beams.properties import larger, smaller
-from ..model.density import Density
+from ..model.link_density import Density
 from .distributed_loads import distributed_loads_of
 from .mobility import load_points_of
 

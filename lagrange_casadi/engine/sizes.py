@@ -8,7 +8,7 @@ import numpy as np
 from ..base.arrays import Array
 from ..base.symbolic import symbolic
 from ..model.declaration import Declaration
-from .joints import held_directions
+from .joint_closure import held_directions
 from .multibody import LoopEquations
 
 

@@ -16,9 +16,9 @@ from heapq import heappop, heappush
 from typing import NoReturn
 
 from ..errors import DeclarationError
+from ..model.declared_parts import Body, Ground, Point
 from ..model.joints import Axis, Joint
 from ..model.mechanism import Mechanism
-from ..model.parts import Body, Ground, Point
 from ..model.spatial import SpatialMechanism
 from .two_force_links import TwoForceLink, find_two_force_links
 

@@ -22,12 +22,12 @@ from ..base.arrays import Expression
 from ..base.frames import Frame
 from ..base.rotation import Rotation
 from ..base.vectors import ZERO, cross, dot, minus, nil, plus, times
-from ..model.density import Density
+from ..model.declared_parts import Body, Link, Point, Vector
 from ..model.joints import Joint
 from ..model.limits import parameter_values
+from ..model.link_density import Density
 from ..model.loads import Friction, Torque
 from ..model.mechanism import Mechanism
-from ..model.parts import Body, Link, Point, Vector
 
 
 @dataclass(frozen=True, eq=False)

@@ -26,11 +26,11 @@ from ..base.scalars import graph
 from ..base.status import Status
 from ..base.tables import MOMENT
 from ..base.vocabulary import Precision
-from ..model.ends import BEYOND, share_beyond, words_beyond
+from ..model.beyond_ends import BEYOND, share_beyond, words_beyond
 from ..model.limits import APART, MISSES
 from .friction import SLIP
 from .iteration import NEWTON_LOST
-from .revolutions import LEAP, REACH
+from .loop_turns import LEAP, REACH
 
 MISFIT: dict[Precision, float] = {"double": 1e-8, "single": 1e-5}
 """Largest residual of redundant equations, relative to the links' length, and of a row, relative to

@@ -18,9 +18,9 @@ from ..base.arrays import Array
 from ..base.symbolic import Graphs, symbolic
 from .constraints import Constraint
 from .kinks import Smooth
-from .laws import law_expression
 from .mechanism import Mechanism
-from .motion import Motion
+from .motion_laws import Motion
+from .sampled_laws import law_expression
 from .scene import Scene
 
 _SAMPLED = 4001

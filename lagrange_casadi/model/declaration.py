@@ -12,12 +12,7 @@ from ..base.arguments import public
 from ..base.scalars import column
 from ..base.symbolic import Graphs, symbolic
 from .constraints import Constraint, Row
-from .expressions import check_name, value_of
-from .fitted import Fittings
-from .joints import Axis, Joint
-from .loads import Load
-from .measures import Measures
-from .parts import (
+from .declared_parts import (
     Asked,
     Body,
     Expression,
@@ -31,6 +26,11 @@ from .parts import (
     UserOutput,
     Vector,
 )
+from .expressions import check_name, value_of
+from .fitted import Fittings
+from .joints import Axis, Joint
+from .loads import Load
+from .measures import Measures
 
 
 @public

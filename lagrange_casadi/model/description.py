@@ -23,14 +23,14 @@ from ..base.vectors import ZERO
 from .beams.beam import Beam, Notch
 from .beams.material import Material
 from .beams.shape import Course, Shape
-from .density import Density, NumericDensity
+from .declared_parts import Link, Point, PointMass, RigidMass
 from .fitted import Fittings, Pin, Plain, Rolling
 from .guiding import kind_of
 from .joints import Joint, JointKind
+from .link_density import Density, NumericDensity
 from .loads import Friction, Load
 from .mass_properties import mass_of
 from .mechanism import Mechanism
-from .parts import Link, Point, PointMass, RigidMass
 
 Triple: TypeAlias = tuple[float, float, float]
 """A vector."""

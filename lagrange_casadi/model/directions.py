@@ -13,10 +13,10 @@ import casadi as ca
 from ..base.rotation import Rotation, direction
 from ..base.vectors import AXES, ZERO, Vector, cross, dot, minus, norm, times
 from ..errors import DeclarationError
+from .declared_parts import Body, Expression, Link, Point
 from .joints import Triad
 from .limits import ROUNDED
 from .ownership import Ownership
-from .parts import Body, Expression, Link, Point
 
 Checked = Callable[..., Expression]
 """Takes what is said of an expression, the expression, and its unit if a text may state it."""

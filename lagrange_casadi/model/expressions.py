@@ -12,7 +12,7 @@ from ..base.interpret import written_out
 from ..base.scalars import column
 from ..base.units import number, typed
 from ..errors import DeclarationError, NumberError, one_line, shown
-from .parts import Expression
+from .declared_parts import Expression
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 

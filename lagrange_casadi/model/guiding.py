@@ -15,10 +15,10 @@ from typing import Literal
 from ..base.tables import ANGLE, LENGTH
 from ..base.vectors import AXES, ZERO
 from ..errors import DeclarationError, UnknownNameError
+from .declared_parts import Body, Link, Point, PointMass, RigidMass
 from .joints import Joint
 from .mechanism import Mechanism
-from .motion import Motion
-from .parts import Body, Link, Point, PointMass, RigidMass
+from .motion_laws import Motion
 
 _NOTHING = RigidMass(0.0, ZERO, (ZERO, ZERO, ZERO))
 _NAMES = {1: ("",), 2: (".x", ".y"), 3: (".x", ".y", ".angle")}

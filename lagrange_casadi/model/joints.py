@@ -15,7 +15,7 @@ from ..base.brief import Brief
 from ..base.rotation import Rotation
 from ..base.vectors import AXES, cross
 from ..errors import DeclarationError
-from .parts import Body, Expression, Point, Vector
+from .declared_parts import Body, Expression, Point, Vector
 
 JointKind = Literal[
     "revolute",

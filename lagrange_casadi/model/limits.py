@@ -12,9 +12,9 @@ import casadi as ca
 from ..base.scalars import column
 from ..base.vocabulary import Precision
 from ..errors import DeclarationError, ParameterError, UnknownNameError
-from .density import Density
+from .declared_parts import Body, Expression, Ground, Link, Parameter, Point
 from .joints import Joint
-from .parts import Body, Expression, Ground, Link, Parameter, Point
+from .link_density import Density
 
 END: dict[Precision, float] = {"double": 1e-12, "single": 1e-6}
 """Fraction of a link's length within which a point is at the link's end."""

@@ -8,11 +8,11 @@ from typing import Any, TypeAlias
 import casadi as ca
 
 from ..errors import DeclarationError
+from .declared_parts import Expression, Link
 from .expressions import expressed
 from .joints import Axis, Joint
 from .loads import POSITIVE, Friction, LineLoad
 from .ownership import Ownership
-from .parts import Expression, Link
 from .polynomials import powers
 
 LoadDensity: TypeAlias = "Expression | tuple[Expression, Expression] | Callable[[Any], Expression]"

@@ -8,8 +8,8 @@ from typing import TypeAlias
 import casadi as ca
 
 from ..base.brief import Brief
+from .declared_parts import Expression, Link, Point, Vector
 from .joints import Axis, Joint
-from .parts import Expression, Link, Point, Vector
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -12,8 +12,8 @@ import casadi as ca
 from ..base.vectors import ZERO
 from ..errors import DeclarationError
 from .beams.beam import Beam
-from .density import Density, Slices, uniform
-from .parts import Expression, Link, PointMass, RigidMass, Vector
+from .declared_parts import Expression, Link, PointMass, RigidMass, Vector
+from .link_density import Density, Slices, uniform
 
 Inertia: TypeAlias = tuple[Vector, Vector, Vector]
 """Moments of inertia [kg m^2], three rows of a matrix."""

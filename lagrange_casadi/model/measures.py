@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 import casadi as ca
 
 from ..base.scalars import column
+from .declared_parts import Link, Point
 from .joints import Axis, Joint
-from .parts import Link, Point
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,16 +22,26 @@ from ..errors import DeclarationError
 from .beams.beam import Beam
 from .constraints import Constraint, Row
 from .declaration import Declaration
-from .density import Density
+from .declared_parts import (
+    Body,
+    Expression,
+    Link,
+    Parameter,
+    Path,
+    Point,
+    PointMass,
+    UserOutput,
+    Vector,
+)
 from .directions import in_plane
 from .expressions import check_line
 from .joints import Joint, JointKind, check_ends
 from .limits import check_connected, parameter_values
+from .link_density import Density
 from .load_arguments import Between, LoadDensity, friction, line_load
 from .loads import Force, Friction, LineLoad, Spring, Torque
 from .mass_properties import Rigid, beam_of, mass_properties_of
 from .ownership import Ownership
-from .parts import Body, Expression, Link, Parameter, Path, Point, PointMass, UserOutput, Vector
 from .results import Results
 from .validity import demands
 

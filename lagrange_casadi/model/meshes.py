@@ -11,8 +11,8 @@ import casadi as ca
 
 from ..base.numerals import readable
 from ..base.vectors import ZERO
+from .declared_parts import Body, Expression, Point, Vector
 from .joints import Joint
-from .parts import Body, Expression, Point, Vector
 
 FITTING = 1e-9
 """Largest relative difference of two numbers that must be equal."""

@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..base.arrays import Array
-from .laws import Laws
+from .sampled_laws import Laws
 
 _SHARE = 1 / 32
 """Fraction of the distance by which the coordinate changes in a step."""

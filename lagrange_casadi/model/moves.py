@@ -15,9 +15,9 @@ from ..base.arrays import Operand
 from ..base.numerals import readable
 from ..base.symbolic import symbolic
 from ..errors import DeclarationError
+from .declared_parts import Expression
 from .expressions import check_name, coordinates, plain, scalar, sound, symbols_of
-from .motion import Motion
-from .parts import Expression
+from .motion_laws import Motion
 from .rest_laws import Limits, RestLaw, rest_law, s_curve_within, trapezoid_within
 from .stretches import Stretch
 from .validity import Demand, Evaluator

@@ -11,11 +11,21 @@ from typing import get_args
 from ..errors import DeclarationError
 from .constraints import Constraint, Row
 from .declaration import Declaration
+from .declared_parts import (
+    Body,
+    Expression,
+    Ground,
+    Link,
+    Parameter,
+    Path,
+    Point,
+    PointMass,
+    UserOutput,
+)
 from .expressions import check_name, scalar
 from .joints import Axis, Joint
 from .limits import along_link, on_link
 from .loads import Load
-from .parts import Body, Expression, Ground, Link, Parameter, Path, Point, PointMass, UserOutput
 
 _WORDS: dict[type[object], str] = dict.fromkeys(get_args(Load), "a load") | {
     Constraint: "a constraint",

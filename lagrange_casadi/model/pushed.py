@@ -10,8 +10,8 @@ from typing import Any
 import casadi as ca
 
 from ..errors import DeclarationError
+from .declared_parts import Body, Link, Parameter, Point, PointMass
 from .loads import Force
-from .parts import Body, Link, Parameter, Point, PointMass
 from .scene import Scene
 
 _LOAD = "tool deflection"

@@ -17,9 +17,9 @@ from ..base.csv_table import Table, count_sizes, for_each
 from ..base.units import UNITS, count, quantity
 from ..errors import DeclarationError, PathError, UnknownNameError, one_line
 from .curves import Curve, curve
+from .declared_parts import Expression
 from .expressions import coordinates, scalar, symbols_of
-from .motion import Motion
-from .parts import Expression
+from .motion_laws import Motion
 
 _UNITS = UNITS["rad"] | UNITS["m"]
 _TIMES = UNITS["s"]

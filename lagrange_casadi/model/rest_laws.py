@@ -19,8 +19,8 @@ import casadi as ca
 from ..base.arguments import Symbolic, public
 from ..base.brief import Brief
 from ..errors import DeclarationError, UnknownNameError
+from .declared_parts import Expression
 from .expressions import plain
-from .parts import Expression
 
 _CUBE = 1.0 / 3.0
 

@@ -15,12 +15,12 @@ from ..base.quantities import Output, force_members
 from ..base.tables import table_of
 from ..errors import DeclarationError, UnknownNameError
 from .constraints import Constraint, Row
-from .density import Density
+from .declared_parts import Asked, Body, Expression, Link, Point
 from .joints import Joint
 from .limits import no_sections
+from .link_density import Density
 from .loads import Friction, Load
 from .ownership import Ownership
-from .parts import Asked, Body, Expression, Link, Point
 
 _Part: TypeAlias = Load | Friction | Constraint | Row
 """Part of a mechanism that has results of its own."""

@@ -10,8 +10,8 @@ import numpy as np
 
 from ..base.arrays import Array
 from ..base.quantities import Kinds
-from .laws import Laws
 from .motion_inverse import MotionInverse
+from .sampled_laws import Laws
 from .times import Timing
 
 _SAMPLES = 129

@@ -16,15 +16,15 @@ from ..base.symbolic import Graphs, symbolic, symbolic_property
 from ..base.units import within
 from ..base.vocabulary import PRECISIONS, Precision
 from ..errors import DeclarationError, ParameterError, PickleError, UnknownNameError, shown
-from .density import Density
+from .declared_parts import Expression, Parameter
 from .even_points import EvenPoints, checked_ratios
 from .guiding import guided, laws_of
-from .laws import Laws
 from .limits import no_sections, parameters_note
+from .link_density import Density
 from .loads import Friction
 from .mechanism import Mechanism
-from .motion import Motion
-from .parts import Expression, Parameter
+from .motion_laws import Motion
+from .sampled_laws import Laws
 from .scene_arguments import Elastic, compliant_links, links_with_beams, rough_posture, weighed
 from .shaking import refuse_late
 from .stretches import Timetable, timetable

@@ -14,9 +14,9 @@ from ..base.numerals import readable
 from ..base.tables import ANGLE, LENGTH
 from ..base.units import quantity
 from ..errors import DeclarationError, UnknownNameError, shown
-from .density import Density
+from .declared_parts import Expression
+from .link_density import Density
 from .mechanism import Mechanism
-from .parts import Expression
 from .times import TURNS
 
 Elastic = bool | Sequence[str]

@@ -14,10 +14,10 @@ from ..base.arguments import public
 from ..base.arrays import Operand
 from ..base.vectors import ZERO, Vector, cross, minus, times
 from ..errors import DeclarationError
-from .density import Density
+from .declared_parts import Expression, Link, Point, PointMass, UserOutput
+from .link_density import Density
 from .mass_properties import second_moments
 from .mechanism import Mechanism
-from .parts import Expression, Link, Point, PointMass, UserOutput
 
 
 @dataclass(frozen=True, eq=False, repr=False)

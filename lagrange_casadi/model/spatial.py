@@ -13,15 +13,15 @@ from ..base.symbolic import symbolic
 from ..base.vectors import times
 from ..errors import DeclarationError, check_kind
 from .beams.beam import Beam
-from .density import Density
+from .declared_parts import Body, Expression, Ground, Link, Point, PointMass, RigidMass, Vector
 from .directions import Reference, rotated, tensor, triad_of, turned_by, vector
 from .directions import between as lying
 from .joints import Joint, JointKind, Triad, check_ends
+from .link_density import Density
 from .load_arguments import Between, LoadDensity, line_load
 from .loads import Force, LineLoad, Torque
 from .measures import Measures
 from .mechanism import Mechanism
-from .parts import Body, Expression, Ground, Link, Point, PointMass, RigidMass, Vector
 
 Turns = Sequence[tuple[str, Expression]] | tuple[Vector, Vector]
 """Turns in sequence, each about the ``"x"``, ``"y"`` or ``"z"`` axis that the turns before it

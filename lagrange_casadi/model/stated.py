@@ -19,13 +19,13 @@ from ..base.symbolic import Graphs, symbolic
 from ..base.templates import Template
 from ..base.vectors import ZERO
 from .constraints import Constraint, Row
+from .declared_parts import Point
 from .description import Triple
 from .guiding import point_of
 from .loads import Force, Friction, LineLoad, Spring, Torque
 from .mechanism import Mechanism
 from .meshes import Transmission, Wrench
-from .motion import Motion
-from .parts import Point
+from .motion_laws import Motion
 
 EntryKind = Literal["coordinate", "x", "y", "z", "direction"]
 

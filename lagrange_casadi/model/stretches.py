@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..base.brief import Brief
-from .parts import Expression
+from .declared_parts import Expression
 from .rest_laws import RestLaw
 from .validity import Evaluator
 

@@ -20,14 +20,14 @@ from ..base.brief import Brief
 from ..base.tables import ANGLE, LENGTH
 from ..base.units import quantity
 from ..errors import DeclarationError, UnknownNameError, shown
+from .declared_parts import Expression
 from .even_points import EvenPoints, checked, points
 from .expressions import scalar
-from .laws import Laws
 from .limits import values_note
 from .mechanism import Mechanism
-from .motion import Motion
 from .motion_inverse import Missed, MotionInverse, Passage
-from .parts import Expression
+from .motion_laws import Motion
+from .sampled_laws import Laws
 
 Over = tuple[str, Expression, Expression, int]
 """Equal steps of the coordinate of a driven joint [rad or m]: its name, start, stop and count; both

@@ -20,16 +20,16 @@ from ..base.symbolic import Graphs, symbolic, symbolic_property
 from ..base.vectors import dot, nil
 from ..base.vocabulary import Precision
 from ..errors import ParameterError
+from .beyond_ends import BEYOND, beyond_ends, words_beyond
 from .declaration import Declaration
-from .density import Density, Slices
+from .declared_parts import Expression, Link, Point, PointMass, RigidMass, Vector
 from .directions import RIGHT, not_right
-from .ends import BEYOND, beyond_ends, words_beyond
 from .joints import Joint
 from .limits import END
+from .link_density import Density, Slices
 from .loads import POSITIVE, Friction, LineLoad
 from .mass_properties import second_moments
 from .meshes import FITTING, Fit
-from .parts import Expression, Link, Point, PointMass, RigidMass, Vector
 from .polynomials import lowest, product
 
 Evaluator = Callable[[Any], float]

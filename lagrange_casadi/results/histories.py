@@ -22,9 +22,9 @@ from ..errors import DeclarationError, UnknownNameError, shown
 from ..model.description import Description
 from ..model.limits import no_sections
 from ..model.times import DriveAxis
-from .laws import law_of, made_of
-from .sizes import largest, size_of
+from .section_laws import law_of, made_of
 from .statistics import Statistics
+from .vector_sizes import largest, size_of
 from .views import JointMotion, Pose, Reaction, Section
 
 if TYPE_CHECKING:

@@ -25,8 +25,8 @@ from ..base.arrays import Array
 from ..base.bernstein import of_powers, product, raised, value, within, zeros
 from ..engine.instants.grids import Functions, Load
 from ..engine.section_function import Side, edge
-from ..model.density import NumericDensity
-from .sizes import size_of
+from ..model.link_density import NumericDensity
+from .vector_sizes import size_of
 
 _FEW = 1 << 12
 """Ratios up to which functions along a link are kept."""

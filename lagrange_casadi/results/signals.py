@@ -15,12 +15,12 @@ import numpy.typing as npt
 from ..base.arrays import Array, Flags, Operand
 from ..base.quantities import Output
 from ..base.status import Status
-from ..engine.codegen.search import Curves, Listed, Peaks, Samples
+from ..engine.codegen.peak_search import Curves, Listed, Peaks, Samples
 from ..engine.instants.backends import Interpreter, peak_search
 from ..engine.sharpness import Sharpness, bent
-from ..model.density import NumericDensity
-from .laws import law_of
-from .sizes import size_of
+from ..model.link_density import NumericDensity
+from .section_laws import law_of
+from .vector_sizes import size_of
 
 _BLOCK = 4096
 

@@ -14,8 +14,8 @@ from ..base.arrays import Array
 from ..base.methods import method
 from ..engine.instants.beyond_equilibrium import Elasticity, Holding, held_notes
 from ..model.notes import notes
+from .data_frames import dataset, frame
 from .derivatives import Derivatives
-from .frames import dataset, frame
 from .histories import Histories
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from ..base.arrays import Array, Operand
 from ..base.brief import Brief
-from .sizes import largest
+from .vector_sizes import largest
 
 
 @dataclass(frozen=True)

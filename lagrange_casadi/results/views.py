@@ -11,9 +11,9 @@ from ..base.arrays import Array
 from ..base.brief import Brief
 from ..base.space import require
 from ..errors import NoComponentError, UnknownNameError
-from .laws import SectionLaw
 from .pieces import Rows
-from .sizes import size_of
+from .section_laws import SectionLaw
+from .vector_sizes import size_of
 
 
 @dataclass(frozen=True, eq=False, repr=False)

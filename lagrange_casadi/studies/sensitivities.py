@@ -15,17 +15,23 @@ from ..base.arrays import Array
 from ..base.brief import listed
 from ..base.quantities import Output
 from ..base.vocabulary import Backend
-from ..engine.codegen.search import Listed
+from ..engine.codegen.peak_search import Listed
 from ..engine.instants.evaluation_method import EvaluationMethod
 from ..engine.sharpness import Sharpness
 from ..errors import DeclarationError, UnknownNameError
 from ..model.scene import Scene
 from ..results.sensitivity.ends import Ends
-from ..results.sensitivity.peaks import AS_LARGE, MovingPeaks, PeakKind, faint, mean_slopes
+from ..results.sensitivity.peak_derivatives import (
+    AS_LARGE,
+    MovingPeaks,
+    PeakKind,
+    faint,
+    mean_slopes,
+)
 from ..results.sensitivity.slopes import Numbers, Slopes
 from ..results.solution import Solution
 from ..results.statistics import shares
-from .peaks import ContinuousSolution, resultants
+from .peaks_between import ContinuousSolution, resultants
 
 _BLOCK = 1 << 16
 

@@ -20,9 +20,9 @@ from ..engine.model_data import beam_at, template
 from ..engine.two_force_links import unaimed
 from ..errors import DeclarationError, LagrangeCasadiError, NoDesignError, UnknownNameError
 from ..model.beams.profiles import Profile
+from ..model.declared_parts import Parameter
 from ..model.description import Description
 from ..model.end_conditions import ends_of
-from ..model.parts import Parameter
 from ..model.scene import Scene
 from ..model.times import Over, Times
 from ..results.elastic.compliance import Compliance

@@ -24,7 +24,7 @@ from ..results.solution import Solution
 from ..results.strength.member import Member
 from ..results.strength.safety import Safety, Verdict, as_column, buckling, safety, yielded
 from ..results.strength.stress import Stress, StressPeak
-from .peaks import ContinuousSolution
+from .peaks_between import ContinuousSolution
 
 
 @public

@@ -18,7 +18,7 @@ from ..base.status import Status
 from ..base.units import Within, number, typed
 from ..base.vocabulary import SAMPLES, Compiled
 from ..errors import DeclarationError, UnknownNameError
-from ..model.parts import Parameter
+from ..model.declared_parts import Parameter
 from ..model.scene import Scene
 from ..model.times import Over, Times
 from .designs.prepared import prepare

@@ -19,7 +19,7 @@ from ..base.arrays import Array
 from ..base.brief import Brief
 from ..engine.model_data import template
 from ..errors import DeclarationError
-from ..model.parts import Body, Point
+from ..model.declared_parts import Body, Point
 from ..model.pushed import with_push
 from ..model.scene import Scene
 from ..model.times import Over, Times

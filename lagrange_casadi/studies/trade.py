@@ -35,7 +35,7 @@ from ..model.scene import Scene
 from ..model.times import Over, Times, Timing, instants_of
 from ..results.verification.reference import reference
 from .designs.engine import DesignEngine
-from .peaks import Shortfall, shortfall
+from .peaks_between import Shortfall, shortfall
 
 INSTANTS = 1000
 """Instants of a sample, over the scene's own span of time; of the virtual machine a tenth."""

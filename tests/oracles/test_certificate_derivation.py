@@ -7,7 +7,7 @@ from dataclasses import replace
 import casadi as ca
 import pytest
 from every_load import every_joint_and_load
-from internals import assembly, cache, laws
+from internals import assembly, cache, sampled_laws
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate, motion
 from lagrange_casadi.errors import CertificateWarning
@@ -59,7 +59,7 @@ def law(change):
     """Derive with another motion than was declared."""
 
     def patch(monkeypatch):
-        right = laws.motion_function
+        right = sampled_laws.motion_function
 
         def wrong(given, parameters):
             function = right(given, parameters)
@@ -72,7 +72,7 @@ def law(change):
                 ["d", "d_rate", "d_acceleration"],
             )
 
-        monkeypatch.setattr(laws, "motion_function", wrong)
+        monkeypatch.setattr(sampled_laws, "motion_function", wrong)
 
     return patch
 

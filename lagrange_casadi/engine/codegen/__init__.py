@@ -4,7 +4,7 @@ from .batch import CHOSEN, BatchLibrary, load_batch
 from .compiler import INSTALL, Compiler, Language, find_compiler, no_compiler
 from .emit import emit
 from .library import Designs, Library, load
-from .search import Search, load_search
+from .peak_search import Search, load_search
 
 __all__ = [
     "CHOSEN",

@@ -16,8 +16,8 @@ from ...base.threads import in_threads
 from ...base.vocabulary import Precision
 from .compiler import Compiler, entry_of, loaded, packed, statements
 from .emit import EVALUATE, FOLLOW, INSTANTS
+from .peak_search import Listed, Search, Tables, load_search
 from .reduction import CALL, DESIGNS, Reduction
-from .search import Listed, Search, Tables, load_search
 
 if TYPE_CHECKING:
     from _ctypes import CFuncPtr

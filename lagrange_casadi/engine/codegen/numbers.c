@@ -1,4 +1,4 @@
-/* Numbers of the search for peaks: of either precision, then of both. engine/codegen/search.py defines what other modules share. */
+/* Numbers of the search for peaks: of either precision, then of both. engine/codegen/peak_search.py defines what other modules share. */
 #include <float.h>
 typedef lanes_real search_real;
 #ifdef LANES_SINGLE

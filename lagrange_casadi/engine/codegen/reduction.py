@@ -23,8 +23,8 @@ from ..verdicts import Beside
 from .along_links import Along, along, pieces
 from .calls import Call
 from .compiler import written
+from .peak_search import BASE, OFF, TIP, TOPS, Tables, interface
 from .printer import defined, function_name, print_functions
-from .search import BASE, OFF, TIP, TOPS, Tables, interface
 
 DESIGNS = "lagrange_casadi_designs"
 CALL = Call(
@@ -97,7 +97,7 @@ class Reduction:
 
     @property
     def curves(self) -> list[tuple[int, int, int]]:
-        """Quantity of each curve, its link or -1, and its place, as in :data:`.search.CURVES`."""
+        """Quantity of each curve, its link or -1, and its place, as in :data:`.peak_search.CURVES`."""
         found = [(q, -1, OFF) for q in range(len(self.quantities))]
         q, first = len(self.quantities), 0
         for k, link in enumerate(self.links):

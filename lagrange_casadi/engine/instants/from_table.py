@@ -20,8 +20,8 @@ from ...base.symbolic import symbolic
 from ...base.threads import in_threads
 from ..program import Program
 from .backends import Evaluated, run, unevaluated
-from .cycle import TURNS, the_drive
 from .cycle_table import CycleTable
+from .cycle_terms import TURNS, the_drive
 from .evaluation_method import EvaluationMethod, Provenance
 from .tabulate import still, tabulate
 

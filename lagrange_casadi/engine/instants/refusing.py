@@ -18,7 +18,7 @@ from ...base.interpret import interpret, numpy_arithmetic
 from ...base.status import Status
 from ...base.vocabulary import Precision
 from ...errors import AssemblyError, DeclarationError
-from ...model.ends import BEYOND
+from ...model.beyond_ends import BEYOND
 from ..codegen.stages import plain
 from ..iteration import LARGEST_STEP
 from ..kinematics import where
@@ -26,8 +26,8 @@ from ..model_data import ModelData
 from ..program import Program
 from ..verdicts import Instance
 from .backends import Evaluated, Interpreter
-from .dead_centres import Placed, dead_steps
 from .evaluation_method import EvaluationMethod
+from .passed_dead_centres import Placed, dead_steps
 
 _TRIALS, _WIDE = 100, 0.1
 _SAMPLED = 4001

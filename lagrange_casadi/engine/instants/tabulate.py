@@ -17,8 +17,8 @@ from ...base.quantities import Check, Output, column_of
 from ...base.tables import LARGEST as LARGEST_ALONG
 from ...errors import DeclarationError
 from ..program import Program
-from .cycle import FRACTIONS, Cycle, cycle_of
 from .cycle_table import LEAST, CycleTable, arranged, splines, weights
+from .cycle_terms import FRACTIONS, Cycle, cycle_of
 
 FEWEST, MOST = 16, 16384
 """Nodes: the first to try for an accuracy, and the most."""

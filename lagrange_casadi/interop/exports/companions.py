@@ -7,12 +7,12 @@ from __future__ import annotations
 import numpy as np
 
 from ..portable.contract import CORNERS, Contract, Member
+from ..portable.exported_slopes import in_readme, selftest_function, selftest_numbers
 from ..portable.golden import RATIOS, remainder
 from ..portable.sections import comparisons
-from ..portable.slopes import in_readme, selftest_function, selftest_numbers
 from ..portable.source import Source
 from ..portable.text import listed, markdown, number_rows, numbers, quoted, template
-from .fatigue import counting
+from .damage_header import counting
 from .matlab import matlab
 
 _ROWS = 12

@@ -23,7 +23,7 @@ from ..portable.contract import Contract, Member, Setting
 from ..portable.golden import motions_at
 from ..portable.source import Source
 from ..portable.text import template
-from .units import BASE, base_unit
+from .unit_powers import BASE, base_unit
 
 if TYPE_CHECKING:
     import casadi as ca

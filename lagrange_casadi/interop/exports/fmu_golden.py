@@ -6,7 +6,7 @@ import itertools
 
 import numpy as np
 
-from ...base.table_file import csv_text
+from ...base.table_writers import csv_text
 from ..portable.golden import motions_at
 from ..portable.text import template
 from .fmu_description import Description

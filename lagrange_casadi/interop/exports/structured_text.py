@@ -18,8 +18,8 @@ from ...base.status import Status
 from ...engine.codegen.emit import NEWTON_STEPS, newton_rule
 from ...engine.dead_centres import FAR, POINTS, ROUNDS, TOUCHES
 from ...errors import DeclarationError
-from ..portable.calls import CALLS, INSTANT, PREPARE
 from ..portable.contract import Member
+from ..portable.exported_calls import CALLS, INSTANT, PREPARE
 from ..portable.naming import distinct
 from ..portable.source import Source
 from ..portable.text import indented, template

@@ -20,7 +20,7 @@ from ...model.scene import Scene
 from . import asmt, json_model, mjcf, sdf, urdf
 from .as_case import case_text
 from .checks import checked
-from .drives import driven
+from .missing_drives import driven
 from .of_scene import model_of
 from .record import Model
 

@@ -16,8 +16,8 @@ from functools import partial
 import numpy as np
 
 from ...base.arrays import Array
-from .frames import Frame
-from .laws import Motions
+from .file_frames import Frame
+from .motion_texts import Motions
 from .places import Places
 from .posture import about_z, opened
 from .python_text import Call, comment, of_pi, safe, signed, text_of, vector

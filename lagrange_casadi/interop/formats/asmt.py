@@ -14,8 +14,8 @@ from dataclasses import replace
 import numpy as np
 
 from ...base.arrays import Array
-from .elements import Element
-from .frames import Frame
+from .file_elements import Element
+from .file_frames import Frame
 from .record import GROUND, Body, Joint, Law, Model, Row, Tie
 
 KINDS: dict[str, str] = {

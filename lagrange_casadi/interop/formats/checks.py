@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...base.arrays import Array
-from .frames import Frame
+from .file_frames import Frame
 from .posture import EXACT, SLACK, apart, assemble, extent, hang, outward
 from .record import GROUND, Body, Model, Tie
 

@@ -13,8 +13,8 @@ import numpy as np
 
 from ...base.arrays import Array
 from ...errors import shown
-from .elements import Element
-from .frames import Frame
+from .file_elements import Element
+from .file_frames import Frame
 from .record import GROUND, MOVES, Body, Coupling, Joint, Law, Model
 
 SCHEMA, VERSION = "lagrange_casadi.model", 1

@@ -21,8 +21,8 @@ import numpy as np
 from ...base.apart import LostError, run_apart
 from ...base.arrays import Array
 from ...errors import MissingPackageError, PathError, shown
-from .elements import Element, parsed
-from .frames import Frame
+from .file_elements import Element, parsed
+from .file_frames import Frame
 from .mujoco_model import compiled
 from .record import GROUND, Body, Coupling, Joint, Model, Spring
 

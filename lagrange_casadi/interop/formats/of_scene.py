@@ -18,8 +18,8 @@ from ...model.description import BodyNumbers, JointNumbers
 from ...model.scene import Scene
 from ...results.solution import Solution
 from ...studies.evaluate import evaluate
-from .frames import Frame, turned
-from .laws import ONE_NUMBER, LawError, parsed
+from .file_frames import Frame, turned
+from .motion_texts import ONE_NUMBER, LawError, parsed
 from .record import Body, Joint, Law, Model
 
 SAMPLES = 1001

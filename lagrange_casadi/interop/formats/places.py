@@ -13,7 +13,7 @@ from collections.abc import Collection, Iterator
 import numpy as np
 
 from ...base.arrays import Array
-from .frames import Frame
+from .file_frames import Frame
 from .posture import extent
 from .python_text import Call, Place, Short, text_of
 from .record import GROUND, Body, Joint, Model

@@ -13,9 +13,9 @@ from typing import Any, TypeVar
 import numpy as np
 
 from ...base.arrays import Array
-from .blocks import Rows, blocks
-from .frames import Frame, turned
+from .file_frames import Frame, turned
 from .record import GROUND, MOVES, Joint, Model, Row, Tie
+from .separate_systems import Rows, blocks
 
 Closure = TypeVar("Closure", bound=Joint | Tie)
 

@@ -17,7 +17,7 @@ import numpy as np
 from ...base.arrays import Array
 from ...errors import ModelFileError, shown
 from ...model.joints import IN_SPACE
-from .frames import Frame, right_angled
+from .file_frames import Frame, right_angled
 
 GROUND = "ground"
 """The name of the fixed frame, as of a body."""

@@ -9,8 +9,8 @@ import numpy as np
 
 from ...base.arrays import Array
 from ...errors import shown
-from .elements import Element, note_unread, parsed, six_moments
-from .frames import Frame
+from .file_elements import Element, note_unread, parsed, six_moments
+from .file_frames import Frame
 from .record import GROUND, Body, Coupling, Joint, Model, Spring
 
 KINDS: dict[str, str] = {

@@ -15,8 +15,8 @@ import numpy as np
 
 from ...base.brief import listed
 from ...errors import shown
-from .elements import Element, note_unread, parsed, six_moments
-from .frames import Frame
+from .file_elements import Element, note_unread, parsed, six_moments
+from .file_frames import Frame
 from .record import GROUND, Body, Joint, Model
 from .sdf import Joints, resist
 

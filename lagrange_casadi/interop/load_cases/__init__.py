@@ -3,8 +3,8 @@ spectra.
 """
 
 from .equilibrium import link_load_cases
-from .files import write_load_cases
-from .loads import Load, LoadCase
+from .load_case import Load, LoadCase
+from .load_case_files import write_load_cases
 from .spectra import write_spectrum
 
 __all__ = [

@@ -18,8 +18,8 @@ from ...base.arrays import Array
 from ...model.beams.beam import Beam
 from ...model.beams.shape import Shape, between
 from ...model.description import BodyNumbers
-from ...results.verification.vectors import Axes, Vector
-from .loads import LoadCase, listed, nodes_of, on_own_axes, refused, title, turning, unlike
+from ...results.verification.instant_vectors import Axes, Vector
+from .load_case import LoadCase, listed, nodes_of, on_own_axes, refused, title, turning, unlike
 
 _ELEMENTS = 16
 """Elements of a link, where no load point and no step of the section asks for more."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 
-from .loads import LoadCase, listed, nodes_of, title
+from .load_case import LoadCase, listed, nodes_of, title
 
 
 def calculix(case: LoadCase, number: int, nodes: Mapping[str, str]) -> Iterator[str]:

@@ -20,10 +20,10 @@ from ...model.stated import Stated
 from ...results.solution import Solution
 from ...results.verification.balance import Action, all_actions, forces_needed
 from ...results.verification.certificate import placed_of, reported_of
+from ...results.verification.instant_vectors import NIL, Axes, Scalar, Vector, most, total
 from ...results.verification.placing import Moving, Placed
-from ...results.verification.vectors import NIL, Axes, Scalar, Vector, most, total
 from ...studies.case import Case, scene_of
-from .loads import Load, LoadCase, on_own_axes, refused, turning
+from .load_case import Load, LoadCase, on_own_axes, refused, turning
 
 _SLIGHT = 1e-9
 """Share of the largest load below which a peak is rounding, and governs nothing."""

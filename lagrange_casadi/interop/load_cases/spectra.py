@@ -11,7 +11,7 @@ import numpy as np
 from ...base.arguments import Index, public
 from ...base.arrays import Array
 from ...base.files import writing
-from ...base.table_file import csv_text
+from ...base.table_writers import csv_text
 from ...errors import DeclarationError, UnknownNameError
 from ...results.solution import Solution
 from ...results.strength.rainflow import counted

@@ -27,7 +27,7 @@ from ...engine.instants.tabulate import still
 from ...engine.program import Program
 from ...engine.section_function import SectionInputs, section
 from ...model.limits import END
-from .calls import CALLS
+from .exported_calls import CALLS
 from .statuses import ANSWERS
 
 

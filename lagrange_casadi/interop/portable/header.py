@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterable
 
 from .contract import CORNERS, Contract, Member
+from .exported_slopes import types
 from .sections import about, law_in_words
-from .slopes import types
 from .source import Source
 from .stack import deepest
 from .statuses import STATUSES

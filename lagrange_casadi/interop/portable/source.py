@@ -11,13 +11,13 @@ import numpy as np
 
 from ...base.arrays import Array
 from ...version import __version__
-from .calls import MODEL
 from .contract import Contract
+from .exported_calls import MODEL
 from .exported_program import ExportedProgram
+from .exported_slopes import ExportedSlopes
+from .exported_slopes import code as sensitivity
 from .golden import Golden
 from .sections import functions
-from .slopes import ExportedSlopes
-from .slopes import code as sensitivity
 from .statements import Statements
 from .statuses import STATUSES
 from .text import comment, indented, printed, template

@@ -27,8 +27,8 @@ from ...studies.evaluate import evaluate
 from .contract import contract
 from .data import check_size
 from .exported_program import exported
+from .exported_slopes import FUNCTION, check_method, exported_slopes
 from .golden import golden
-from .slopes import FUNCTION, check_method, exported_slopes
 from .source import Source
 
 

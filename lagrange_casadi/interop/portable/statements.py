@@ -15,10 +15,10 @@ from ...engine.codegen.emit import newton_rule
 from ...engine.codegen.printer import function_name
 from ...engine.codegen.reduction import centre
 from ...engine.dead_centres import POINTS
-from ...model.ends import BEYOND
-from .calls import INSTANT, MODEL, PREPARE, CalledInC
+from ...model.beyond_ends import BEYOND
 from .contract import Contract
 from .data import table_call, table_text
+from .exported_calls import INSTANT, MODEL, PREPARE, CalledInC
 from .exported_program import ExportedProgram
 from .text import indented, template
 

@@ -28,9 +28,9 @@ from ...base.brief import Brief
 from ...base.vectors import cross, dot, minus, norm, times
 from ...errors import DeclarationError
 from ..constraints import Constraint
+from ..declared_parts import Body, Expression, Point
 from ..mechanism import Mechanism
 from ..meshes import FITTING, Fit, Loss, Mesh, Transmission, Wrench
-from ..parts import Body, Expression, Point
 from .courses import along, courses_on, fits_of, size
 from .ranges import at_least, positive, share
 

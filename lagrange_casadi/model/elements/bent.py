@@ -15,8 +15,8 @@ from ...base.arguments import public
 from ...base.brief import Brief
 from ...base.vectors import Vector, minus, norm
 from ...errors import DeclarationError
+from ..declared_parts import Expression, Link, Point
 from ..mechanism import Mechanism
-from ..parts import Expression, Link, Point
 from ..spatial import SpatialMechanism
 
 

@@ -24,9 +24,9 @@ from ...base.rotation import Rotation
 from ...base.vectors import Vector, cross, dot, minus, norm, plus, times
 from ...errors import DeclarationError
 from ..constraints import Constraint
+from ..declared_parts import Expression, Link, Outline, Point, Roller
 from ..joints import Joint
 from ..mechanism import Mechanism
-from ..parts import Expression, Link, Outline, Point, Roller
 from .cam_profile import CamProfile, profile_of
 from .follower import STEEL, held_by, largest_pressure, positive, rise_of, stiffness_of
 

@@ -18,7 +18,7 @@ from ...base.arguments import public
 from ...base.arrays import Array
 from ...base.brief import Brief
 from ...base.files import writing
-from ...base.table_file import TableFile
+from ...base.table_writers import TableFile
 from ...errors import DeclarationError, LagrangeCasadiError, shown
 
 if TYPE_CHECKING:

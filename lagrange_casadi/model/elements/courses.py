@@ -12,10 +12,10 @@ import casadi as ca
 from ...base.rotation import Rotation
 from ...base.vectors import ZERO, cross, dot, minus, plus
 from ...errors import DeclarationError
+from ..declared_parts import Body, Expression, Point, Vector
 from ..joints import Joint
 from ..mechanism import Mechanism
 from ..meshes import FITTING, Fit
-from ..parts import Body, Expression, Point, Vector
 from ..validity import Evaluator
 
 _KINDS = ("revolute", "prismatic", "weld")

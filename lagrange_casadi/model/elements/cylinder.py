@@ -12,9 +12,9 @@ import casadi as ca
 from ...base.arguments import public
 from ...base.brief import Brief
 from ...errors import DeclarationError
+from ..declared_parts import Body, Expression, Link, Point
 from ..joints import Joint
 from ..mechanism import Mechanism
-from ..parts import Body, Expression, Link, Point
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -31,9 +31,9 @@ from ...base.rotation import Rotation, direction
 from ...base.vectors import ZERO, Vector, cross, dot, minus, norm, plus, times
 from ...errors import DeclarationError
 from ..constraints import Constraint
+from ..declared_parts import Expression, Link, Point
 from ..joints import Joint
 from ..mechanism import Mechanism
-from ..parts import Expression, Link, Point
 from .cam_profile import turn_in
 from .follower import STEEL, held_by, largest_pressure, rise_of, stiffness_of
 

@@ -13,10 +13,10 @@ import casadi as ca
 import numpy as np
 
 from ...errors import DeclarationError
+from ..declared_parts import Expression, Ground, Point
 from ..expressions import expressed, sound
 from ..joints import Joint
 from ..mechanism import Mechanism
-from ..parts import Expression, Ground, Point
 
 _SAMPLED = 37
 

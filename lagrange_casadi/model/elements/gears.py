@@ -31,9 +31,9 @@ from ...base.brief import Brief
 from ...base.vectors import cross, dot, minus, norm, plus
 from ...errors import DeclarationError
 from ..constraints import Constraint
+from ..declared_parts import Body, Expression, Point
 from ..mechanism import Mechanism
 from ..meshes import Fit, Loss, Mesh, Transmission, Wrench
-from ..parts import Body, Expression, Point
 from .courses import Course, along, courses_on, fits_of
 from .pitch import Pitch, Teeth, pitch_of
 from .ranges import LEAST, at_least, positive, share, whole, within

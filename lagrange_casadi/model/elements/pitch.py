@@ -18,8 +18,8 @@ import casadi as ca
 
 from ...base.vectors import ZERO, cross, dot, minus, norm, plus, times
 from ...errors import DeclarationError
+from ..declared_parts import Expression, Vector
 from ..meshes import FITTING, Fit
-from ..parts import Expression, Vector
 from ..validity import Evaluator
 from .courses import Course, along, size
 

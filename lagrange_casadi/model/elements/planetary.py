@@ -12,9 +12,9 @@ from typing import Any
 from ...base.arguments import public
 from ...base.brief import Brief
 from ...errors import DeclarationError
+from ..declared_parts import Body, Expression, Link, Point
 from ..joints import Joint
 from ..mechanism import Mechanism
-from ..parts import Body, Expression, Link, Point
 from .gears import Gears, gears
 from .ranges import positive
 from .wheel import wheel

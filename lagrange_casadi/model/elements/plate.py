@@ -14,9 +14,9 @@ from ...base.arguments import public
 from ...base.brief import Brief
 from ...errors import DeclarationError
 from ..beams.solid import polygon_area, polygon_moments
+from ..declared_parts import Expression, Link, Point
 from ..expressions import plain
 from ..mechanism import Mechanism
-from ..parts import Expression, Link, Point
 from .bent import corners_of
 
 

@@ -21,9 +21,9 @@ from ...base.bernstein import of_powers, slope, value, zeros
 from ...base.csv_table import Table
 from ...errors import DeclarationError, one_line
 from ..curves import Curve, curve
+from ..declared_parts import Point
 from ..joints import Joint
 from ..mechanism import Mechanism
-from ..parts import Point
 from .cam import layout_of
 
 _UNITS = {"": 1, "m": 1, "mm": 1000, "um": 1_000_000}

@@ -10,8 +10,8 @@ import casadi as ca
 
 from ...base.numerals import readable
 from ...errors import DeclarationError
+from ..declared_parts import Expression
 from ..meshes import FITTING, Fit
-from ..parts import Expression
 
 LEAST = 1e-12
 """Least number that counts as positive."""

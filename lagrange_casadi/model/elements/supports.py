@@ -18,10 +18,10 @@ from ...base.arguments import public
 from ...base.brief import Brief
 from ...base.vectors import AXES, cross, minus, norm, plus, times
 from ...errors import DeclarationError
+from ..declared_parts import Body, Expression, Point, Vector
 from ..directions import in_plane, triad_of
 from ..joints import Joint, Triad
 from ..mechanism import Mechanism
-from ..parts import Body, Expression, Point, Vector
 from ..spatial import SpatialMechanism
 
 

@@ -9,8 +9,8 @@ import math
 from ...base.arguments import public
 from ...base.units import count, number
 from ...errors import DeclarationError
+from ..declared_parts import Expression, Link
 from ..mechanism import Mechanism
-from ..parts import Expression, Link
 from ..spatial import SpatialMechanism
 
 _CORNERS = 48

@@ -23,9 +23,9 @@ from ...base.bernstein import interpolated, nodes, product, raised, value, zeros
 from ...errors import DeclarationError, UnknownNameError
 from ...model.end_conditions import ends_of
 from ..histories import Histories
-from ..sizes import largest
+from ..strength.all_parts import reason, strong_of
 from ..strength.member import Member
-from ..strength.parts import reason, strong_of
+from ..vector_sizes import largest
 from .compliance import Compliance
 
 Against = Literal["ends", "base"]

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...base.arrays import Array
 from ...base.symbolic import symbolic_property
-from ...model.laws import Laws
+from ...model.sampled_laws import Laws
 from ...model.times import Timing
 
 

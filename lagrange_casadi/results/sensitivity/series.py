@@ -18,7 +18,7 @@ from ...engine.instants.evaluation_method import EvaluationMethod
 from ...engine.program import Program
 from ...engine.reciprocals import differentiable
 from ..histories import Histories
-from ..laws import made_of
+from ..section_laws import made_of
 from .jacobian import section_slopes, total
 from .slopes import Batch, Loops
 

@@ -12,9 +12,9 @@ from ...engine.instants.beyond_equilibrium import Elasticity
 from ...engine.instants.evaluation_method import Provenance
 from ...model.description import Description
 from ..solution import Solution
+from .dataset_words import conventions
 from .specs import Spec, parse_specs
 from .untrusted import check_shape, number, parsed, read_json, shown, structured
-from .words import conventions
 
 Attributes: TypeAlias = Mapping[str, Any]
 """Texts and numbers of a file, by name."""

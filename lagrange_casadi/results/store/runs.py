@@ -41,11 +41,11 @@ from .attributes import (
     figures_of,
     read_attributes,
 )
+from .dataset_words import say, unlike, unlike_conventions
+from .kept_slopes import add_slopes, check_slopes, slopes_of
 from .opening import KINDS, RUN, kind_of, opened_file, sealed
 from .scales import LARGE, Scales
-from .slopes import add_slopes, check_slopes, slopes_of
 from .untrusted import check_chunks, check_dataset, check_links, number, parsed, reported_as, shown
-from .words import say, unlike, unlike_conventions
 
 _CHUNK_BYTES = 1 << 20
 _BLOCK_BYTES = 1 << 23

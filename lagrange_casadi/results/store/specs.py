@@ -1,7 +1,7 @@
 """Figures of a solution, declared as frozen specs, which a case may give and a file keeps.
 
-Specs are known wherever cases are. How each is drawn is known in :mod:`.figures.figures`, imported
-when something is drawn.
+Specs are known wherever cases are. How each is drawn is known in
+:mod:`.figures.solution_figures`, imported when something is drawn.
 """
 
 from __future__ import annotations

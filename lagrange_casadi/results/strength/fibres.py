@@ -23,7 +23,7 @@ import numpy.typing as npt
 from ...base.arrays import Array
 from ...base.bernstein import halves, value
 from ...engine.section_function import SIDES, Side
-from ...engine.stress import concentration, notch_factor
+from ...engine.section_stress import concentration, notch_factor
 from ...model.beams.beam import Notch
 from .fatigue import Score, widest
 from .member import CLOSE, Cell, Member

@@ -17,13 +17,13 @@ from ...base.brief import Brief
 from ...base.quantities import Output
 from ...engine.model_data import ModelData
 from ...engine.section_function import Side
-from ...engine.stress import FORCES, CrossSections
+from ...engine.section_stress import FORCES, CrossSections
 from ...engine.two_force_links import unaimed
 from ...errors import DeclarationError
 from ...model.beams.beam import Beam
 from ..histories import Histories
-from ..laws import SectionLaw, law_of
 from ..pieces import Pieces
+from ..section_laws import SectionLaw, law_of
 from ..statistics import counted
 
 _DEGREE, _NARROW = 12, 2.0**-12

@@ -23,7 +23,7 @@ from ...base.csv_table import Per, Table
 from ...errors import DeclarationError, NoDesignError
 from ...model.fitted import Rolling
 from ..histories import Histories
-from .bearings import joint_safety
+from .bearing_life import joint_safety
 
 _BORES = (10, 12, 15, 17, 20, 25, 30, 35, 40, 45, 50, 55, 60, 65, 70, 75, 80, 85, 90, 95, 100)
 _OUTER = {

@@ -1,6 +1,6 @@
 """Stresses in a link of a solution, over time, along it, and at the fibres of its cross-section.
 
-They are linear in section forces (:mod:`.engine.stress`), so between two marks they are
+They are linear in section forces (:mod:`.engine.section_stress`), so between two marks they are
 polynomials of xi, or products of these with smooth functions of the cross-section, which are
 replaced by polynomials that agree to 1e-13.
 
@@ -21,7 +21,7 @@ from ...base.arrays import Array
 from ...base.bernstein import product, slope, value, zeros
 from ...base.brief import Brief
 from ...engine.section_function import Side
-from ...engine.stress import KINDS, concentration, squared
+from ...engine.section_stress import KINDS, concentration, squared
 from ...errors import DeclarationError, UnknownNameError, shown
 from ...model.beams.beam import Notch
 from .member import Member

@@ -22,7 +22,7 @@ from ...engine.instants.cycle_table import CycleTable
 from ...engine.instants.refusing import resting
 from ...engine.program import Program
 from ..histories import Histories
-from ..sizes import largest, most
+from ..vector_sizes import largest, most
 from .longer import LONG, long_doubles, missed
 from .reference import elementwise
 from .reported import blur

@@ -17,10 +17,10 @@ from ...model.description import Description
 from ...model.stated import Equation
 from .closure import Residuals
 from .contacts import actions, sense
-from .loads import off_laws
+from .instant_vectors import NIL, Axes, Scalar, Vector, less, product, total
+from .load_laws import off_laws
 from .placing import Motion, Placed
 from .unplaced import stacked
-from .vectors import NIL, Axes, Scalar, Vector, less, product, total
 
 
 @dataclass(frozen=True, eq=False)

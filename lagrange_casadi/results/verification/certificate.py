@@ -23,11 +23,11 @@ from ...model.description import Description
 from ...model.scene import kinds
 from ...model.stated import NOTHING, Stated
 from ..histories import Histories
-from ..laws import SectionLaw
+from ..section_laws import SectionLaw
 from ..solution import Solution
 from .balance import balance, forces_reported
 from .closure import Residuals, closure
-from .friction import friction_residuals
+from .friction_laws import friction_residuals
 from .placing import Placed, place
 from .reported import COARSE, TOLERANCE, Reported, blur, precision_of
 from .unplaced import place_all

@@ -12,10 +12,10 @@ from ...base.arrays import Array
 from ...base.quantities import Output
 from ...model.stated import Equation
 from .contacts import idle
+from .instant_vectors import Scalar, Vector, most
 from .placing import Placed
 from .reported import NEARBY
 from .unplaced import joint_residuals, stacked
-from .vectors import Scalar, Vector, most
 
 Residuals = tuple[Array, float]
 """Gaps (t,), and what they are to be compared with."""

@@ -13,9 +13,9 @@ from ...base.arrays import Array
 from ...base.quantities import Output
 from ...model.description import Description
 from ...model.stated import Touch
+from .instant_vectors import Scalar, Vector, most
 from .placing import Moving
 from .reported import Reported
-from .vectors import Scalar, Vector, most
 
 _REST = 1e-12
 """Fraction of the fastest given motion below which a rate is that of rest."""

@@ -17,8 +17,8 @@ from ...base.arrays import Array
 from ...base.quantities import Output
 from ...model.description import AxisNumbers, Description, JointNumbers, LoadNumbers
 from ...model.stated import Entry, Stated
+from .instant_vectors import GROUND, NIL, Axes, Scalar, Vector, most
 from .reported import Reported
-from .vectors import GROUND, NIL, Axes, Scalar, Vector, most
 
 Motion = tuple[Vector, Vector, Vector]
 """A vector over time, its rate, and its acceleration."""

@@ -13,8 +13,8 @@ from ...base.quantities import Output
 from ...base.vocabulary import Precision
 from ...model.description import Description, JointNumbers
 from ..histories import Histories
-from ..laws import SectionLaw
-from .vectors import GROUND, Axes, Scalar, Vector
+from ..section_laws import SectionLaw
+from .instant_vectors import GROUND, Axes, Scalar, Vector
 
 _ROUNDINGS = 4.0
 """So many roundings may be in what is reported."""

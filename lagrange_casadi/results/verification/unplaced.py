@@ -15,9 +15,9 @@ import numpy as np
 
 from ...base.arrays import Array
 from ...model.stated import Equation, LoadLaw
+from .instant_vectors import NIL, Scalar, Vector
 from .placing import Motion, Moving, Placed
 from .reported import Reported
-from .vectors import NIL, Scalar, Vector
 
 _LEAST = 1e-12
 """Fraction of the largest value below which a value decides nothing."""

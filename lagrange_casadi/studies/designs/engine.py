@@ -24,7 +24,7 @@ from ...base.status import Status
 from ...base.symbolic import symbolic_property
 from ...base.vocabulary import COMPILED, PEAK_SEARCHES, PeakSearch
 from ...engine import codegen
-from ...engine.codegen.search import TOPS, Listed
+from ...engine.codegen.peak_search import TOPS, Listed
 from ...engine.codegen.stages import Stages
 from ...engine.derive import compile_scene
 from ...engine.instants.backends import begun, compiled, provenance
@@ -38,12 +38,18 @@ from ...errors import DeclarationError, UnknownNameError
 from ...model.scene import Scene
 from ...model.times import Times, Timing, checked_span
 from ...results.sensitivity.ends import Ends
-from ...results.sensitivity.peaks import AS_LARGE, MeanSlopes, MovingPeaks, PeakSlopes, faint
+from ...results.sensitivity.peak_derivatives import (
+    AS_LARGE,
+    MeanSlopes,
+    MovingPeaks,
+    PeakSlopes,
+    faint,
+)
 from ...results.sensitivity.slopes import Slopes
+from .design_reduction import KeptOutputs, stages_of
+from .design_times import DesignTimes
 from .outcome import KEPT, History, Outcome, Results, outcome_of, refuse, rows_of
-from .reduction import KeptOutputs, stages_of
 from .spot_check import failures
-from .times import DesignTimes
 from .watch import Watch
 
 _PIECE = 1 << 22

@@ -26,7 +26,7 @@ from ...errors import AssemblyError, DeclarationError, UnknownNameError, shown
 from ...model.scene import Scene
 from ...model.times import Over, Times
 from ...model.wanted_names import without_fitted, without_life
-from ...results.sensitivity.peaks import MeanSlopes
+from ...results.sensitivity.peak_derivatives import MeanSlopes
 from ...results.solution import Solution
 from ..request import Request
 from .engine import DesignEngine

@@ -15,8 +15,8 @@ import numpy.typing as npt
 from ...base.arrays import Array, Flags
 from ...base.status import Status
 from ...engine.program import Program
+from ...model.beyond_ends import BEYOND
 from ...model.corners import Corners
-from ...model.ends import BEYOND
 
 if TYPE_CHECKING:
     import casadi as ca

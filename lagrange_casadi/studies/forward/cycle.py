@@ -20,9 +20,9 @@ from ...base.arrays import Array
 from ...errors import DeclarationError, LagrangeCasadiError
 from ...model.even_points import checked
 from ...model.scene import Scene
+from .free_motion import ACCURACY, Cycle, FreeMotion, follow
 from .integration import integrated, terminal
 from .machine import ROW, Machine, Start
-from .motion import ACCURACY, Cycle, FreeMotion, follow
 
 _STEPS, _TRIES, _FASTER, _SLOWER = 25, 12, 1.4, 0.3
 _SAME = 1e-6

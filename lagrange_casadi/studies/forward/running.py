@@ -15,8 +15,8 @@ from ...model.times import Times, even_of
 from ...model.torques import Law, law_of
 from ..case import Case, scene_of
 from .cycle import Goal, finished, sought, swing
+from .free_motion import ACCURACY, FreeMotion, begun_at, follow
 from .machine import Machine, Start
-from .motion import ACCURACY, FreeMotion, begun_at, follow
 
 _EVEN = 1e-4
 """Fluctuation of the machine whose speed is the first guess of that with a flywheel."""

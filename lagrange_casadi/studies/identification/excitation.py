@@ -24,7 +24,7 @@ from ...base.units import number
 from ...base.vocabulary import Backend
 from ...engine.instants.evaluation_method import EvaluationMethod
 from ...errors import AssemblyError, DeclarationError, NumberError, UnknownNameError, shown
-from ...model.motion import Motion, expression
+from ...model.motion_laws import Motion, expression
 from ...model.scene import Scene
 from ..case import Case, scene_of
 from .base import Base, base_of, triangle

@@ -28,7 +28,7 @@ from ...engine.instants.evaluation_method import EvaluationMethod
 from ...engine.program import Program
 from ...engine.reciprocals import differentiable
 from ...engine.section_function import SectionInputs
-from ...engine.stress import CrossSections
+from ...engine.section_stress import CrossSections
 from ...errors import AssemblyError, DeclarationError, UnknownNameError
 from ...model.scene import Scene
 from ...results.sensitivity.jacobian import total

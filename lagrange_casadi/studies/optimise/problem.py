@@ -22,7 +22,7 @@ from ...model.scene import Scene
 from ...model.times import Times, Timing
 from ...results.strength.fatigue import lacking, strengths
 from ..designs.engine import DesignEngine
-from ..peaks import wanted_for
+from ..peaks_between import wanted_for
 from ..sweep.meanings import WAYS
 from .sampled_design import EvaluatedDesign
 from .search_run import HOLDS

@@ -12,7 +12,7 @@ import numpy as np
 
 from ...base.arrays import Array
 from ...base.quantities import Output
-from ...engine.codegen.search import Listed
+from ...engine.codegen.peak_search import Listed
 from ..designs.engine import DesignEngine
 from ..designs.outcome import History
 from .terms import Term

@@ -20,10 +20,10 @@ from ...results.store.runs import check_target
 from ..case import Case, scene_of
 from ..checkpoint import Checkpoint, check_resuming
 from ..sweep.workers import Executor
-from .file import save
 from .front import Front, front_of
 from .optimum import Optimum
 from .problem import Problem, Question
+from .search_file import save
 from .searching import Progress, Search, by_executor, one_by_one
 from .solver import Solver
 from .starts import MOST, Starts

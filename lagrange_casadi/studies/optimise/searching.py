@@ -18,7 +18,7 @@ from ...engine.program import Program
 from ...errors import ClusterError, NoDesignError
 from ..checkpoint import Checkpoint
 from ..designs.engine import DesignEngine
-from ..sweep.blocks import Queue
+from ..sweep.design_blocks import Queue
 from ..sweep.workers import Asked, Executor, by_workers, check_same, made, making
 from .optimum import Optimum, optimum_of
 from .problem import Problem, Question

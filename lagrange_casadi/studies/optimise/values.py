@@ -27,8 +27,8 @@ from ...engine.section_function import Place
 from ...errors import DeclarationError
 from ...model.limits import END
 from ...results.sensitivity.jacobian import resultant
-from ..designs.times import DesignTimes
-from .fatigue import Tired
+from ..designs.design_times import DesignTimes
+from .fatigue_limits import Tired
 from .sampled_design import Point
 from .terms import tired_link
 

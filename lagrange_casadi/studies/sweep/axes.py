@@ -27,9 +27,9 @@ from ...errors import (
     UnknownNameError,
     shown,
 )
+from ...model.declared_parts import Parameter
 from ...model.even_points import points
 from ...model.limits import parameter_faults
-from ...model.parts import Parameter
 
 Numbers = npt.NDArray[np.int64]
 

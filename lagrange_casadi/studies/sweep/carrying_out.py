@@ -17,10 +17,10 @@ from ...errors import ClusterError, PathError, SizeError, StoppedError, StoreErr
 from ...results.store.opening import VerifiedFile
 from ..checkpoint import Checkpoint
 from .axes import counted, grouped
-from .blocks import Queue, blocks_in, designs_in, name_of
-from .file import check_names, joining
+from .design_blocks import Queue, blocks_in, designs_in, name_of
 from .plan import Plan
 from .reading import Sweep
+from .sweep_file import check_names, joining
 from .workers import Workers
 
 Progress = Callable[[str, float, float], None]

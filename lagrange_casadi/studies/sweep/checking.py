@@ -13,11 +13,11 @@ from ...base.status import Status
 from ...errors import one_line
 from ...model.even_points import points
 from ...results.store.attributes import described
+from ...results.store.dataset_words import unlike, unlike_conventions
 from ...results.store.untrusted import check_chunks, check_shape, parsed, reported_as
-from ...results.store.words import unlike, unlike_conventions
 from ..checkpoint import Checkpoint
 from .axes import are_described, counted, grouped, size_of
-from .blocks import designs_in, slabs
+from .design_blocks import designs_in, slabs
 from .meanings import CYCLE, OVER, STATUS, Column, Meanings
 from .plan import IDENTITY, Identity
 from .reading import Sweep

@@ -29,18 +29,18 @@ from ...engine.instants.evaluation_method import EvaluationMethod
 from ...engine.model_data import ModelData
 from ...engine.program import Program
 from ...errors import DeclarationError, UnknownNameError
-from ...model.density import Density
 from ...model.even_points import EvenPoints, points
+from ...model.link_density import Density
 from ...model.times import Timing
 from ...model.wanted_names import SENSITIVITY
-from ...results.laws import SectionLaw, law_of
+from ...results.section_laws import SectionLaw, law_of
 from ...results.statistics import of_counted
 from ..designs.energy import DriveEnergy
 from ..designs.engine import DesignEngine
 from ..designs.outcome import Outcome
 from .chunks import encoded
 from .meanings import ERROR, FLUCTUATION, STATUS, TIMES, Column, InstantAxis, Meanings
-from .strength import Kept
+from .sweep_strength import Kept
 
 MISSING = "NaN for designs for which it is indeterminate, by equilibrium or by friction at rest"
 """Attribute ``missing`` of a column that may lack a number for a design with a result."""

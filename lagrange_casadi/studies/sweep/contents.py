@@ -19,9 +19,9 @@ from ...results.store.untrusted import (
     shown,
 )
 from .axes import DESIGN
-from .file import WORDS
 from .meanings import KINDS, STATUS, Column
 from .plan import IDENTITY
+from .sweep_file import WORDS
 
 _NAMED = (
     "backend",

@@ -25,8 +25,8 @@ from ...model.wanted_names import SENSITIVITY, among, by_parameters, without_fit
 from ..designs.spot_check import wanted_whole
 from ..request import Request
 from .axes import Designs, check_designs, counted
-from .blocks import Slab, chunk_of, slabs
 from .columns import Harvest, Task, check_keep
+from .design_blocks import Slab, chunk_of, slabs
 from .meanings import Column
 
 _BOUND = (float, str)

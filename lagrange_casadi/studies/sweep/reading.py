@@ -34,8 +34,8 @@ from ...results.store.attributes import described
 from ...results.store.opening import SWEEP, VerifiedFile, kind_of, opened_file, verify
 from ..checkpoint import Checkpoint
 from .axes import DESIGN, counted
-from .blocks import chunk_of, slabs
 from .contents import contents
+from .design_blocks import chunk_of, slabs
 from .meanings import STATUS, Column
 from .plan import Identity
 from .selection import Selected, matches

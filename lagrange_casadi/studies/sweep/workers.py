@@ -18,7 +18,7 @@ from ...base.arrays import Array, Json
 from ...base.space import cores, memory
 from ...errors import ClusterError, LagrangeCasadiError, one_line
 from ..checkpoint import difference
-from .blocks import Queue
+from .design_blocks import Queue
 from .plan import Plan
 
 Block = tuple[int, int, list[bytes]]

@@ -10,13 +10,13 @@ from ...base.files import writing
 from ...errors import DeclarationError
 from ...results.pictures import Animation, Film
 from ...results.solution import Solution
+from ..shapes.picture_sheet import Picture, picture, view_of
 from ..shapes.poses import require_poses
 from ..shapes.primitives import drawing, size_of
 from ..shapes.shapes import named_spots
-from ..shapes.sheet import Picture, picture, view_of
 from ..shapes.vector import svg
+from .film_frames import frames_of
 from .forces import drawn_forces
-from .frames import frames_of
 from .gltf import glb
 from .pixels import find_ffmpeg, gif, mp4
 

@@ -16,7 +16,7 @@ from ...model.description import Place
 from ...results.solution import Solution
 from ..shapes.primitives import LOW, Arrow, Line, Primitive
 from ..shapes.readable import scale_for
-from .frames import Frames
+from .film_frames import Frames
 
 ACTION_COLOURS = {"reaction": "#c2304a", "effort": "#6d3fc0", "load": "#1e7f55"}
 _POSITIVE, _NEGATIVE = "#d9622b", "#2267b0"

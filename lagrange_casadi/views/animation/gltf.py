@@ -22,13 +22,13 @@ from ...errors import DeclarationError
 from ...model.description import JointNumbers
 from ...results.solution import Solution
 from ...version import __version__
+from ..shapes.orthographic import upright
 from ..shapes.poses import Poses, frame_along
 from ..shapes.primitives import colours_of, disc_axis, drawing, size_of
 from ..shapes.shapes import Shape, shapes
 from ..shapes.symbols import PATH
-from ..shapes.views import upright
+from .film_frames import Frames
 from .forces import LONGEST, actions_of, largest_of
-from .frames import Frames
 from .solids import Mesh, arrow, block, cylinder, prism, sphere, together
 
 _GIRTH = 0.013

@@ -17,8 +17,8 @@ import numpy as np
 from ...base.arrays import Array
 from ...base.space import require
 from ...errors import LagrangeCasadiError, StoreError, one_line
+from ..shapes.picture_sheet import LETTER, Picture, Words, filling, outline
 from ..shapes.primitives import Line, frame
-from ..shapes.sheet import LETTER, Picture, Words, filling, outline
 from ..shapes.symbols import INK, PAPER, SYMBOLS
 
 if TYPE_CHECKING:

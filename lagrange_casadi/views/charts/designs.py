@@ -20,7 +20,7 @@ from ...studies.sweep.axes import DESIGN
 from ...studies.sweep.best import best, chosen, size
 from ...studies.sweep.reading import Sweep
 from ...studies.sweep.selection import near
-from ..shapes.pictures import ending_of, one_at_a_time, save
+from ..shapes.picture_files import ending_of, one_at_a_time, save
 from .panels import (
     DOTS,
     LINES,

@@ -12,8 +12,8 @@ import numpy as np
 from ...base.arguments import public
 from ...base.files import writing
 from ...results.statistics import shares
-from ...studies.forward.motion import FreeMotion
-from ..shapes.pictures import check_picture, one_at_a_time, save
+from ...studies.forward.free_motion import FreeMotion
+from ..shapes.picture_files import check_picture, one_at_a_time, save
 
 
 @public

@@ -15,7 +15,7 @@ from ...errors import DeclarationError
 from ...studies.identification.fit import Comparison
 from ...studies.identification.identification import Identification
 from ..shapes.index import document, html_table
-from .identification import BESIDE, DIFFERENCE, chart
+from .identification_chart import BESIDE, DIFFERENCE, chart
 
 _STYLE = """
 body { max-width: 1200px; }

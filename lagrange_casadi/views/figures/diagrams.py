@@ -17,8 +17,8 @@ from ...base.quantities import Output
 from ...base.tables import SPACE
 from ...engine.section_function import Side
 from ...results.histories import Peak
-from ...results.laws import SectionLaw
 from ...results.ordering import vanishes
+from ...results.section_laws import SectionLaw
 from ...results.solution import Solution
 from ..shapes.readable import instant, number, scale_for
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 from typing import BinaryIO
 
 from ...studies.trade import Trade
-from ..shapes.pictures import one_at_a_time, save
+from ..shapes.picture_files import one_at_a_time, save
 
 _OFFSETS = ((0, 6), (0, -14), (0, 17), (0, -25))
 _LEAST = 1e-17

@@ -18,10 +18,10 @@ from ...base.arrays import Json
 from ...errors import DeclarationError, shown
 from ...results.ordering import error_of, ordered
 from ...results.solution import Solution
-from .arrays import Arrays
-from .contents import series_of
+from .array_block import Arrays
 from .instants import drive_entry, shown_instants
 from .page import COMPARISON_SCRIPTS, assembled, page, page_digest, script, write_page
+from .page_contents import series_of
 from .words import GROUPS, what
 
 

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from ...base.arrays import Json, spread
 from ...results.ordering import ordered
 from ...results.solution import Solution
-from .arrays import Arrays
+from .array_block import Arrays
 
 MOST = 1_000_000
 """Numbers that a page holds at most, or little more: 8 bytes each, 11 in the page."""

@@ -33,7 +33,7 @@ from ...model.description import Description, JointNumbers
 from ...model.scene import Scene
 from ...model.times import Timing
 from ...results.solution import Solution
-from .arrays import Arrays
+from .array_block import Arrays
 
 _CORNERS = (
     "Corners of motions, constraints and lifts were checked with the first values of the"

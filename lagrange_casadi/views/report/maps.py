@@ -14,9 +14,9 @@ from ...base.arrays import Array, Json, spread
 from ...results.elastic.deflection import bending_of
 from ...results.solution import Solution
 from ...results.statistics import counted
-from ...results.strength.parts import strong_of
+from ...results.strength.all_parts import strong_of
 from ...results.strength.stress import Stress
-from .arrays import Arrays
+from .array_block import Arrays
 from .instants import Mark, mark
 
 RATIOS = 51

@@ -31,7 +31,7 @@ from ...studies.sweep.reading import Sweep
 from ..charts.panels import varied
 from ..charts.usual_designs import usual_pair
 from . import Live, assembled, live_digest, page, with_motion, write_page
-from .arrays import Arrays
+from .array_block import Arrays
 from .live import run_of
 from .page import SWEEP_SCRIPTS, script
 

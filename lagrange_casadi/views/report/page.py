@@ -25,8 +25,8 @@ from ...interop.portable.wasm import engine
 from ...model.scene import Scene
 from ...results.solution import Solution
 from ...studies.evaluate import evaluate
-from .contents import contents
 from .live import Live, run_of
+from .page_contents import contents
 
 SCRIPTS = (
     *(

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from ...results.solution import Solution
+from ..shapes.picture_sheet import picture, view_of
 from ..shapes.poses import Poses
 from ..shapes.primitives import drawing
-from ..shapes.sheet import picture, view_of
 from ..shapes.vector import svg
 
 _TRACED = 120

@@ -17,10 +17,10 @@ import numpy as np
 
 from ...base.arrays import Array
 from ...model.description import JointNumbers, Place, Triple
+from .orthographic import View
 from .poses import Poses, frame_along
 from .shapes import Shape, named_spots, shapes
 from .symbols import PATH
-from .views import View
 
 COLOURS = (
     *("#1f4e79", "#b3541e", "#2e7d4f", "#7a3b8f", "#8a6d1a", "#3c6e71", "#9c2f4a", "#555555"),

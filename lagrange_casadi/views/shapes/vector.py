@@ -11,8 +11,8 @@ from html import escape
 import numpy as np
 
 from ...base.arrays import Array
+from .picture_sheet import LETTER, Picture, Words, filling
 from .primitives import Line, Symbol, turn
-from .sheet import LETTER, Picture, Words, filling
 from .symbols import INK, PAPER, SYMBOLS
 
 _UNFIT = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")

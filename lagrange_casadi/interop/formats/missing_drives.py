@@ -1,0 +1,146 @@
+"""Drives of a model whose file gives too few motions: coordinates, and their values at rest."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ...base.arrays import Array
+from .checks import spinning
+from .posture import at_reference, closing, extent, outward
+from .record import GROUND, MOVES, Joint, Law, Model
+from .separate_systems import Rows, blocks, check_size
+
+RANK = 1e-6
+"""Smaller singular values come of axes that a drawing has rounded."""
+
+REST = "The file gives no motion of {}: here it rests. Write how it moves among the laws."
+
+
+def driven(model: Model) -> Model:
+    """Return a model in which as many coordinates have a motion as it has degrees of freedom.
+
+    Those of the file have theirs; others are taken in the order of joints, and rest where they are.
+    Raises :class:`.ModelFileError` for loops too large to find what moves in them.
+    """
+    size = extent(model)
+    twists = {
+        one.name: {name: twist[:, None] for name, twist in _twists(model, one, size)}
+        for one in model.joints.values()
+    }
+    names = [name for one in twists.values() for name in one]
+    idle = sum(model.bodies[one].rod is not None for one in spinning(model))
+    idle += 3 * sum(body.point for body in model.bodies.values())
+    joint_of = {name: one for one in model.joints.values() for name in one.coordinates}
+    preferred = set(model.preferred)
+
+    def last(name: str) -> tuple[bool, ...]:
+        several = name in joint_of and len(joint_of[name].coordinates) > 2
+        later = name.partition(":")[0] not in preferred
+        return name not in model.motions, name not in joint_of, later, several
+
+    order, rank = sorted(names, key=last), 0
+    followed: set[str] = set()
+    for rows, block, _ in blocks(model, _rows(model, twists, size), order):
+        found = int(np.linalg.matrix_rank(rows, RANK))
+        followed |= {block[k] for k in _basis(rows, found)}
+        rank += found
+    needed = len(names) - rank - idle - sum(name in model.motions for name in names)
+    free = (one for one in order if one in joint_of and one not in {*followed, *model.motions})
+    resting = [*free][: max(needed, 0)]
+    if resting:
+        model.notes.append(REST.format(", ".join(resting)))
+    for name in resting:
+        start = model.posture.get(name, at_reference(model, name, size))
+        model.motions[name] = Law(repr(float(start) + 0.0))
+    return model
+
+
+def _basis(rows: Array, rank: int) -> list[int]:
+    """Return the numbers of columns on which all others depend, the last ones that do."""
+    found: list[int] = []
+    axes = np.zeros((len(rows), rank))
+    for k in reversed(range(rows.shape[1])):
+        if len(found) == rank:
+            break
+        rest, known = rows[:, k], axes[:, : len(found)]
+        for _ in range(2):  # the second time without the rounding of the first
+            rest = rest - known @ (known.T @ rest)
+        if (length := float(np.linalg.norm(rest))) > RANK:
+            axes[:, len(found)] = rest / length
+            found.append(k)
+    return found
+
+
+def _rows(model: Model, twists: dict[str, Rows], size: float) -> list[Rows]:
+    """Return what closes in the reference posture: equations of loops, couplings and ties.
+
+    Raises :class:`.ModelFileError` for too many factors.
+    """
+    above: dict[str, tuple[int, str, str, float]] = {GROUND: (0, "", "", 0.0)}
+    found: list[Rows] = []
+    factors = 0
+    for joint in outward([*model.joints.values()], {GROUND}):
+        for one, other, sign in (joint.child, joint.parent, 1.0), (joint.parent, joint.child, -1.0):
+            if one not in above:
+                above[one] = (above[other][0] + 1, other, joint.name, sign)
+                break
+        else:
+            rows = _between(above, twists, joint.child, joint.parent)
+            for name, twist in twists[joint.name].items():
+                rows[name] = rows.get(name, 0.0) + twist
+            found.append(rows)
+            check_size(model, factors := factors + 6 * len(rows))
+    for coupling in model.couplings.values():
+        ratio = np.array([[-coupling.ratio]])
+        found.append({coupling.second: np.ones((1, 1)), coupling.first: ratio})
+    for tie in model.ties.values():
+        slopes = closing(model, tie, tie.rows, size)[1]
+        rows = _between(above, twists, tie.parent, tie.child)
+        found.append({name: slopes @ twist for name, twist in rows.items()})
+        check_size(model, factors := factors + 6 * len(rows))
+    return [rows for rows in found if rows]
+
+
+def _between(
+    above: dict[str, tuple[int, str, str, float]], twists: dict[str, Rows], one: str, other: str
+) -> Rows:
+    """Return the velocity of the other body against one by the rates of the joints between them, in
+    a tree of bodies: depth, body and joint above each, and the sign of the joint's twist.
+    """
+    found: Rows = {}
+    while one != other:
+        deeper, direction = (other, 1.0) if above[other][0] >= above[one][0] else (one, -1.0)
+        _, next_one, joint, sign = above[deeper]
+        for name, twist in twists[joint].items():
+            found[name] = found.get(name, 0.0) + direction * sign * twist
+        one, other = (one, next_one) if deeper == other else (next_one, other)
+    return found
+
+
+def _twists(model: Model, joint: Joint, size: float) -> Iterator[tuple[str, Array]]:
+    """Yield the velocity of the child against the parent for each coordinate: that of the point at
+    the ground's origin over a size [m], and the angular one.
+
+    A point mass has no direction, so a joint holds none there: in place of the joint's turns are
+    three of the mass itself, which are no coordinates.
+    """
+    near, far = model.frames(joint)
+    ends = (model.bodies[one] for one in (joint.parent, joint.child) if one != GROUND)
+    point = next((body.frame.place for body in ends if body.point), None)
+    for name, (_, move, axis) in zip(joint.coordinates, MOVES[joint.kind], strict=True):
+        if point is not None and move != "slide":
+            continue
+        along = far.axes[:, 2] if axis == "w" else near.axes[:, "xyz".index(axis)]
+        speed, spin = along, np.zeros(3)
+        if move != "slide":
+            slide = joint.lead / (2.0 * np.pi) * along if move == "screw" else 0.0
+            speed, spin = np.cross(near.place, along) + slide, along
+        yield name, np.concatenate([speed / size, spin])
+    if point is not None:
+        for k, along in enumerate(np.eye(3)):
+            yield (
+                f"{joint.name} {k}",
+                np.concatenate([np.cross(point, along) / size, along]),
+            )

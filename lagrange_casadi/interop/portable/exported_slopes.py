@@ -1,0 +1,148 @@
+"""Derivatives of the outputs by parameters in an exported program: their function, their names in
+C, and what they must be.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ...base.arrays import Array
+from ...base.quantities import Output, quotient
+from ...engine.instants.evaluation_method import EvaluationMethod
+from ...engine.program import Program
+from ...errors import DeclarationError
+from ...model.wanted_names import SENSITIVITY
+from ...results.sensitivity.jacobian import total
+from ...results.sensitivity.series import at_instants
+from .contract import Contract, Setting
+from .exported_calls import CalledInC
+from .text import comment, indented, member, number_rows, numbers, template
+
+FUNCTION = "slopes_of"
+"""Name of CasADi's function in C."""
+
+_ROUNDING, _FAINT = 1e-9, 1e-11
+"""Relative error of a derivative, of its largest value over the cycle, and of the largest
+derivative of its unit by the same parameter.
+"""
+
+
+@dataclass(frozen=True, eq=False)
+class ExportedSlopes:
+    """The derivatives of all outputs of a contract ``by`` some of its parameters.
+
+    ``function`` is :func:`.total`; ``expected`` (instants, outputs, parameters) are what it must
+    give at the instants of the self-test, each within ``off`` (outputs, parameters).
+    """
+
+    by: tuple[Setting, ...]
+    function: Any
+    expected: Array
+    off: Array
+
+
+def exported_slopes(
+    program: Program, contract: Contract, by: Sequence[str], p: Array, t: Array, chosen: Array
+) -> ExportedSlopes:
+    """Derivatives of a graph by parameters of these names; the self-test's instants are ``chosen``
+    among those of the cycle ``t``.
+    """
+    rows = [Output.of(member.source) for member in contract.outputs]
+    numbers = [list(program.data.parameters).index(name) for name in by]
+    function = total(program, [program.outputs[output] for output in rows], numbers)
+    both = at_instants(program, rows, t, p, numbers, EvaluationMethod("vm"))
+    found, largest = both[:, :, 1:], np.abs(both).max(axis=0)
+    values, largest = largest[:, :1], largest[:, 1:]
+    off = _ROUNDING * largest
+    over = np.divide(1.0, np.abs(p[numbers]), out=np.zeros(len(numbers)), where=p[numbers] != 0.0)
+    for unit in contract.units:
+        same = [k for k, member in enumerate(contract.outputs) if member.unit == unit]
+        off[same] += _FAINT * (largest[same].max(axis=0) + values[same].max() * over)
+    settings = tuple(setting for setting in contract.settings if setting.source in by)
+    return ExportedSlopes(settings, function, found[np.searchsorted(t, chosen)], off)
+
+
+def check_method(method: EvaluationMethod) -> None:
+    """Raise :class:`.DeclarationError` for a method by which exported C computes no derivatives."""
+    if method.precision == "single" or method.newton is not None or method.table is not None:
+        raise DeclarationError(
+            f"export: output '{SENSITIVITY}' needs double precision, no Newton steps and no table;"
+            " leave it out of wanted"
+        )
+
+
+def types(c: Contract, slopes: ExportedSlopes) -> str:
+    """The structs, for the header."""
+    rows = (
+        member(c.prefix, s.name, f"by {s.meaning}, for a unit of it [{s.unit}]") for s in slopes.by
+    )
+    units = ("; ".join(quotient(m.unit, s.unit) for s in slopes.by) for m in c.outputs)
+    members = (
+        f"  {c.prefix}_changes {m.name}; /* [{comment(unit)}] */"
+        for m, unit in zip(c.outputs, units, strict=True)
+    )
+    words = {"rows": "\n".join(rows), "members": "\n".join(members)}
+    return template("sensitivity_types.h", **c.words, **words)
+
+
+def code(c: Contract, slopes: ExportedSlopes) -> str:
+    """The function, for the source."""
+    pairs = itertools.product(c.outputs, slopes.by)
+    put = (f"sensitivities->{m.name}.{s.name} = s[{k}];" for k, (m, s) in enumerate(pairs))
+    return template(
+        "sensitivity.c",
+        **c.words,
+        many=len(c.outputs) * len(slopes.by),
+        drives=len(c.drives),
+        put=indented(put),
+        given=indented(f"  {line}" for line in _given(c, slopes)),
+    )
+
+
+def _given(c: Contract, slopes: ExportedSlopes) -> Iterator[str]:
+    for name, members in zip(("d", "rate", "acceleration"), c.motion, strict=True):
+        yield from (f"{name}[{k}] = inputs->{member};" for k, member in enumerate(members))
+    yield from CalledInC({FUNCTION: slopes.function}).call(FUNCTION)
+
+
+def selftest_numbers(slopes: ExportedSlopes) -> str:
+    """Expected values of the self-test."""
+    many = slopes.off.size
+    rows = number_rows(slopes.expected.reshape(-1, many))
+    return (
+        "\n/* How the outputs change with each parameter. */\n"
+        f"static const double slopes_at[INSTANTS][{many}] = {{\n{rows}\n}};\n"
+        f"static const double slopes_off[{many}] = {{{numbers(slopes.off.ravel())}}};\n"
+    )
+
+
+def selftest_function(c: Contract, slopes: ExportedSlopes) -> str:
+    """Comparison in the self-test."""
+    pairs = itertools.product(c.outputs, slopes.by)
+    compared = (
+        f'compare("{m.name} by {s.name}", slopes_at[k][{i}], (double) found.{m.name}.{s.name},'
+        f" slopes_off[{i}], 0);"
+        for i, (m, s) in enumerate(pairs)
+    )
+    first, by = c.outputs[0].name, slopes.by[0].name
+    return template(
+        "selftest_sensitivity.c",
+        **c.words,
+        compared=indented(compared),
+        first=f"{first}.{by}",
+    )
+
+
+def in_readme(c: Contract, slopes: ExportedSlopes) -> str:
+    """Part of the folder's README on derivatives."""
+    by = ", ".join(f"`{s.name}`" for s in slopes.by)
+    return (
+        f"\n## Sensitivities\n\n`{c.prefix}_sensitivity` gives the outputs of an instant and their"
+        f" exact derivatives by {by}:\n`sensitivities.{c.outputs[0].name}.{slopes.by[0].name}`, in"
+        " the output's unit over the parameter's.\n"
+    )

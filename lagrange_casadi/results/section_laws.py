@@ -1,0 +1,445 @@
+"""The section law of a link as numbers: the coefficients of its section forces over time, and what
+acts on it at load points (:mod:`.loads`); and the same from outputs.
+
+In space a link has two planes of bending, each like that of a planar link, and torsion, which only
+the ends, load points and couples of slices change.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from ..base.arrays import Array, Instants, Operand, during
+from ..base.bernstein import raised
+from ..base.brief import Brief
+from ..base.quantities import Output, parts_along
+from ..base.space import require
+from ..base.tables import PLANE, SPACE, Table
+from ..engine.instants import grids
+from ..engine.section_function import SIDES, Side, edge
+from ..model.limits import END
+from ..model.link_density import NumericDensity
+from .link_loads import AnyPointLoad, DistributedLoad, distributed_load, point_load
+from .pieces import Basis, Component, Pieces, Rows, basis_of
+from .vector_sizes import growth_of_size, size_of, slope_of_size
+
+_BLOCK = 1 << 15
+"""Parts of links, at all instants, that are looked at together."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SectionLaw(Brief):
+    """Section forces of one link: ``coefficients`` by name, each (t,); length [m], density, loads
+    at load points, and ``distributed_loads``.
+
+    The coefficients are the seven of a planar mechanism or the twelve of a spatial one;
+    :attr:`table` says which. ``slack`` is the distance of a load point from a section, as a ratio
+    to the length, up to which it is at the section: see :func:`.edge`.
+    """
+
+    length: float
+    density: NumericDensity
+    coefficients: Mapping[str, Array]
+    loads: tuple[AnyPointLoad, ...] = ()
+    distributed_loads: tuple[DistributedLoad, ...] = ()
+    slack: float = END["double"]
+
+    @cached_property
+    def table(self) -> Table:
+        """Table of the forces, and of the terms of each."""
+        return PLANE if PLANE.law[-1] in self.coefficients else SPACE
+
+    @cached_property
+    def functions(self) -> Basis:
+        """The functions along the link of which its forces are combined; loads along the link are
+        where they are at the first instant.
+        """
+        powers = tuple([load.powers for load in self.distributed_loads])
+        if isinstance(self.length, float):
+            spans = tuple(
+                [(float(load.width[0]), float(load.end[0])) for load in self.distributed_loads]
+            )
+            return basis_of(self.length, self.density, spans, powers)
+        ends = [(load.width[..., :1], load.end[..., :1]) for load in self.distributed_loads]
+        return Basis.of(self.length, self.density, ends, powers)
+
+    def basis(self, xi: Array) -> Rows:
+        """The functions along the link at ratios ``xi`` of any shape; they serve every force, and
+        the law at any instants.
+        """
+        return self.functions.at(np.asarray(xi, dtype=float))
+
+    def on_grid(
+        self, force: str, xi: Array | Rows, out: Array | None = None, threads: int | None = None
+    ) -> Array:
+        """A force at every instant and every ratio ``xi``, of shape (t, xi), in ``out`` where
+        given; at a station, on its tip side.
+
+        Where several forces are wanted, a :meth:`basis` of the ratios serves all. By default one
+        thread a core shares a grid that is worth it; the bits do not depend on it. Raises
+        :class:`SizeError` where there is less memory than that.
+        """
+        size = (self.coefficients["n0"].size, xi.u.size if isinstance(xi, Rows) else xi.size)
+        if out is None:
+            require(f"a grid of {force}", size)
+            out = grids.empty(f"a grid of {force}", size)
+        self.on_grids((force,), xi, out[None], threads)
+        return out
+
+    def on_grids(
+        self,
+        forces: Sequence[str],
+        xi: Array | Rows,
+        out: Array,
+        threads: int | None = None,
+    ) -> None:
+        """Fill ``out`` (forces, t, xi) with the grids that :meth:`on_grid` gives, by one call."""
+        rows = xi if isinstance(xi, Rows) else self.basis(xi)
+        grids.fill([self._sum(force, rows) for force in forces], rows.u, out, threads, self.slack)
+
+    def largest(self, force: str, rows: Rows) -> Array:
+        """Largest size of a force over the instants, (n, xi), for n laws whose members are (n, t),
+        length and density (n, 1).
+
+        It has its sign, the positive one where both are as large, and is NaN of a law that is not
+        finite throughout.
+        """
+        return grids.largest(self._sum(force, rows), rows.u, self.slack)
+
+    def during(self, instants: Instants) -> SectionLaw:
+        """The law at some of the instants."""
+        return replace(
+            self,
+            coefficients=during(self.coefficients, instants),
+            loads=during(self.loads, instants),
+            distributed_loads=during(self.distributed_loads, instants),
+        )
+
+    def at(self, force: str, xi: Operand, side: Side = "tip") -> Array:
+        """A force at ratios of shape (t, ...), one row an instant; ``side`` says which value is
+        meant at a station.
+        """
+        return self.pieces(force).at(np.asarray(xi, dtype=float), side)
+
+    def outputs(self, link: str) -> dict[Output, Array]:
+        """The numbers in it, as outputs of a link."""
+        found = {Output("law", link, name): values for name, values in self.coefficients.items()}
+        for load in self.loads:
+            for member in self.table.place_first:
+                found[Output("station", link, member, load.name)] = getattr(load, member)
+        for distributed in self.distributed_loads:
+            found |= distributed.outputs(link)
+        return found
+
+    def of(self, link: str, outputs: Mapping[Output, Array]) -> SectionLaw:
+        """The law of the same link with other numbers in it, (..., t)."""
+        coefficients = {name: outputs[Output("law", link, name)] for name in self.coefficients}
+        loads = tuple(
+            type(load)(
+                load.name,
+                *(
+                    outputs[Output("station", link, member, load.name)]
+                    for member in self.table.place_first
+                ),
+            )
+            for load in self.loads
+        )
+        return replace(
+            self,
+            coefficients=coefficients,
+            loads=loads,
+            distributed_loads=tuple(s.of(link, outputs) for s in self.distributed_loads),
+        )
+
+    def changed(self, changes: SectionLaw, xi: Array) -> dict[str, tuple[Array, Array]]:
+        """Change of every force with its coefficients, loads and load points, and the sum of the
+        sizes of all its terms.
+
+        ``changes`` has the changes in the places of the numbers, each (..., t). They are looked at
+        at ratios ``xi`` (n,) and at every station, from both sides: (..., t, n + stations, sides).
+        The sizes are (t, n + stations, sides). A section sees what it saw before the change: that a
+        station moves is no change by itself.
+        """
+        load_points = [np.clip(load.station, 0.0, 1.0) for load in self.loads]
+        u = np.stack(
+            [*(np.full_like(self.coefficients["n0"], ratio) for ratio in xi), *load_points], axis=-1
+        )
+        crossed = [
+            [edge(u, self.slack, side) < load.station[:, None] for side in SIDES]
+            for load in self.loads
+        ]
+        rows, found = self.basis(u), dict[str, tuple[Array, Array]]()
+        for force in self.table.sections:
+            terms = [*zip(self._terms(force), changes._terms(force), strict=True)]
+            gaps = np.asarray(sum(moved.column[..., None] * moved.of(rows) for _, moved in terms))
+            sizes = np.asarray(sum(abs(term.column[:, None] * term.of(rows)) for term, _ in terms))
+            members = self.table.sections[force]
+            for distributed, moving in zip(
+                self.distributed_loads, changes.distributed_loads, strict=True
+            ):
+                gaps = gaps + (members.arm or 1) * distributed.moved(
+                    members.distributed, moving, u, self.length, arm=bool(members.arm)
+                )
+                gaps = gaps + distributed.moved(members.couple, moving, u, self.length, arm=False)
+            gaps, sizes = (
+                np.repeat(values[..., None], len(SIDES) if self.loads else 1, axis=-1)
+                for values in (gaps, sizes)
+            )
+            for step, change, there in zip(
+                self._steps(force), changes._steps(force), crossed, strict=True
+            ):
+                load_point, constant, slope = (values[:, None] for values in step)
+                moved, more, steeper = (values[..., None] for values in change)
+                gap = more + steeper * (load_point + moved - u) + slope * moved
+                size = np.abs(constant) + np.abs(slope * (load_point - u))
+                for k, visible in enumerate(there):
+                    gaps[..., k] += np.where(visible, gap, 0.0)
+                    sizes[..., k] += np.where(visible, size, 0.0)
+            found[force] = gaps, sizes
+        for force in self.table.forces:
+            if len(parts := self._parts(force)) > 1:
+                values = [
+                    np.stack([self.at(part, u, side) for side in SIDES[: gaps.shape[-1]]], axis=-1)
+                    for part in parts
+                ]
+                gap = growth_of_size(values, [found[part][0] for part in parts])
+                found[force] = gap, size_of(found[part][1] for part in parts)
+        return found
+
+    def rate(self, force: str, rates: SectionLaw, xi: Array, side: Side = "tip") -> Array:
+        """The time derivative of a force at ratios of shape (t, ...) that stand still, or, at a
+        station, move with it.
+
+        ``rates`` has the time derivatives of coefficients, loads and stations in their places.
+        """
+        u = np.asarray(xi, dtype=float)
+        values, changes = [], list[Array]()
+        for part in self._parts(force):
+            pieces = self.pieces(part)
+            # A station that moves takes its force's arm with it.
+            steps = [
+                (station, more + slope * going, steeper)
+                for (station, _, slope), (going, more, steeper) in zip(
+                    self._steps(part), rates._steps(part), strict=True
+                )
+            ]
+            moving = replace(pieces, components=[self._component(part, rates, steps)])
+            (slopes,), going = pieces.each(u, side, slope=True), np.zeros(u.shape)
+            for (station, *_), (change, *_) in zip(
+                self._steps(part), rates._steps(part), strict=True
+            ):
+                station, change = (
+                    x.reshape((-1,) + (1,) * (u.ndim - 1)) for x in (station, change)
+                )
+                going = np.where(u == station, change, going)
+            values.append(pieces.at(u, side))
+            changes.append(moving.at(u, side) + going * slopes)
+        return changes[0] if len(changes) == 1 else slope_of_size(values, changes)
+
+    def bound(self, force: str, xi: Array) -> float:
+        """The largest size that a force may have at ratios ``xi`` if coefficients and loads have
+        any sign.
+        """
+        rows, found = self.basis(xi), list[float]()
+        for part in self._parts(force):
+            terms = self._terms(part)
+            size = np.asarray(sum(abs(term.column)[:, None] * abs(term.of(rows)) for term in terms))
+            for _, constant, slope in self._steps(part):
+                size = size + (np.abs(constant) + np.abs(slope))[:, None]
+            found.append(float(np.max(size, initial=0.0)))
+        return math.hypot(*found)
+
+    def extreme(self, force: str) -> tuple[Array, Array]:
+        """The ratio at which a force is largest in size, and the force there, at every instant,
+        both of shape (t,).
+        """
+        found = [pieces.extreme() for pieces in self._blocks(force)]
+        places, values = (np.concatenate(rows) for rows in zip(*found, strict=True))
+        return places, values
+
+    def reached(self, force: str) -> tuple[Array, Array]:
+        """Places along a link at which a force is smallest, largest, and largest in size, and its
+        values: (3, t).
+        """
+        found = [pieces.reached() for pieces in self._blocks(force)]
+        places, values = (np.concatenate(rows, axis=1) for rows in zip(*found, strict=True))
+        return places, values
+
+    def _blocks(self, force: str) -> Iterator[Pieces]:
+        """A force over few instants after another, so that what is sought at them stays at hand."""
+        count = self.coefficients["n0"].size
+        height = max(1, _BLOCK // (len(self.functions.breaks[0]) + len(self.loads)))
+        return (self.during(slice(i, i + height)).pieces(force) for i in range(0, count, height))
+
+    def curves(self, force: str) -> tuple[Array, Array]:
+        """Ratios and values (t, k) of :meth:`.Pieces.curves`."""
+        places, values = self.pieces(force).curves()
+        return places.T, values.T
+
+    def pieces(self, force: str) -> Pieces:
+        """A force as polynomials along the link."""
+        components = [self._component(part, self, self._steps(part)) for part in self._parts(force)]
+        return Pieces(self.functions.along(self.functions.breaks[None])[0], components, self.slack)
+
+    def _component(self, force: str, numbers: SectionLaw, steps: Sequence[grids.Load]) -> Component:
+        """A force that is no resultant, by the numbers of a law of this link."""
+        first, *others = numbers._terms(force)
+        basis = self.functions
+        cells = basis.breaks.shape[1] - 1, *first.column.shape
+        if not others:
+            return Component(first.column, np.zeros((1, *cells)), np.zeros((1, *cells)), steps)
+        degree = len(basis.moment if first.moment else basis.force) - 1
+        ordinates, slope = np.zeros((degree + 1, *cells)), np.zeros((degree, *cells))
+        for term in others:
+            rows = basis.moment if term.moment else basis.force
+            ordinates += raised(basis.along(rows[:, term.row]), degree) * term.column
+            rates = basis.slopes[term.moment][:, term.row - 1]
+            slope += raised(basis.along(rates), degree - 1) * term.column
+        return Component(first.column, ordinates, slope, steps)
+
+    def _parts(self, force: str) -> tuple[str, ...]:
+        """The forces whose size a force is, or itself."""
+        return self.table.parts("section", force)
+
+    def _sum(self, force: str, rows: Rows) -> grids.Sum:
+        """Terms of a force, or of all that it is the size of, one after another."""
+        if force in self._kept:
+            columns, moment = self._kept[force]
+            return columns, rows.moment if moment else rows.force
+        parts = self._parts(force)
+        terms = [self._terms(part) for part in parts]
+        columns = grids.Columns(
+            [one.column for of_part in terms for one in of_part],
+            [step for part in parts for step in self._steps(part)],
+            len(parts),
+        )
+        moment = terms[0][0].moment
+        if self.distributed_loads:
+            return columns, grids.Functions(np.stack([one.of(rows) for one in terms[0]]))
+        own = {id(values) for values in self.coefficients.values()}
+        if all(id(row) in own for row in columns.arrays):
+            self._kept[force] = columns, moment
+        return columns, rows.moment if moment else rows.force
+
+    @cached_property
+    def _kept(self) -> dict[str, tuple[grids.Columns, bool]]:
+        """Columns of forces that consist of arrays of this law, which stay where they are, and
+        whether they are those of a bending moment.
+        """
+        return {}
+
+    def _terms(self, force: str) -> list[Term]:
+        """The terms of a force that is no resultant, that of the tip first.
+
+        Of loads along the link each force has its own direction, with the arm of a moment, and
+        couples of slices without.
+        """
+        members = self.table.sections[force]
+        moment, sign = bool(members.arm), members.arm or 1
+        law = [self.coefficients[name] for name in members.coefficients]
+        found = [
+            Term(column if sign > 0 or not row else -column, moment, row)
+            for row, column in enumerate(law)
+        ]
+        first = 3
+        for load in self.distributed_loads:
+            across = load.terms.get(members.distributed, ())
+            found += [
+                Term(sign * column, moment, first + moment + j) for j, column in enumerate(across)
+            ]
+            couples = load.terms.get(members.couple, ())
+            found += [Term(column, False, first + j) for j, column in enumerate(couples)]
+            first += load.powers
+        return found
+
+    def _steps(self, force: str) -> list[grids.Load]:
+        """Steps of a force that is no resultant, one of each load point."""
+        members, found = self.table.sections[force], []
+        for load in self.loads:
+            constant = getattr(load, members.acting)
+            slope = np.zeros_like(constant)
+            if members.arm:
+                across = getattr(load, self.table.sections[members.shear].acting)
+                slope = members.arm * across * self.length
+            found.append((load.station, constant, slope))
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class Term:
+    """A number over time, ``column``, and the row of the functions along a link that goes with it:
+    of those of a moment, or of a force.
+    """
+
+    column: Array
+    moment: bool
+    row: int
+
+    def of(self, rows: Rows) -> Array:
+        """The function at ratios."""
+        found: Array = (rows.moment if self.moment else rows.force).rows[self.row]
+        return found
+
+
+def law_of(
+    link: str,
+    outputs: Mapping[Output, Array],
+    length: float,
+    density: NumericDensity,
+    precision: str = "double",
+) -> SectionLaw:
+    """The law of a link of a length [m] and a density, by those of ``outputs`` that go into it,
+    evaluated in a precision.
+
+    Raises ``ValueError`` where a load along the link is not whole.
+    """
+    law: dict[str, Array] = {}
+    load_points: dict[str, dict[str, Array]] = {}
+    ends: dict[str, dict[str, Array]] = {}
+    terms: dict[str, dict[str, dict[int, Array]]] = {}
+    for output, values in outputs.items():
+        if not output.along or output.part != link:
+            continue
+        if output.group == "law":
+            law[output.member] = values
+        elif output.group == "station":
+            load_points.setdefault(output.load_point, {})[output.member] = values
+        elif output.power is None:
+            ends.setdefault(output.load_point, {})[output.member] = values
+        else:
+            terms.setdefault(output.load_point, {}).setdefault(output.member, {})[output.power] = (
+                values
+            )
+    loads = tuple(point_load(name, members) for name, members in load_points.items())
+    distributed_loads = tuple(
+        distributed_load(name, ends.get(name, {}), found) for name, found in terms.items()
+    )
+    return SectionLaw(
+        length,
+        density,
+        law,
+        loads,
+        distributed_loads,
+        END["single" if precision == "single" else "double"],
+    )
+
+
+def made_of(outputs: Iterable[Output], link: str, force: str, table: Table = PLANE) -> list[Output]:
+    """The outputs, among others, that a force of a link is made of;
+    without the places of stations.
+    """
+    terms = [table.sections[part] for part in table.parts("section", force)]
+    coefficients = {name for of in terms for name in of.coefficients}
+    members = {of.acting for of in terms} | {
+        table.sections[of.shear].acting for of in terms if of.arm
+    }
+    return [
+        output
+        for output in parts_along(dict.fromkeys(outputs), link)
+        if output.member in (members if output.load_point else coefficients)
+    ]

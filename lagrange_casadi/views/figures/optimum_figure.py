@@ -1,0 +1,120 @@
+"""Pictures of a search: how it went, the mechanism before and after, and what the limits cost; and
+the front of two terms.
+"""
+
+from __future__ import annotations
+
+from typing import BinaryIO
+
+import numpy as np
+
+from ...model.scene import Scene
+from ...studies.evaluate import evaluate
+from ...studies.optimise.front import Front
+from ...studies.optimise.optimum import Optimum
+from ..shapes.picture_files import one_at_a_time, save
+from .mechanism_figure import draw_into
+
+_TEXT = 40
+
+
+@one_at_a_time()
+def draw_optimum(scene: Scene, optimum: Optimum, file: BinaryIO, ending: str) -> None:
+    """Write the picture into a file; its kind follows from the ending of the name."""
+    from matplotlib.figure import Figure
+    from matplotlib.ticker import MaxNLocator
+
+    figure = Figure(figsize=(12, 8), layout="constrained")
+    grid = figure.add_gridspec(2, 2, height_ratios=(3, 2))
+    before = dict(optimum.parameters) | dict(optimum.start.values)
+    for column, (title, values) in enumerate((("start", before), ("optimum", optimum.parameters))):
+        axes = figure.add_subplot(grid[0, column])
+        draw_into(
+            axes,
+            evaluate(scene, parameters=values, wanted=["motion"], backend="vm", certificate=False),
+        )
+        values_text = ", ".join(f"{name} = {values[name]:.5g}" for name in optimum.values)
+        axes.set_title(f"{title}: {values_text}", fontsize=10)
+    axes = figure.add_subplot(grid[1, 0])
+    history = optimum.history
+    for number in np.unique(history[:, 0]):
+        rows = history[(history[:, 0] == number) & (history[:, 3] > 0)]
+        axes.plot(np.arange(len(rows)), rows[:, 1], "-", color="0.6", lw=1, zorder=1)
+        holds = rows[:, 2] <= 1e-6
+        axes.plot(np.flatnonzero(holds), rows[holds, 1], "o", color="tab:blue", ms=4)
+        axes.plot(np.flatnonzero(~holds), rows[~holds, 1], "x", color="tab:red", ms=5)
+    axes.axhline(optimum.objective, color="tab:blue", lw=0.8, ls=":")
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    axes.set(xlabel="program", ylabel=f"{optimum.minimised} [{optimum.unit}]")
+    axes.set_title("each start: o within the limits, x beyond one", fontsize=10)
+    axes.grid(True, color="0.93")
+    table = figure.add_subplot(grid[1, 1])
+    table.axis("off")
+    lines = [f"{optimum.minimised} = {optimum.objective:.6g} {optimum.unit}", ""]
+    for limit in optimum.limits:
+        mark = "active" if limit.active else ""
+        lines.append(
+            f"{limit.constraint!s:<{_TEXT}} {limit.value:>11.5g} {mark:<6}"
+            f" {limit.multiplier:>11.4g}"
+        )
+    for name, multiplier in optimum.bounds.items():
+        lines.append(
+            f"{'bounds of ' + name:<{_TEXT}} {optimum.values[name]:>11.5g}"
+            f" {'active' * bool(multiplier):<6} {multiplier:>11.4g}"
+        )
+    table.text(0.0, 0.98, "\n".join(lines), va="top", fontsize=8, family="monospace")
+    table.set_title("limits: value, whether active, multiplier", fontsize=10, loc="left")
+    save(figure, file, ending)
+
+
+@one_at_a_time()
+def draw_front(scene: Scene, front: Front, file: BinaryIO, ending: str) -> None:
+    """Write the picture into a file; its kind follows from the ending of the name."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(12, 8), layout="constrained")
+    shown = sorted({0, len(front.points) // 2, len(front.points) - 1})
+    grid = figure.add_gridspec(2, 1, height_ratios=(3, 2))
+    others = range(1, len(front.minimised))
+    values = front.objectives
+    feasible = np.array([point.optimum.feasible for point in front.points])
+    above, below = grid[0].subgridspec(1, len(others)), grid[1].subgridspec(1, len(shown))
+    for number in others:
+        axes = figure.add_subplot(above[0, number - 1])
+        x, y = values[:, number], values[:, 0]
+        if len(others) == 1:
+            axes.plot(x[feasible], y[feasible], "-", color="0.75", lw=1, zorder=1)
+        axes.plot(x[feasible], y[feasible], "o", color="tab:blue", ms=5)
+        axes.plot(x[~feasible], y[~feasible], "x", color="tab:red", ms=6)
+        for k in shown:
+            axes.annotate(
+                f"{k + 1}", (x[k], y[k]), textcoords="offset points", xytext=(6, 6), fontsize=9
+            )
+        axes.set(
+            xlabel=f"{front.minimised[number]} [{front.units[number]}]",
+            ylabel=f"{front.minimised[0]} [{front.units[0]}]",
+        )
+        axes.grid(True, color="0.93")
+    figure.suptitle(
+        f"{front.case}: designs of which none is better in {'both' if len(others) == 1 else 'all'}",
+        fontsize=11,
+    )
+    for column, k in enumerate(shown):
+        axes = figure.add_subplot(below[0, column])
+        optimum = front.points[k].optimum
+        draw_into(
+            axes,
+            evaluate(
+                scene,
+                parameters=optimum.parameters,
+                wanted=["motion"],
+                backend="vm",
+                certificate=False,
+            ),
+        )
+        axes.set_title(
+            f"{k + 1}:"
+            f" {', '.join(f'{name} = {value:.5g}' for name, value in optimum.values.items())}",
+            fontsize=9,
+        )
+    save(figure, file, ending)

@@ -1,0 +1,311 @@
+"""Contents of a page, as plain numbers and texts: the one place that defines what the viewer in the
+page reads.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from ...base.arrays import Array, Json
+from ...base.quantities import Output
+from ...engine.instants.beyond_equilibrium import held_outputs
+from ...model.description import Description, JointNumbers
+from ...results.derivatives import derivatives
+from ...results.ordering import error_of, ordered
+from ...results.solution import Solution
+from ...results.statistics import Extreme
+from ...results.strength.all_parts import looked
+from ...results.verification.certificate import failure, summary
+from ..shapes.orthographic import upright
+from ..shapes.poses import Poses, require_poses
+from ..shapes.primitives import colours_of, disc_axis
+from ..shapes.shapes import named_spots, shapes
+from .array_block import Arrays, finite
+from .instants import Mark, drive_entry, mark, shown_instants
+from .live import Live
+from .maps import map_entries
+from .page_sections import section_entries
+from .words import GROUPS, what
+
+VERSION = 1
+"""Version of a page's contents."""
+
+_LOADED = ("effort", "reaction", "stress", "utilisation", "deflection")
+_CHARTED = (*_LOADED, "output", "motion", "load", "friction", "multiplier", "pose")
+
+
+@dataclass(frozen=True)
+class Series:
+    """A quantity over the instants that are shown, for charts; of a section force, what is largest
+    in size along its link.
+
+    ``values`` is the number of its array, ``places`` that of the ratios xi/l of a section force.
+    """
+
+    name: str
+    group: str
+    part: str
+    what: str
+    unit: str
+    values: int
+    places: int | None = None
+
+
+@dataclass(frozen=True)
+class Row:
+    """A quantity over all instants: its peak, how far it may be off, its ends and means; only its
+    name where it is ``open``.
+    """
+
+    name: str
+    group: str
+    part: str
+    what: str
+    unit: str
+    open: bool
+    peak: Mark | None = None
+    error: float | None = None
+    smallest: Mark | None = None
+    largest: Mark | None = None
+    mean: float | None = None
+    rms: float | None = None
+
+
+def contents(solution: Solution, live: Live | None = None) -> dict[str, Json]:
+    """All of a page about a solution; with ``live`` the engine that evaluates its scene for other
+    parameters, too.
+
+    Raises :class:`.DeclarationError` where the solution does not have the poses of all bodies,
+    which the picture is made of.
+    """
+    require_poses(solution)
+    arrays, chosen = Arrays(), shown_instants(solution)
+    description = solution.description
+    found = {
+        "version": VERSION,
+        "case": solution.case,
+        "conventions": solution.table.conventions,
+        "space": description.space,
+        "upright": upright(description.gravity).tolist(),
+        "gravity": list(description.components(description.gravity)),
+        "instants": _instants(solution, chosen, arrays),
+        "bodies": list(_bodies(solution, chosen, arrays)),
+        "joints": [_joint(joint, description) for joint in description.joints.values()],
+        "named": list(named_spots(description)),
+        "loads": [
+            {"name": name, "kind": load.kind, "spots": [*map(asdict, load.points)]}
+            for name, load in description.loads.items()
+        ],
+        "paths": [{"name": name} | asdict(spot) for name, spot in description.paths.items()],
+        "series": [asdict(one) for one in series_of(solution, chosen, arrays)],
+        "sections": list(section_entries(solution, chosen, arrays)),
+        "maps": list(map_entries(solution, arrays)),
+        "groups": GROUPS,
+        "rows": [asdict(row) for row in _rows(solution)],
+        "strength": list(_strength(solution)),
+        "parameters": list(_parameters(description)),
+        "certificate": _certificate(solution),
+        "notes": [*solution.notes, *(live.notes if live else ())],
+        "undetermined": list(solution.undetermined),
+        "provenance": (
+            asdict(solution.provenance) | {"versions": dict(solution.provenance.versions)}
+        ),
+    }
+    if live:
+        found["live"] = live.entry(solution, chosen, arrays)
+    return found | {"arrays": arrays.places, "numbers": arrays.block()}
+
+
+def _instants(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) -> dict[str, Json]:
+    return {
+        "total": solution.t.size,
+        "shown": int(chosen.size),
+        "t": arrays.add(solution.t[chosen]),
+        "over": drive_entry(solution, chosen, arrays),
+    }
+
+
+def _bodies(
+    solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays
+) -> Iterator[dict[str, Json]]:
+    """The bodies' shapes, colours, axes of discs, and poses: in the plane x, y and the angle; in
+    space a place, and three axes one by one.
+    """
+    poses = Poses.of(solution)
+    colours = colours_of(solution.description.bodies)
+    for shape in shapes(solution.description):
+        values = np.hstack([poses.bases[shape.name], poses.axes[shape.name].reshape(-1, 9)]).T
+        if not solution.description.space:
+            angle = solution.pose(shape.name).angle
+            values = np.stack([*values[:2], 0.0 * values[0] if angle is None else angle])
+        axis = disc_axis(poses, shape)
+        yield asdict(shape) | {
+            "colour": colours[shape.name],
+            "around": None if axis is None else axis.tolist(),
+            "pose": [arrays.add(column[chosen]) for column in values],
+        }
+
+
+def series_of(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) -> Iterator[Series]:
+    """The quantities of a solution that can be charted, at the instants that are chosen."""
+    resultants = (
+        output
+        for output in ordered(solution)
+        if len(output.components(solution.table)) > 1 and output.group == "reaction"
+    )
+    outputs = [output for output in solution.quantities() if output.group in (*_CHARTED, "section")]
+    for output in sorted(
+        [*outputs, *resultants], key=lambda output: list(GROUPS).index(output.group)
+    ):
+        if not solution.determined(output):
+            continue
+        values, places = solution.extremes(output)
+        words, unit = what(output, solution.table), solution.unit(output)
+        along = None if places is None else arrays.add(places[chosen])
+        of = map(str, solution.made_of(output)) if places is None else ()
+        yield Series(
+            str(output),
+            output.group,
+            output.part,
+            words,
+            unit,
+            arrays.add(values[chosen], *of),
+            along,
+        )
+    for slope in derivatives(solution, solution.sensitivities):
+        if slope.values.ndim == 1 and slope.output.group in _CHARTED:
+            words = (
+                f"{what(slope.output, solution.table) or slope.output.part}, by"
+                f" {slope.name.split(':')[1]}"
+            )
+            yield Series(
+                slope.name,
+                "sensitivity",
+                slope.output.part,
+                words,
+                slope.unit,
+                arrays.add(slope.values[chosen]),
+            )
+    for output, values in held_outputs(solution.holding).items():
+        words, unit = what(output, solution.table), solution.unit(output)
+        yield Series(str(output), "holding", output.part, words, unit, arrays.add(values[chosen]))
+    for output, values in _residuals(solution):
+        yield Series(
+            str(output),
+            output.group,
+            "",
+            what(output, solution.table),
+            "1",
+            arrays.add(values[chosen]),
+        )
+
+
+def _rows(solution: Solution) -> Iterator[Row]:
+    def marked(extreme: Extreme) -> Mark:
+        return mark(solution, extreme.value, extreme.t, extreme.xi)
+
+    for output in ordered(solution):
+        words = (
+            str(output),
+            output.group,
+            output.part,
+            what(output, solution.table),
+            solution.unit(output),
+        )
+        if not solution.determined(output):
+            yield Row(*words, open=True)
+            continue
+        statistics = solution.statistics(output)
+        peak, smallest, largest = (
+            marked(extreme)
+            for extreme in (statistics.peak, statistics.smallest, statistics.largest)
+        )
+        means = (
+            None if mean is None else finite(mean) for mean in (statistics.mean, statistics.rms)
+        )
+        yield Row(*words, False, peak, error_of(solution, output), smallest, largest, *means)
+
+
+def _strength(solution: Solution) -> Iterator[dict[str, Json]]:
+    """Utilisation of links and joints for each mode of failure, and whether that governs; infinite
+    factors are none.
+
+    What is ``open`` has its reason.
+    """
+    for found in looked(solution):
+        for verdict in found.verdicts:
+            values: dict[str, Json] = {
+                "part": found.link,
+                "against": verdict.against,
+                "where": verdict.where,
+                "open": False,
+            }
+            used = 1.0 / verdict.factor if verdict.factor else None
+            yield values | {
+                "factor": finite(verdict.factor),
+                "used": used,
+                "governs": verdict is found.governs,
+            }
+        for why in found.not_evaluated:
+            values = {"part": found.link, "against": "", "where": why, "open": True}
+            yield values | {"factor": None, "used": None, "governs": False}
+
+
+def _joint(joint: JointNumbers, description: Description) -> dict[str, Json]:
+    axes = [axis.direction for axis in joint.axes] if description.space else joint.triad[:1]
+    return {
+        "name": joint.name,
+        "kind": joint.kind,
+        "parent": asdict(joint.parent),
+        "child": asdict(joint.child),
+        "axes": axes,
+        "second": joint.carried,
+        "coordinates": [(axis.coordinate, axis.kind) for axis in joint.axes],
+        "driven": [a.coordinate for a in joint.axes if a.coordinate in description.drives],
+    }
+
+
+def _parameters(description: Description) -> Iterator[dict[str, Json]]:
+    for name, parameter in description.parameters.items():
+        yield {
+            "name": name,
+            "value": parameter.value,
+            "unit": parameter.unit,
+            "low": finite(parameter.low),
+            "high": finite(parameter.high),
+        }
+
+
+def _residuals(solution: Solution) -> Iterator[tuple[Output, Array]]:
+    """The certificate in the order of the table, which a file does not keep."""
+    for quantity in solution.table.rows:
+        if quantity.group == "certificate" and quantity.member in solution.certificate:
+            yield Output("certificate", "", quantity.member), solution.certificate[quantity.member]
+
+
+def _certificate(solution: Solution) -> dict[str, Json]:
+    """The certificate in words, and its residuals."""
+    state = "certified" if solution.certified else "failed" if solution.failed else "none"
+    residuals = [
+        {
+            "name": output.member,
+            "what": what(output, solution.table),
+            "largest": finite(float(np.max(values))),
+        }
+        for output, values in _residuals(solution)
+    ]
+    words = (
+        failure(solution)
+        if solution.failed
+        else summary({output.member: values for output, values in _residuals(solution)})
+    )
+    return {
+        "state": state,
+        "words": words,
+        "tolerance": finite(solution.tolerance),
+        "residuals": residuals,
+    }
