@@ -55,6 +55,12 @@ def loads(name, change):
     return patch
 
 
+def times(load, *factors):
+    """A load with other components."""
+    pairs = zip(factors, load.components, strict=True)
+    return replace(load, components=tuple(factor * one for factor, one in pairs))
+
+
 def law(change):
     """Derive with another motion than was declared."""
 
@@ -95,7 +101,7 @@ WRONG = {
     ),
     "force, its sign": (
         every_joint_and_load,
-        loads("push", lambda one: replace(one, y=-one.y)),
+        loads("push", lambda one: times(one, 1, -1, 1)),
         "balance",
     ),
     "force, its axes": (
@@ -105,7 +111,7 @@ WRONG = {
     ),
     "torque, a factor": (
         every_joint_and_load,
-        loads("couple", lambda one: replace(one, value=one.value / 2)),
+        loads("couple", lambda one: times(one, 1, 1, 0.5)),
         "balance",
     ),
     "line load, its ends": (
@@ -120,7 +126,7 @@ WRONG = {
     ),
     "force in space": (
         arm_in_space,
-        loads("follow", lambda one: replace(one, z=-one.z)),
+        loads("follow", lambda one: times(one, 1, 1, -1)),
         "balance",
     ),
     "torque in space": (
