@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from internals import codegen, compiler
 
-search = codegen.search
+search = codegen.peak_search
 Kind, Listed = search.Kind, search.Listed
 
 T = np.linspace(-1.0, 1.0, 41)
