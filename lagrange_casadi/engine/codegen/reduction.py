@@ -97,7 +97,7 @@ class Reduction:
 
     @property
     def curves(self) -> list[tuple[int, int, int]]:
-        """Quantity of each curve, its link or -1, and its place: see :data:`.peak_search.CURVES`."""
+        """Quantity of a curve, its link or -1, and its place, see :data:`.peak_search.CURVES`."""
         found = [(q, -1, OFF) for q in range(len(self.quantities))]
         q, first = len(self.quantities), 0
         for k, link in enumerate(self.links):
