@@ -29,7 +29,7 @@ def executor_at(address: str | None) -> Iterator[Executor | None]:
     if not _ADDRESS.fullmatch(address):
         raise DeclarationError(f"dask: expected an address like tcp://HOST:8786, got '{address}'")
     check_installed("distributed", "a cluster", "cluster")
-    import dask
+    dask: Any = importlib.import_module("dask")
 
     # What Dask says at length is said here in a line.
     dask.config.set({"logging": {"distributed": "critical", "distributed.client": "critical"}})
