@@ -29,17 +29,15 @@ def executor_at(address: str | None) -> Iterator[Executor | None]:
     if not _ADDRESS.fullmatch(address):
         raise DeclarationError(f"dask: expected an address like tcp://HOST:8786, got '{address}'")
     check_installed("distributed", "a cluster", "cluster")
-    dask: Any = importlib.import_module("dask")
-
     # What Dask says at length is said here in a line.
-    dask.config.set({"logging": {"distributed": "critical", "distributed.client": "critical"}})
+    quiet = {"distributed": "critical", "distributed.client": "critical"}
+    importlib.import_module("dask").config.set({"logging": quiet})
     try:
         client: Any = importlib.import_module("distributed").Client(
             address, timeout=_PATIENCE, set_as_default=False
         )
     except (OSError, TypeError, ValueError, RuntimeError) as error:
-        why = one_line(error)
-        raise ClusterError(f"no Dask scheduler answers at {address}: {why}") from None
+        raise ClusterError(f"no Dask scheduler answers at {address}: {one_line(error)}") from None
     with client:
         if not client.nthreads():
             warn(f"the scheduler at {address} has no workers yet; waiting for some")
