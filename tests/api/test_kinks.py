@@ -55,7 +55,6 @@ SMOOTH = {
     "the same where it is kept from noise": (
         Y - ca.if_else(ca.fabs(X) < 1e-3, 0.5 - X**2 / 24, (1 - ca.cos(X)) / X**2)
     ),
-    "waves as fast as the instants, of another program": Y - ca.sin(100 * doubled(X)),
     "a bump": Y - ca.if_else(X > 0.5, ca.exp(-1 / (X - 0.5)), 0),
     "a size of what only touches zero": Y - ca.fabs(ca.sin(7 * X + 0.0652521) + 1),
     "a corner that is rounded": Y - ca.sqrt((X - 0.3) ** 2 + 1e-9),
