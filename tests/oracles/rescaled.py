@@ -44,9 +44,11 @@ _KEPT += ("symbol",)
 
 def unit_of(part: Any, name: str) -> str:
     """The unit of a part's field; what else the part has tells a force from a place."""
+    if name == "components":
+        return "N m" if hasattr(part, "against") else "N"
     if name in ("x", "y", "z"):
-        load = hasattr(part, "turning")
-        return ("N/m" if hasattr(part, "between") else "N") if load else "m"
+        along, axes = hasattr(part, "between"), hasattr(part, "angle")
+        return "N/m" if along else "1" if axes else "m"
     if name in ("viscous", "smooth"):
         slides = part.axis.kind == "slide"
         return {"viscous": ("N m s", "N s/m"), "smooth": ("1/s", "m/s")}[name][slides]
