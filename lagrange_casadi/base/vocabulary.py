@@ -27,11 +27,9 @@ BEYONDS: tuple[Beyond, ...] = ("hold", "line")
 """Ways of a table to go on beyond its ends: with the value there, or in a straight line."""
 
 Criterion = Literal["goodman", "gerber", "soderberg", "morrow", "findley"]
-CRITERIA: tuple[Criterion, ...] = ("goodman", "gerber", "soderberg", "morrow", "findley")
 """Treatments of a mean stress in fatigue."""
 
 Yielding = Literal["von_mises", "tresca"]
-YIELDING: tuple[Yielding, ...] = ("von_mises", "tresca")
 """Stresses that yield."""
 
 POINTS = 11

@@ -29,9 +29,10 @@ def executor_at(address: str | None) -> Iterator[Executor | None]:
     if not _ADDRESS.fullmatch(address):
         raise DeclarationError(f"dask: expected an address like tcp://HOST:8786, got '{address}'")
     check_installed("distributed", "a cluster", "cluster")
+    import dask
+
     # What Dask says at length is said here in a line.
-    quiet = {"distributed": "critical", "distributed.client": "critical"}
-    importlib.import_module("dask").config.set({"logging": quiet})
+    dask.config.set({"logging": {"distributed": "critical", "distributed.client": "critical"}})
     try:
         client: Any = importlib.import_module("distributed").Client(
             address, timeout=_PATIENCE, set_as_default=False

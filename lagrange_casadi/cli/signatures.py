@@ -82,6 +82,7 @@ def parameters(place: str) -> dict[str, Parameter]:
     return found
 
 
+@cache
 def _node(place: str) -> ast.FunctionDef | ast.ClassDef:
     """Parse a function or a class, of several of its name the last: others are overloads."""
     module, _, name = place.rpartition(".")
