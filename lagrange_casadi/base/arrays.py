@@ -45,6 +45,11 @@ def during(value: Operand, instants: Instants) -> Operand:
     return value.during(instants) if hasattr(value, "during") else value
 
 
+def every(size: int, most: int) -> slice:
+    """The numbers 0, k, 2 k, ... of ``size`` things, at most ``most`` of them, as a slice."""
+    return slice(None, None, 1 + size // most)
+
+
 def spread(size: int, most: int) -> npt.NDArray[np.intp]:
     """The numbers of so many things, or of at most so many of them that are evenly spread, the
     first and the last among them.

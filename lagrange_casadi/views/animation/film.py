@@ -11,7 +11,6 @@ from ...errors import DeclarationError
 from ...results.pictures import Animation, Film
 from ...results.solution import Solution
 from ..shapes.picture_sheet import Picture, picture, view_of
-from ..shapes.poses import require_poses
 from ..shapes.primitives import drawing, size_of
 from ..shapes.shapes import named_spots
 from ..shapes.vector import svg
@@ -93,7 +92,6 @@ def write_animation(
                 f"animation {target}: a .glb has no section forces; they are in"
                 f" {', '.join(ENDINGS[:-1])}"
             )
-        require_poses(solution, "an animation")
         solid = glb(
             solution, max(2, round(film.rate * film.seconds)), film.seconds, forces=film.forces
         )
@@ -117,7 +115,6 @@ def picture_of(solution: Solution, film: Film) -> Picture:
 
     Raises :class:`.DeclarationError` for motion or forces that the solution lacks.
     """
-    require_poses(solution, "an animation")
     frames = frames_of(solution, max(2, round(film.rate * film.seconds)))
     description = solution.description
     named = named_spots(description) if film.names else {}

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from ...base.arrays import Array
 from ...errors import DeclarationError
 from ...results.solution import Solution
-from ..shapes.poses import Poses, blended
+from ..shapes.poses import Poses, blended, require_poses
 from ..shapes.primitives import drawing, size_of
 
 _SAME = 1e-3
@@ -40,16 +40,24 @@ class Frames:
         return blended(values, self.before, self.share)
 
 
-def frames_of(solution: Solution, count: int) -> Frames:
-    """The motion at ``count`` frames; at no more than there are instants.
-
-    Raises :class:`.DeclarationError` where there are not two instants.
+def require_motion(solution: Solution) -> None:
+    """Raise :class:`.DeclarationError` where a body has no pose among the outputs, and where there
+    are not two instants.
     """
-    t = solution.t
-    if t.size < 2:
+    require_poses(solution, "an animation")
+    if solution.t.size < 2:
         raise DeclarationError(
             f"{solution.case}: an animation shows a motion, and there is 1 instant; ask for more"
         )
+
+
+def frames_of(solution: Solution, count: int) -> Frames:
+    """The motion at ``count`` frames; at no more than there are instants.
+
+    Raises as :func:`require_motion` does.
+    """
+    require_motion(solution)
+    t = solution.t
     whole = Poses.of(solution)
     ends = [
         one.points

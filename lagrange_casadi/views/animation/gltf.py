@@ -18,7 +18,6 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.arrays import Array
-from ...errors import DeclarationError
 from ...model.description import JointNumbers
 from ...results.solution import Solution
 from ...version import __version__
@@ -27,7 +26,7 @@ from ..shapes.poses import Poses, frame_along
 from ..shapes.primitives import colours_of, disc_axis, drawing, size_of
 from ..shapes.shapes import Shape, shapes
 from ..shapes.symbols import PATH
-from .film_frames import Frames
+from .film_frames import Frames, require_motion
 from .forces import LONGEST, actions_of, largest_of
 from .solids import Mesh, arrow, block, cylinder, prism, sphere, together
 
@@ -48,13 +47,10 @@ def glb(solution: Solution, frames: int, seconds: float, *, forces: bool = False
     """The file: one cycle in so many ``seconds``, with at most ``frames`` keys and one more.
 
     With ``forces`` it has arrows of reactions, efforts and loads. Raises :class:`.DeclarationError`
-    where there are not two instants, and where none of the forces that are asked for is known.
+    where there is no motion to show, and where none of the forces that are asked for is known.
     """
+    require_motion(solution)
     t = solution.t
-    if t.size < 2:
-        raise DeclarationError(
-            f"{solution.case}: an animation shows a motion, and there is 1 instant; ask for more"
-        )
     chosen = np.unique(np.linspace(0, t.size - 1, min(t.size, frames + 1)).round().astype(int))
     before = np.minimum(chosen, t.size - 2)
     whole = Poses.of(solution)

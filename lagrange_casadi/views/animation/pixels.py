@@ -18,7 +18,7 @@ from ...base.arrays import Array
 from ...base.space import require
 from ...errors import LagrangeCasadiError, StoreError, one_line
 from ..shapes.picture_sheet import LETTER, Picture, Words, filling, outline
-from ..shapes.primitives import Line, frame
+from ..shapes.primitives import Line, edge, frame
 from ..shapes.symbols import INK, PAPER, SYMBOLS
 
 if TYPE_CHECKING:
@@ -59,21 +59,20 @@ def frames(picture: Picture, chosen: Iterable[int] | None = None) -> Iterator[Im
                 if thing.opacity:
                     fill = f"{thing.colour}{round(255 * thing.opacity):02x}"
                     brush.polygon([*points.ravel()], fill)
-                points = np.vstack([points, points[:1]]) if thing.closed else points
+                points = edge(points, thing.closed)
                 for part in _dashes(points, _DASH * unit) if thing.dashed else [points]:
                     _stroke(brush, part, thing.colour, thing.width * unit)
             elif isinstance(thing, Words):
                 place = _FINE * frame(thing.points, k)
                 anchor, halo = "rs" if thing.before else "ls", round(1.5 * unit)
-                edge: dict[str, Any] = {"stroke_width": halo, "stroke_fill": PAPER}
-                brush.text((place[0], place[1]), thing.text, INK, font, anchor, **edge)
+                style: dict[str, Any] = {"stroke_width": halo, "stroke_fill": PAPER}
+                brush.text((place[0], place[1]), thing.text, INK, font, anchor, **style)
             else:
                 for one in SYMBOLS[thing.kind]:
                     points = _FINE * outline(thing, one, picture.unit, k)
                     if fill := filling(thing, one):
                         brush.polygon([*points.ravel()], fill)
-                    points = np.vstack([points, points[:1]]) if one.closed else points
-                    _stroke(brush, points, one.colour, one.width * unit)
+                    _stroke(brush, edge(points, one.closed), one.colour, one.width * unit)
         yield sheet.resize(size, Image.Resampling.BOX)
 
 

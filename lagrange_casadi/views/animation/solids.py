@@ -72,8 +72,8 @@ def arrow(heads: int) -> Mesh:
     """An arrow along x from 0 to 1: of a force with one head, of a moment with two."""
     tips = [1.0 - 0.16 * k for k in reversed(range(heads))]
     cones = [ring for tip in tips for ring in ((tip - 0.16, 0.05), (tip, 0.0))]
-    return revolved(np.zeros(3), np.eye(3)[0], [(0.0, 0.0), (0.0, 0.018),
-        (tips[0] - 0.16, 0.018), *cones])  # fmt: skip
+    shaft = [(0.0, 0.0), (0.0, 0.018), (tips[0] - 0.16, 0.018)]
+    return revolved(np.zeros(3), np.eye(3)[0], [*shaft, *cones])
 
 
 def sphere(centre: Array, radius: float) -> Mesh:

@@ -8,10 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from ...base.arguments import public
-from ...base.files import writing
 from ...studies.actuators.duty import Duty
 from ...studies.actuators.motor import Motor
-from ..shapes.picture_files import check_picture, one_at_a_time, save
+from ..shapes.picture_files import check_picture, one_at_a_time, put_figure
 
 
 @public
@@ -36,7 +35,6 @@ def plot_duty(duty: Duty, path: str | Path, motor: Motor | None = None) -> None:
         For another ending.
     """
     check_picture(path)
-    target = Path(path)
     from matplotlib.figure import Figure
 
     per_minute = 1.0 if duty.linear else 60.0 / math.tau
@@ -73,5 +71,4 @@ def plot_duty(duty: Duty, path: str | Path, motor: Motor | None = None) -> None:
     axes.set(xlabel=speed, ylabel=pull, xlim=(0, None), ylim=(0, None))
     axes.grid(True, color="0.92")
     figure.legend(loc="outside lower center", ncols=2, frameon=False, fontsize=9)
-    with writing(target) as file:
-        save(figure, file, target.suffix)
+    put_figure(figure, path)

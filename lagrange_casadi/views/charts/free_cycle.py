@@ -10,10 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from ...base.arguments import public
-from ...base.files import writing
 from ...results.statistics import shares
 from ...studies.forward.free_motion import FreeMotion
-from ..shapes.picture_files import check_picture, one_at_a_time, save
+from ..shapes.picture_files import check_picture, one_at_a_time, put_figure
 
 
 @public
@@ -64,6 +63,4 @@ def plot_cycle(motion: FreeMotion, path: str | Path) -> None:
     )
     for axes in (upper, lower):
         axes.grid(True, color="0.92")
-    target = Path(path)
-    with writing(target) as file:
-        save(figure, file, target.suffix)
+    put_figure(figure, path)

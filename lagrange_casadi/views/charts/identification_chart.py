@@ -5,13 +5,11 @@ from __future__ import annotations
 import io
 import os
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...base.arguments import public
-from ...base.files import writing
 from ...studies.identification.fit import Comparison
-from ..shapes.picture_files import check_picture, one_at_a_time, save
+from ..shapes.picture_files import check_picture, one_at_a_time, put_figure, save
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -41,8 +39,7 @@ def plot_identification(compared: Comparison, path: str | os.PathLike[str]) -> N
     PathError
         If the file cannot be written.
     """
-    target = Path(path)
-    check_picture(target)
+    check_picture(path)
     from matplotlib.figure import Figure
 
     names = list(compared.measured)
@@ -57,8 +54,7 @@ def plot_identification(compared: Comparison, path: str | os.PathLike[str]) -> N
         one.set_xlabel("t [s]")
     handles = [line for one in axes[0] for line in one.get_legend_handles_labels()[0]]
     figure.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False, fontsize=9)
-    with writing(target) as file:
-        save(figure, file, target.suffix)
+    put_figure(figure, path)
 
 
 @one_at_a_time()

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...base.arrays import Array
+from ...base.arrays import Array, every
 from ...results.elastic.deflection import Deflection
 from ...results.elastic.vibration import Vibration, vibration
 from ...results.solution import Solution
@@ -52,9 +52,7 @@ def _map(
     unit: str,
 ) -> None:
     member = found.member
-    instants, ratios = (
-        slice(None, None, 1 + size // _PIXELS) for size in (member.t.size, member.xi.size)
-    )
+    instants, ratios = (every(size, _PIXELS) for size in (member.t.size, member.xi.size))
     xi, peak = member.xi[ratios], found.peak()
     u = np.broadcast_to(xi, (member.t.size, xi.size))
     values = found.size(u)[instants] * factor

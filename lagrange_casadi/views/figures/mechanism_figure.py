@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...base.arrays import Array
+from ...base.arrays import Array, every
 from ...results.solution import Solution
 from ...results.store.specs import MechanismDrawing
 from ..shapes.orthographic import View, page, views
@@ -26,6 +26,7 @@ from ..shapes.primitives import (
     cloud,
     colours_of,
     drawing,
+    edge,
     seen,
     size_of,
     turn,
@@ -79,7 +80,7 @@ def draw_mechanism(solution: Solution, spec: MechanismDrawing, si: bool = False)
     from matplotlib.figure import Figure
 
     chosen = stills(solution, spec.count)
-    thin = Poses.of(solution.during(slice(None, None, 1 + solution.t.size // _THINNED)))
+    thin = Poses.of(solution.during(every(solution.t.size, _THINNED)))
     everything, poses = drawing(thin), Poses.of(solution)
     size = size_of(everything)
     panels = [*_panels(solution, spec, chosen)]
@@ -175,9 +176,8 @@ def paint(axes: Axes, things: Sequence[Line | Symbol | Name], strong: bool = Tru
         if thing.opacity:
             face = {**style, "alpha": thing.opacity * alpha}
             axes.fill(*points.T, facecolor=thing.colour, linewidth=0.0, **face)
-        edge = np.vstack([points, points[:1]]) if thing.closed else points
         axes.plot(
-            *edge.T,
+            *edge(points, thing.closed).T,
             color=thing.colour,
             linewidth=_UNIT * thing.width,
             linestyle=(0, (6, 4)) if thing.dashed else "-",
@@ -216,9 +216,8 @@ def _patches(symbol: Symbol, transform: Transform) -> Iterator[Artist]:
     from matplotlib.path import Path
 
     for one in SYMBOLS[symbol.kind]:
-        points = np.vstack([one.points, one.points[:1]]) if one.closed else one.points
         yield PathPatch(
-            Path(points, closed=one.closed),
+            Path(edge(one.points, one.closed), closed=one.closed),
             facecolor=filling(symbol, one) or "none",
             edgecolor=one.colour,
             linewidth=_UNIT * one.width,
@@ -356,8 +355,8 @@ def _name(axes: Axes, things: Sequence[Line | Symbol | Name], taken: Array) -> N
             about = _stands_at(axes, thing)
             lines_of = (_along(one.points, one.closed) for one in SYMBOLS[thing.kind])
             hidden += [points * about.transform(line) for line in lines_of]
-    edge = points * axes.bbox.get_points().ravel() + [2.0, 2.0, -2.0, -2.0]
-    corners = placed(anchors, sizes, np.concatenate(hidden), edge.tolist())
+    border = points * axes.bbox.get_points().ravel() + [2.0, 2.0, -2.0, -2.0]
+    corners = placed(anchors, sizes, np.concatenate(hidden), border.tolist())
     for text, anchor, low, size in zip(texts, anchors, corners, sizes, strict=True):
         distance = apart(low, size, anchor)
         far = (
@@ -381,6 +380,6 @@ def _name(axes: Axes, things: Sequence[Line | Symbol | Name], taken: Array) -> N
 
 def _along(points: Array, closed: bool) -> Array:
     """Points along a polyline (n, 2), as things that a name may hide."""
-    ends = np.vstack([points, points[:1]]) if closed else points
+    ends = edge(points, closed)
     shares = np.linspace(0.0, 1.0, max(2, 80 // len(ends)))[:, None, None]
     return np.asarray(ends[:-1] + shares * np.diff(ends, axis=0)).reshape(-1, 2)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base.arguments import public
-from ...base.arrays import Array
+from ...base.arrays import Array, every
 from ...base.quantities import Output
 from ...base.tables import PLANE, SPACE
 from ...errors import DeclarationError, PathError, UnknownNameError, shown
@@ -274,9 +274,7 @@ def _maps(spec: SectionMaps, solution: Solution, si: bool) -> Figure:
     across = 1 if solution.table is PLANE else 2
     down = -(-len(names) // across)
     figure = Figure(figsize=(8.0 * across, 2.8 * down), layout="constrained")
-    instants, ratios = (
-        slice(None, None, 1 + size // _PIXELS) for size in (solution.t.size, solution.xi.size)
-    )
+    instants, ratios = (every(size, _PIXELS) for size in (solution.t.size, solution.xi.size))
     law, xi = solution.section(spec.link).law.during(instants), solution.xi[ratios]
     places, along = _along(solution)
     basis = law.basis(xi)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...base.arrays import Array
+from ...base.arrays import Array, every
 from ...results.solution import Solution
 from ..shapes.poses import Poses
 from ..shapes.primitives import drawing, size_of
@@ -24,8 +24,8 @@ def stills(solution: Solution, count: int) -> list[int]:
     n = solution.t.size
     if count < 2 or n < 2:
         return [0]
-    step = 1 + n // _THINNED
-    thin = solution.during(slice(None, None, step))
+    few = every(n, _THINNED)
+    thin = solution.during(few)
     things = drawing(Poses.of(thin))
     size = size_of(things)
     moving = [one.points for one in things if len(one.points) == thin.t.size]
@@ -37,7 +37,7 @@ def stills(solution: Solution, count: int) -> list[int]:
         moved = (np.linalg.norm(cloud[k] - cloud[other], axis=1).max() for other in found)
         if all(distance > _SAME * size for distance in moved):
             found.append(k)
-    return [step * k for k in found]
+    return [few.step * k for k in found]
 
 
 def _period(cloud: Array, size: float) -> int:

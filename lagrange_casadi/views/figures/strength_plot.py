@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...base.arrays import Array
+from ...base.arrays import Array, every
 from ...results.solution import Solution
 from ...results.strength.fatigue import Loaded, loaded, use_score, used
 from ...results.strength.fibres import sampled, worst
@@ -80,8 +80,7 @@ def draw_utilisation(solution: Solution, parts: Sequence[str]) -> Figure:
 
 def _map(figure: Figure, axes: Axes, stress: Stress, along: Array, label: str, unit: Scale) -> None:
     instants, ratios = (
-        slice(None, None, 1 + size // _PIXELS)
-        for size in (stress.member.t.size, stress.member.xi.size)
+        every(size, _PIXELS) for size in (stress.member.t.size, stress.member.xi.size)
     )
     xi, peak = stress.member.xi[ratios], stress.peak("von_mises")
     values = Stress(stress.member.during(instants)).grid("von_mises", xi) / _MEGA

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ...base.arrays import every
 from ...results.solution import Solution
 from ..shapes.picture_sheet import picture, view_of
 from ..shapes.poses import Poses
@@ -14,7 +15,7 @@ _TRACED = 120
 
 def still(solution: Solution) -> str:
     """The mechanism at the first instant; from a slanted direction where it is in space."""
-    whole = Poses.of(solution.during(slice(None, None, 1 + solution.t.size // _TRACED)))
+    whole = Poses.of(solution.during(every(solution.t.size, _TRACED)))
     things = drawing(whole.during([0]), whole)
     one = view_of(solution.description)
     title = f"{solution.case} at its first instant"

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
 
-from ...base.files import check_writable
+from ...base.files import check_writable, writing
 from ...errors import DeclarationError
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ def ending_of(svg: bool) -> str:
     return ".svg" if svg else ".png"
 
 
-def check_picture(path: str | Path) -> None:
+def check_picture(path: str | os.PathLike[str]) -> None:
     """Raise :class:`.DeclarationError` for a name that ends in none of .png, .pdf and .svg, and
     :class:`.PathError`.
     """
@@ -63,3 +63,10 @@ def save(
     # Names within an SVG are drawn at random where nothing is given.
     with one_at_a_time({"svg.hashsalt": "lagrange_casadi"}):
         figure.savefig(file, format=ending.removeprefix("."), dpi=dpi, metadata=PICTURES[ending])
+
+
+def put_figure(figure: Figure, path: str | os.PathLike[str]) -> None:
+    """Write a figure into a file that appears whole, of the kind that the name's ending says."""
+    target = Path(path)
+    with writing(target) as file:
+        save(figure, file, target.suffix)

@@ -112,7 +112,8 @@ def drawing(
     description = poses.description
     joints = list(description.joints.values())
     colours = colours_of(description.bodies)
-    bodies = [one for shape in shapes(description) for one in _body(poses, shape, colours)]
+    parts = [*shapes(description)]
+    bodies = [one for shape in parts for one in _body(poses, shape, colours)]
     held = [*(joint.ends for joint in joints), *description.springs.values()]
     spots = [*(end for ends in held for end in ends), *description.paths.values()]
     size = size_of([*bodies, *(Line(whole.place(spot), PATH, 0.0) for spot in spots)])
@@ -126,7 +127,7 @@ def drawing(
         found.append(symbol("point", spot, POINTS))
     for start, stop in description.springs.values():
         found.append(_spring(poses.place(start), poses.place(stop), _COIL * size))
-    masses = {shape.name for shape in shapes(description) if shape.kind == "point"}
+    masses = {shape.name for shape in parts if shape.kind == "point"}
     for joint in joints:
         ground = [end for end in joint.ends if end.body == "ground"]
         if ground and joint.kind not in _UNSUPPORTED:
@@ -185,6 +186,11 @@ def turn(symbol: Symbol, k: int) -> float:
         return 0.0
     x, y = frame(symbol.along, k)
     return math.atan2(y, x)
+
+
+def edge(points: Array, closed: bool) -> Array:
+    """The points (n, 2) of a polyline; of a ``closed`` polygon, and the first again."""
+    return np.vstack([points, points[:1]]) if closed else points
 
 
 def frame(values: Array, k: int) -> Array:
