@@ -20,12 +20,14 @@ import numpy as np
 from ..base.arrays import Array, Expression
 from ..base.scalars import column
 from ..errors import MobilityError
+from .iteration import place_roughly
 from .legs import solve_leg
 from .loops import ClosedForm, solve_loop, solves
 from .multibody import Coordinate, LoopEquations, Multibody
 from .released_loops import ReleasedLoops
 from .sampling import Sampling, drawn
 from .sizes import extent, units
+from .substitution import Numbers
 from .two_force_links import idle_spins
 
 _ABSENT = 1e-13
@@ -130,7 +132,11 @@ def solving_order(multibody: Multibody, start: Mapping[str, Expression]) -> tupl
     parts = _decomposed(equations, unknown)
     if any(len(rows) != len(columns) for rows, columns in parts):
         # Drives are free to give way in it, for there may be too many.
-        released = ReleasedLoops.of(multibody, start["posture"], start["inputs"], start["values"])
+        numbers = Numbers()
+        for symbols, value in zip(start["inputs"], start["values"], strict=True):
+            numbers.note(symbols, np.atleast_1d(value).tolist())
+        place_roughly(multibody, start["posture"], numbers, {})
+        released = ReleasedLoops.of(multibody, numbers, start["inputs"], start["values"])
         slopes = released.slopes()
         slopes = _require_freedom(
             multibody, len(equations), parts, slopes, released.rank, start["posture"]

@@ -11,7 +11,8 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -19,8 +20,8 @@ from typing import Any
 import casadi as ca
 
 from ..base.scalars import column, graph
-from ..base.vectors import AXES
-from ..errors import AssemblyError, DeclarationError
+from ..base.vectors import AXES, Vector
+from ..errors import AssemblyError, DeclarationError, MobilityError
 from ..model.directions import most_across
 from .blocks import Block, solving_order
 from .iteration import Iterated, NewtonLoop, Start, place_roughly
@@ -116,6 +117,17 @@ def solve(multibody: Multibody, posture: Mapping[str, float], start: Start) -> K
     return solver.finish(blocks)
 
 
+def begun(multibody: Multibody, posture: Mapping[str, float], start: Start) -> Numbers:
+    """The numbers of all coordinates at the start of the motion: as loops are solved, in their
+    order, until one is not, and of the others as the posture has them roughly, or zero.
+    """
+    solver = _Solver(multibody, dict(posture), start)
+    with suppress(AssemblyError, MobilityError):
+        for block in solving_order(multibody, solver.beginning()):
+            solver.close(block)
+    return solver.roughly()
+
+
 class _Solver:
     """Carries the expressions known so far, and their numbers at the start, while the blocks are
     closed in order.
@@ -171,6 +183,15 @@ class _Solver:
             "inputs": [mechanism.time, mechanism.symbols],
             "values": [self.start.t, self.start.parameters],
         }
+
+    def roughly(self) -> Numbers:
+        """The numbers of all coordinates, rough ones of those that are not solved."""
+        self.known = {c: v for c, v in self.known.items() if self.numbers.has(c.variables)}
+        open_coordinates = [c for c in self.multibody.coordinates if c not in self.known]
+        place_roughly(self.multibody, self._rough(open_coordinates), self.numbers, self.known)
+        for symbols, direction in self._asides():
+            self.numbers.note(symbols, direction)
+        return self.numbers
 
     def _know(self, coordinate: Coordinate, value: ca.SX) -> None:
         self.known[coordinate] = value
@@ -418,10 +439,8 @@ class _Solver:
         body, newton, found = self.multibody, self.newton(), self.found
         if body.sphericals:
             found = found.with_values(self.iterated.placed)
-        for two_force_link in body.tree.two_force_links:
-            if not two_force_link.aimed:
-                along = self.numbers.of(column(body.frames[two_force_link.link.name].rotation.x))
-                found.note(column(two_force_link.aside), column(AXES[most_across(along)]))
+        for symbols, direction in self._asides():
+            found.note(symbols, column(direction))
         for spherical in body.sphericals:
             found.note(spherical.side, ca.SX(self._side(spherical)))
             found.note(spherical.axes, self.iterated.placed(spherical.axes))
@@ -481,6 +500,15 @@ class _Solver:
             wrapped=frozenset(self.wrapped),
             deviations=self.deviations,
         )
+
+    def _asides(self) -> Iterator[tuple[ca.SX, Vector]]:
+        """The symbols of y axes of two-force links that were not declared, with the ground's axes
+        that are most across these at the start.
+        """
+        for one in self.multibody.tree.two_force_links:
+            if not one.aimed:
+                axis = self.multibody.frames[one.link.name].rotation.x
+                yield column(one.aside), AXES[most_across(self.numbers.of(column(axis)))]
 
     def _side(self, spherical: SphericalCoordinates) -> int:
         """The sign of the cosine of a ball's second turn with which its turns at the start are

@@ -28,6 +28,7 @@ from ..model.description import Description
 from ..model.link_density import Density
 from ..model.loads import LineLoad
 from ..model.mass_properties import ALL
+from ..model.mechanism import Mechanism
 from ..model.sampled_laws import Laws
 from ..model.scene import Scene
 from ..model.stated import Stated
@@ -35,7 +36,7 @@ from ..model.times import Timing
 from ..model.validity import Margins
 from .section_function import Section
 from .sizes import extent
-from .tree import span
+from .tree import Tree, span
 
 
 @symbolic
@@ -54,10 +55,16 @@ def template(scene: Scene) -> Template[Description]:
     In space it names the ``two_force_links``, links whose spin about their own axis is idle and
     taken to be none, and the coordinates that are ``unmeasured``.
     """
-    mechanism = scene.mechanism
-    content = Description.of(mechanism, scene.laws, scene.weights)
+    tree = span(scene.guided, scene.laws)
+    return described(scene.mechanism, tree, scene.laws, scene.weights)
+
+
+def described(
+    mechanism: Mechanism, tree: Tree, driven: Collection[str], drives: Collection[str] | None
+) -> Template[Description]:
+    """The description of a mechanism with some tree, as of :func:`template`."""
+    content = Description.of(mechanism, driven, drives)
     if mechanism.space:
-        tree = span(scene.guided, scene.laws)
         content = replace(
             content,
             bars=tuple(one.link.name for one in tree.two_force_links),

@@ -4,22 +4,21 @@ rank in numbers.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
 import numpy as np
 
-from ..base.arrays import Array, Expression
+from ..base.arrays import Array, Expression, Flags
 from ..base.scalars import column
-from .iteration import place_roughly
-from .multibody import Coordinate, Multibody
+from .multibody import Multibody
 from .sizes import extent, units
-from .spherical import axes_of, turn
+from .spherical import axes_of, quaternion_of, turn
 from .substitution import Numbers
 
-_STEPS, _LARGEST = 200, 0.5
+_LARGEST = 0.5
 _CLOSED = 1e-11
 _SINGULAR = 1e-10
 _DEPENDENT = 1e-9
@@ -29,21 +28,30 @@ is there twice, or a turntable, which turns a loop with the gap that it may have
 """
 
 
+State = tuple[Any, ...]
+"""Coordinates u, slides beside the mechanism's extent; quaternions q of balls; and the numbers of
+inputs.
+"""
+
+
 @dataclass(frozen=True, eq=False)
 class ReleasedLoops:
     """The loops' equations over coordinates u and quaternions q of balls: slides are beside the
-    mechanism's extent, and so are gaps; a constraint is beside its slopes in the rough posture.
+    mechanism's extent, and so are gaps; a constraint is beside its slopes where it starts.
 
     ``gaps(u, q, *inputs)`` gives the equations and their derivatives by u; ``turned(u, q)`` the
-    quaternions after the small rotations u of balls, which ``resting`` marks. ``first`` are u and q
-    in the rough posture, ``values`` those of the inputs. What is below ``slack`` may be the
-    rounding of axes and places.
+    quaternions after the small rotations u of balls, which ``resting`` marks. ``residuals`` are the
+    equations over ``given``, the symbols of u and q and the inputs. ``first`` is the state at the
+    start, and ``sizes`` are the units of u. What is below ``slack`` may be the rounding of axes and
+    places.
     """
 
     gaps: Any
     turned: Any
-    first: tuple[Array, Array]
-    values: Sequence[Expression]
+    residuals: Any
+    given: Sequence[Any]
+    first: State
+    sizes: Array
     resting: Array
     slack: float
 
@@ -51,25 +59,17 @@ class ReleasedLoops:
     def of(
         cls,
         multibody: Multibody,
-        posture: Mapping[Coordinate, float],
+        numbers: Numbers,
         inputs: Sequence[Expression],
         values: Sequence[Expression],
     ) -> ReleasedLoops:
-        """Coordinates near the given ones; ``values`` are the initial numbers of the symbols
-        ``inputs``.
-        """
-        coordinates, numbers = multibody.coordinates, Numbers()
-        for symbols, value in zip(inputs, values, strict=True):
-            numbers.note(symbols, np.atleast_1d(value).tolist())
-        quaternions = (
-            place_roughly(multibody, posture, numbers, {})
-            if any(c.spherical for c in coordinates)
-            else {}
-        )
-        turned = {spherical: ca.SX.sym("quaternion", 4) for spherical in quaternions}
+        """Coordinates near their ``numbers``; ``values`` are those of the symbols ``inputs``."""
+        coordinates = multibody.coordinates
+        turned = {spherical: ca.SX.sym("quaternion", 4) for spherical in multibody.sphericals}
         free = ca.SX.sym("u", len(coordinates))
+        single = [c for c in coordinates if c.spherical is None]
         symbols = column(c.value for c in coordinates)
-        counted = column(c.by_values for c in coordinates if c.spherical is None)
+        counted = column(c.by_values for c in single)
         (size,) = numbers.of(extent(multibody.mechanism))
         sizes = np.array([size if c.kind == "slide" else 1.0 for c in coordinates])
         placed = [ca.substitute(counted, symbols, free * ca.DM(sizes))]
@@ -82,20 +82,18 @@ class ReleasedLoops:
         }
         placed += [axes_of(turn(turned[spherical], local[spherical])) for spherical in turned]
         variables = [
-            *(c.variables for c in coordinates if c.spherical is None),
+            *(c.variables for c in single),
             *(spherical.axes for spherical in turned),
         ]
         residuals = ca.substitute(
             column(c.residual for c in multibody.loop_equations), column(variables), column(placed)
         )
         quaternion = column(turned.values())
-        first = (
-            np.array([0.0 if c.spherical else posture.get(c, 0.0) for c in coordinates]) / sizes,
-            np.array([*quaternions.values()]).ravel(),
-        )
+        u, q = _state(multibody, numbers)
+        first = u / sizes, q, *values
         given = [free, quaternion, *inputs]
         slope = ca.Function("slope", given, [ca.jacobian(residuals, free)])
-        rows = np.linalg.norm(slope(*first, *values).full(), axis=1)
+        rows = np.linalg.norm(slope(*first).full(), axis=1)
         start = 0
         for loop in multibody.loop_equations:
             stop = start + loop.residual.numel()
@@ -110,26 +108,55 @@ class ReleasedLoops:
                 [free, quaternion],
                 [column(turn(turned[spherical], local[spherical]) for spherical in turned)],
             ),
+            residuals,
+            given,
             first,
-            values,
+            sizes,
             np.array([c.spherical is not None for c in coordinates], bool),
             multibody.slack,
         )
 
     def slopes(self) -> Array | None:
-        """The derivatives by all coordinates where the loops close near the rough posture, or miss
-        by rounding and come no nearer; None where they do not.
+        """The derivatives by all coordinates where the loops close near the start, or miss by
+        rounding and come no nearer; None where they do not.
         """
-        (u, q), singular = self.first, max(_SINGULAR, self.slack)
-        for _ in range(_STEPS):
-            residual, slope = (x.full() for x in self.gaps(u, q, *self.values))
-            step = np.linalg.lstsq(slope, -residual.ravel(), rcond=singular)[0] if u.size else u
+        found = self.closed(self.first)
+        return None if found is None else self.at(found)[1]
+
+    def at(self, state: State) -> tuple[Array, Array]:
+        """The equations and their derivatives by all coordinates."""
+        residual, slope = (x.full() for x in self.gaps(*state))
+        return residual.ravel(), slope
+
+    def closed(
+        self, state: State, free: Flags | None = None, rows: Flags | None = None, steps: int = 200
+    ) -> State | None:
+        """The state in which equations hold, from a ``state`` near it; None where it is not found.
+
+        Coordinates move that are ``free``, by default all, for the equations ``rows`` that are
+        marked, by default all.
+        """
+        singular = max(_SINGULAR, self.slack)
+        free = np.ones(self.sizes.size, bool) if free is None else free
+        for _ in range(steps):
+            residual, slope = self.at(state)
+            residual, slope = (residual, slope) if rows is None else (residual[rows], slope[rows])
+            step = np.zeros(self.sizes.size)
+            if free.any():
+                step[free] = np.linalg.lstsq(slope[:, free], -residual, rcond=singular)[0]
             missed, moves = (np.max(np.abs(x), initial=0.0) for x in (residual, step))
             if missed < _CLOSED or (missed < self.slack and moves < _CLOSED):
-                return np.asarray(slope)
-            u = u + step * min(1.0, _LARGEST / (moves + 1e-300))
-            q, u = self.turned(u, q).full().ravel(), np.where(self.resting, 0.0, u)
+                return state
+            if moves < _CLOSED:
+                return None
+            state = self.moved(state, step * min(1.0, _LARGEST / moves))
         return None
+
+    def moved(self, state: State, step: Array) -> State:
+        """The state after a step of all coordinates."""
+        u, q, *given = state
+        u = u + step
+        return np.where(self.resting, 0.0, u), self.turned(u, q).full().ravel(), *given
 
     def rank(self, slope: Array) -> int:
         """Number of independent equations among the derivatives of some loops."""
@@ -137,3 +164,12 @@ class ReleasedLoops:
         scaled = slope / np.where(lengths > max(_NO_SLOPE, self.slack), lengths, 1.0)
         least = max(_DEPENDENT, self.slack)
         return int(np.linalg.matrix_rank(scaled, tol=least)) if scaled.size else 0
+
+
+def _state(multibody: Multibody, numbers: Numbers) -> tuple[Array, Array]:
+    """The coordinates [rad or m], zero for those of balls, and the balls' quaternions."""
+    values = column(ca.SX(0) if c.spherical is not None else c.value for c in multibody.coordinates)
+    quaternions = [
+        quaternion_of(np.reshape(numbers.of(one.axes), (3, 3))) for one in multibody.sphericals
+    ]
+    return np.array(numbers.of(values)), np.array(quaternions).ravel()

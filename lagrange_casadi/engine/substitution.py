@@ -69,6 +69,10 @@ class Numbers:
             for symbol, value in zip(entries(symbols), values, strict=True)
         }
 
+    def has(self, symbols: Expression) -> bool:
+        """Return whether the numbers of all symbols are known."""
+        return all(symbol.element_hash() in self._known for symbol in entries(symbols))
+
     def of(self, expression: Expression) -> list[float]:
         """The entries of an expression all of whose symbols are known."""
         expression = as_expression(expression)

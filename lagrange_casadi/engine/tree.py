@@ -16,7 +16,7 @@ from heapq import heappop, heappush
 from typing import NoReturn
 
 from ..errors import DeclarationError
-from ..model.declared_parts import Body, Ground, Point
+from ..model.declared_parts import Body, Ground, Link, Point, PointMass
 from ..model.joints import Axis, Joint
 from ..model.mechanism import Mechanism
 from ..model.spatial import SpatialMechanism
@@ -100,10 +100,28 @@ def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:
     Raises :class:`DeclarationError` for drives that close a loop among themselves, and for a link
     that only slides on a point.
     """
+    tree, lacking = grow(mechanism, driven)
+    _refuse_unplaced(mechanism, lacking)
+    _refuse_unused(mechanism, tree.two_force_links)
+    moved = {joint for name, (joint, _) in mechanism.coordinates.items() if name in driven}
+    for joint in tree.closing:
+        if joint in moved:
+            _refuse_driven(mechanism, joint, tree.branches, driven)
+        if joint.kind == "screw":
+            # Where its bodies are does not show how often it has turned.
+            raise DeclarationError(
+                f"joint '{joint.name}' is a screw between bodies whose positions already follow"
+                " from drives and other screws; drive the screw itself, or replace it by a"
+                " constraint between their coordinates"
+            )
+    return tree
+
+
+def grow(mechanism: Mechanism, driven: Collection[str]) -> tuple[Tree, list[Link | PointMass]]:
+    """The tree as far as joints carry it, and the bodies that it has no place for."""
     two_force_links = find_two_force_links(mechanism, driven)
     barred = {joint for one in two_force_links for joint in one.joints}
     joints = [joint for joint in mechanism.joints.values() if joint not in barred]
-    given = driven
     driven = {joint.name for name, (joint, _) in mechanism.coordinates.items() if name in driven}
     # What a driven joint can carry one way only is left to it, for its motion would else close a
     # loop.
@@ -139,31 +157,14 @@ def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:
             place(branch.far.body, depth[branch.near.body] + 1)
     taken = {branch.joint for branch in branches}
     waiting = [joint for joint in joints if joint not in taken]
-    _refuse_unplaced(mechanism, depth, two_force_links)
-    _refuse_unused(mechanism, two_force_links)
-    for joint in waiting:
-        if joint.name in driven:
-            _refuse_driven(mechanism, joint, branches, given)
-        if joint.kind == "screw":
-            # Where its bodies are does not show how often it has turned.
-            raise DeclarationError(
-                f"joint '{joint.name}' is a screw between bodies whose positions already follow"
-                " from drives and other screws; drive the screw itself, or replace it by a"
-                " constraint between their coordinates"
-            )
-    return Tree(tuple(branches), tuple(waiting), two_force_links)
-
-
-def _refuse_unplaced(
-    mechanism: Mechanism, placed: Collection[Body], two_force_links: Sequence[TwoForceLink]
-) -> None:
-    """Raise :class:`DeclarationError` for a body that neither the tree nor a bar
-    has a place for.
-    """
     lying = {one.link for one in two_force_links}
-    for body in mechanism.moving:
-        if body in placed or body in lying:
-            continue
+    lacking = [body for body in mechanism.moving if body not in depth and body not in lying]
+    return Tree(tuple(branches), tuple(waiting), two_force_links), lacking
+
+
+def _refuse_unplaced(mechanism: Mechanism, lacking: Sequence[Body]) -> None:
+    """Raise :class:`DeclarationError` for a body that neither tree nor bars have a place for."""
+    for body in lacking:
         if mechanism.space:
             raise DeclarationError(
                 f"'{body.name}' is connected by two-force links only; declare a free() joint from"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
@@ -24,6 +25,9 @@ Rigid: TypeAlias = Callable[[Expression, Expression], tuple[Vector, Inertia]]
 ALL = "all"
 """Name of the mass of everything that moves."""
 
+UNDECLARED = RigidMass(math.nan, ZERO, (ZERO, ZERO, ZERO))
+"""The mass of a link of which none is declared so far."""
+
 
 def mass_properties_of(
     what: str,
@@ -35,14 +39,16 @@ def mass_properties_of(
     rigid: Rigid | None,
     beam: Beam | None,
 ) -> Density | RigidMass:
-    """The mass of a link by one of the ways; ``checked`` takes what is said of an expression, and
-    the expression.
+    """The mass of a link by one of the ways, or none so far; ``checked`` takes what is said of an
+    expression, and the expression.
 
     ``rigid`` reads a centre and moments of inertia; by default those of a plane, two places and one
     moment.
 
-    Raises :class:`DeclarationError` for none of the ways, or more than one.
+    Raises :class:`DeclarationError` for more than one of the ways.
     """
+    if all(one is None for one in (mass, density, centre, inertia, beam)):
+        return UNDECLARED
     if beam is not None and centre is None and mass is None and density is None:
         return Density(beam.course.breaks, tuple(map(tuple, beam.masses())), per_length=True)
     if (mass is None) == (density is None):

@@ -40,7 +40,7 @@ from .limits import check_connected, parameter_values
 from .link_density import Density
 from .load_arguments import Between, LoadDensity, friction, line_load
 from .loads import Force, Friction, LineLoad, Spring, Torque
-from .mass_properties import Rigid, beam_of, mass_properties_of
+from .mass_properties import UNDECLARED, Rigid, beam_of, mass_properties_of
 from .ownership import Ownership
 from .results import Results
 from .validity import demands
@@ -142,7 +142,8 @@ class Mechanism(Declaration):
         length : float, str or casadi.SX
             Distance of the tip from the base [m].
         mass : float, str or casadi.SX, optional
-            Mass [kg]. Alone, it is that of a uniform rod.
+            Mass [kg]. Alone, it is that of a uniform rod. A link may be drawn without, but a scene
+            needs it, or a density.
         density : Density, optional
             Mass per length, of :mod:`.density`, in place of ``mass``.
         centre : tuple, optional
@@ -161,7 +162,7 @@ class Mechanism(Declaration):
         Raises
         ------
         DeclarationError
-            If the name is taken, or the arguments do not determine the mass.
+            If the name is taken, or the arguments contradict each other.
         """
         self.ownership.free("link", name, self.bodies)
         return self._link(name, length, (mass, density, centre, inertia), beam)
@@ -953,11 +954,15 @@ class Mechanism(Declaration):
     def freeze(self) -> None:
         """Check the whole mechanism and end the declaration.
 
-        Raises :class:`DeclarationError` for a part that is not connected to the ground.
+        Raises :class:`DeclarationError` for a part that is not connected to the ground, and for a
+        link without a mass.
         """
         if not self.moving:
             raise DeclarationError(f"mechanism '{self.name}' has no link and no point mass")
         check_connected(self.name, self.ground, self.moving, self.joints.values())
+        for name, link in self.links.items():
+            if link.mass is UNDECLARED:
+                raise DeclarationError(f"link '{name}': expected either mass= or density=")
         self.frozen = True
 
     def values(self, overrides: Mapping[str, float] | None = None) -> dict[str, float]:

@@ -20,6 +20,7 @@ from .joints import Joint, JointKind, Triad, check_ends
 from .link_density import Density
 from .load_arguments import Between, LoadDensity, line_load
 from .loads import Force, LineLoad, Torque
+from .mass_properties import UNDECLARED
 from .measures import Measures
 from .mechanism import Mechanism
 
@@ -114,7 +115,7 @@ class SpatialMechanism(Mechanism):
         Raises
         ------
         DeclarationError
-            If the name is taken, or the arguments do not determine the length or the mass.
+            If the name is taken, or the arguments do not determine the length.
 
         Notes
         -----
@@ -148,7 +149,7 @@ class SpatialMechanism(Mechanism):
 
         link = self._link(name, length, (mass, density, centre, inertia), beam, rigid, aside)
         if accept_inertia:
-            if not isinstance(link.mass, RigidMass):
+            if not isinstance(link.mass, RigidMass) or link.mass is UNDECLARED:
                 raise DeclarationError(f"{what}: accept_inertia needs centre= and inertia=")
             accepted = replace(link.mass, accepted=True)
             self.bodies[name] = link = replace(link, mass=accepted)

@@ -85,7 +85,10 @@ def test_all_programs_draw_the_same_line(name, tmp_path):
 @pytest.mark.parametrize(
     ("says", "declare"),
     {
-        "link 'b': expected either mass= or density=": lambda m, a: m.link("b", length=1),
+        "link 'b': expected either mass= or density=": lambda m, a: [
+            m.revolute("K", a.tip, m.link("b", length=1)),
+            m.freeze(),
+        ],
         "expected either mass= or density=": lambda m, a: m.link(
             "b", length=1, mass=1, density=density.uniform(1)
         ),

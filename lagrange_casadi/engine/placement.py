@@ -1,0 +1,279 @@
+"""Poses of the bodies of a mechanism at an instant, whether its loops close or not.
+
+Nothing need be finished for that: links may lack a mass, joints may be missing or too many, nothing
+need be driven. What can be solved is solved as for an evaluation. Other loops come as near to being
+closed as they can, from the posture that is given.
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from ..base.arrays import Array
+from ..base.rotation import Rotation
+from ..base.scalars import column
+from ..base.symbolic import symbolic
+from ..base.vectors import AXES, ZERO
+from ..model.declared_parts import Point
+from ..model.description import Description
+from ..model.directions import Reference
+from ..model.guiding import guided, laws_of
+from ..model.joints import Joint
+from ..model.limits import parameter_values
+from ..model.mechanism import Mechanism
+from ..model.motion_laws import Motion
+from ..model.sampled_laws import Laws
+from ..model.scene import Scene
+from ..model.scene_arguments import rough_posture
+from ..model.spatial import SpatialMechanism
+from .assembly import assemble
+from .gaps import Gap, gap_of
+from .iteration import Start
+from .kinematics import begun
+from .model_data import described
+from .multibody import Multibody
+from .nearest import Nearest
+from .released_loops import ReleasedLoops, State
+from .sizes import extent
+from .spherical import axes_of
+from .substitution import Numbers
+from .tree import Tree, grow
+
+_TURN, _MOST, _SAMPLES, _HALVES = 0.2, 2000, 2001, 40
+"""Largest change of a driven coordinate in a step of time [rad or mechanism's size], steps, samples
+of drives that measure the change, and halvings of the step after the last instant that closes.
+"""
+
+_BESIDE = 0.25
+"""Room between what hangs on the ground and what does not, of its size."""
+
+
+@dataclass(frozen=True, eq=False)
+class Placement:
+    """The bodies of a mechanism at an instant ``t`` [s].
+
+    ``description`` has the numbers of the mechanism. ``bases`` are the places of the bodies'
+    origins (3,) [m] and ``axes`` their x, y and z, rows (3, 3), both in ground axes and by body.
+    ``driven`` are the coordinates whose motion is given, and ``gaps`` the loops that do not close.
+    """
+
+    t: float
+    description: Description
+    bases: Mapping[str, Array]
+    axes: Mapping[str, Array]
+    driven: tuple[str, ...]
+    gaps: tuple[Gap, ...]
+
+
+def place_scene(
+    scene: Scene,
+    *,
+    t: float | None = None,
+    values: Mapping[str, float] | None = None,
+    closed: bool = False,
+) -> Placement:
+    """Place the mechanism of a scene at an instant [s], by default its first one, as of
+    :func:`place`; parameters have by default the values with which the scene is assembled.
+    """
+    return place(
+        scene.mechanism,
+        motion=scene.motion,
+        start=scene.span[0],
+        t=t,
+        values={**scene.assembly, **(values or {})},
+        posture=scene.posture,
+        closed=closed,
+    )
+
+
+@symbolic
+def place(
+    mechanism: Mechanism,
+    *,
+    motion: Mapping[str, Motion | Sequence[Motion]] | None = None,
+    start: float = 0.0,
+    t: float | None = None,
+    values: Mapping[str, float] | None = None,
+    posture: Mapping[str, Any] | None = None,
+    closed: bool = False,
+) -> Placement:
+    """Place the bodies of a mechanism, which need not be finished, and may be declared further.
+
+    Parameters
+    ----------
+    mechanism
+        The mechanism.
+    motion
+        The laws of driven joints, points and poses, as of a :class:`.Scene`; by default none.
+    start, t
+        The instant at which the posture holds, and the instant that is wanted [s], by default the
+        same.
+    values
+        Values of parameters, by default the parameters' defaults.
+    posture
+        Rough directions of links and coordinates of joints at the ``start``.
+    closed
+        True for the last instant until ``t`` at which all loops close, where they do at the start.
+
+    Returns
+    -------
+    Placement
+        What is driven is where its law has it. Other coordinates are near the posture, or near
+        zero, and so that loops close, or are as little open as they can be.
+    """
+    p = list(parameter_values(mechanism.parameters, values).values())
+    laws = laws_of(mechanism, motion or {})
+    whole, tree, loose = _joined(guided(mechanism, motion or {}), laws)
+    carried = [axis.coordinate for branch in tree.branches for axis in branch.joint.axes]
+    driven = [name for name in carried if name in laws]
+    multibody = assemble(whole, tree, driven, ())
+    law = Laws.of(laws, mechanism.symbols).only(driven).motion
+    rough = mechanism.rough | rough_posture(mechanism, posture or {})
+    numbers = begun(multibody, rough, Start(law, (start, start), p, ""))
+    inputs = [mechanism.time, mechanism.symbols]
+    released = ReleasedLoops.of(multibody, numbers, inputs, [start, p])
+    nearest = Nearest.of(multibody, released, rough)
+    state, left = nearest.found(released.first)
+    if t is not None and t != start and not (closed and left):
+        state, left = _followed(nearest, law, state, t, closed)
+    (size,) = numbers.of(extent(whole))
+    _note(multibody, numbers, released, state)
+    bases, axes = _poses(multibody, numbers, [body.name for body in mechanism.moving])
+    description = described(mechanism, tree, driven, None).at(p)
+    declared = getattr(mechanism, "references", {})
+    _set_beside(bases, axes, description, [name for name in loose if name not in declared])
+    gaps = tuple(gap_of(multibody, multibody.loop_equations[k], numbers, size) for k in left)
+    return Placement(float(state[2]), description, bases, axes, tuple(driven), gaps)
+
+
+def _followed(
+    nearest: Nearest, law: ca.Function, state: State, t: float, closed: bool
+) -> tuple[State, list[int]]:
+    """The state at an instant, from one before, by steps that are small beside a turn, and the
+    loops that are open then; or the last state on the way in which all are ``closed``.
+    """
+    sizes = nearest.released.sizes[nearest.driven]
+    start, p = float(state[2]), state[3]
+
+    def driven_at(t: float, state: State) -> State:
+        """A state that is driven as it is at an instant."""
+        u = state[0].copy()
+        u[nearest.driven] = law(t, p)[0].full().ravel() / sizes
+        return u, state[1], t, p
+
+    samples = np.linspace(start, t, _SAMPLES)
+    ways = np.abs(np.diff(law(samples[None], p)[0].full())).sum(axis=1) / sizes
+    steps = np.linspace(start, t, 2 + int(min(_MOST, np.max(ways, initial=0.0) / _TURN)))[1:]
+    for one in steps:
+        ahead = nearest.closed(driven_at(one, state))
+        if ahead is None and closed:
+            low, high = float(state[2]), one
+            for _ in range(_HALVES):
+                middle = (low + high) / 2.0
+                ahead = nearest.closed(driven_at(middle, state))
+                low, high = (low, middle) if ahead is None else (middle, high)
+                state = state if ahead is None else ahead
+            return state, []
+        if ahead is None:
+            return nearest.found(driven_at(t, state))
+        state = ahead
+    return state, []
+
+
+def _joined(mechanism: Mechanism, driven: Collection[str]) -> tuple[Mechanism, Tree, list[str]]:
+    """The mechanism without what bears on no place, with a joint that holds nothing at each body
+    that no other joint can place; its tree, and these bodies.
+    """
+    whole = copy.copy(mechanism)
+    whole.joints, whole.loads, whole.rows = dict(mechanism.joints), {}, {}
+    loose: list[str] = []
+    tree, lacking = grow(whole, driven)
+    while lacking:
+        body = next((body for body in lacking if body.oriented), lacking[0])
+        loose.append(body.name)
+        joint = _holding_nothing(whole, body)
+        whole.joints[joint.name] = joint
+        tree, lacking = grow(whole, driven)
+    closing = tuple(joint for joint in tree.closing if joint.kind != "screw")
+    return whole, replace(tree, closing=closing), loose
+
+
+def _holding_nothing(mechanism: Mechanism, body: Any) -> Joint:
+    """A joint of a body with the ground that leaves all motions free, all of which are zero where
+    the body was declared to be.
+    """
+    near, far = Point(mechanism.ground, 0.0, 0.0), Point(body, 0.0, 0.0)
+    name, z, x, y = f"{body.name} (loose)", AXES[2], AXES[0], AXES[1]
+    if not isinstance(mechanism, SpatialMechanism):
+        return Joint(name, "planar", near, far, (z, x, y), Rotation())
+    where = mechanism.references.get(body.name, Reference())
+    x, y, z = where.origin
+    return Joint(name, "free", Point(mechanism.ground, x, y, z=z), far, AXES, where.rotation)
+
+
+def _set_beside(
+    bases: dict[str, Array],
+    axes: Mapping[str, Array],
+    description: Description,
+    loose: Sequence[str],
+) -> None:
+    """Move bodies that no chain of joints connects to the ground beside the others, those that are
+    connected with each other together.
+    """
+    joints = description.joints.values()
+    groups = {name: {name} for name in ("ground", *description.bodies)}
+    for joint in joints:
+        one, other = (groups[end.body] for end in joint.ends)
+        one |= other
+        groups |= dict.fromkeys(one, one)
+
+    def corners(bodies: Collection[str]) -> tuple[Array, Array]:
+        """The least and the largest coordinates of bodies."""
+        tips = [bases[b] + (description.bodies[b].length or 0.0) * axes[b][0] for b in bodies]
+        points = np.array([*(bases[b] for b in bodies), *tips] or np.zeros((1, 3)))
+        return points.min(axis=0), points.max(axis=0)
+
+    room, standing = _BESIDE * description.size, groups["ground"] - {"ground"}
+    for name in loose:
+        if name not in standing:
+            (low, _), (bottom, right) = corners(groups[name]), corners(standing)
+            shift = np.array([right[0] + room - low[0], bottom[1] - low[1], 0.0])
+            for body in groups[name]:
+                bases[body] = bases[body] + shift
+            standing |= groups[name]
+
+
+def _note(multibody: Multibody, numbers: Numbers, released: ReleasedLoops, state: State) -> None:
+    """Take the coordinates of a state for the numbers of the symbols of a mechanism."""
+    single = [c for c in multibody.coordinates if c.spherical is None]
+    placed = ca.substitute(
+        column(c.by_values for c in single),
+        column(c.value for c in multibody.coordinates),
+        ca.SX(ca.DM(state[0] * released.sizes)),
+    )
+    numbers.note(column(c.variables for c in single), numbers.of(placed))
+    for one, quaternion in zip(multibody.sphericals, state[1].reshape(-1, 4), strict=True):
+        numbers.note(one.axes, numbers.of(axes_of(ca.SX(ca.DM(quaternion)))))
+
+
+def _poses(
+    multibody: Multibody, numbers: Numbers, bodies: Sequence[str]
+) -> tuple[dict[str, Array], dict[str, Array]]:
+    """The places of the origins of bodies, and their axes, by body, in ground axes."""
+    frames = [multibody.frames[body] for body in bodies]
+    turns = [frame.rotation for frame in frames]
+    rows = column(
+        column([*frame.place_of(ZERO), *turn.x, *turn.y, *turn.z])
+        for frame, turn in zip(frames, turns, strict=True)
+    )
+    found = np.array(numbers.of(rows)).reshape(-1, 4, 3)
+    return (
+        {body: one[0] for body, one in zip(bodies, found, strict=True)},
+        {body: one[1:] for body, one in zip(bodies, found, strict=True)},
+    )
