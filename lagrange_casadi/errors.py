@@ -94,10 +94,12 @@ class LagrangeCasadiError(Exception):
     lists what is valid.
 
     ``exit_status`` is that of the command line: 2 for a mistake in what was asked, 1 for a
-    computation that failed.
+    computation that failed. ``placement`` shows the mechanism where something is wrong with its
+    places: see :class:`.Placement`.
     """
 
     exit_status = 2
+    placement: object = None
 
     def __str__(self) -> str:
         return _line(super().__str__())
@@ -201,9 +203,12 @@ class ModelFileError(LagrangeCasadiError):
 
 
 class AssemblyError(LagrangeCasadiError):
-    """A loop cannot be closed, or is singular, at some instant of the motion."""
+    """A loop cannot be closed, or is singular, at some instant ``t`` of the motion [s], None at its
+    start.
+    """
 
     exit_status = 1
+    t: float | None = None
 
 
 class CompilerError(LagrangeCasadiError):

@@ -10,7 +10,7 @@ from lagrange_casadi.base.quantities import Output
 from lagrange_casadi.base.status import Status
 from lagrange_casadi.base.tables import PLANE, SPACE
 from lagrange_casadi.base.threads import in_threads
-from lagrange_casadi.engine import assembly, blocks, codegen, loops
+from lagrange_casadi.engine import assembly, blocks, codegen, loops, placement
 from lagrange_casadi.engine.codegen import compiler, library
 from lagrange_casadi.engine.codegen.printer import print_functions
 from lagrange_casadi.engine.codegen.stages import compensated, controlled, plain

@@ -116,14 +116,16 @@ Part = tuple[list[Equation], list[Coordinate]]
 """Equations, and the coordinates that they are solved for."""
 
 
-def solving_order(multibody: Multibody, start: Mapping[str, Expression]) -> tuple[Block, ...]:
+def solving_order(
+    multibody: Multibody, posture: Mapping[Coordinate, float], numbers: Numbers
+) -> tuple[Block, ...]:
     """The blocks in the order of solution; among those that can be solved next, first the one that
     fewest joints close.
 
     Where the equations do not match the unknowns, the rank of their Jacobian decides, at the
     assembled start: equations that repeat what others say are kept, in blocks with more equations
-    than unknowns. ``start`` holds numbers at the start: ``posture`` (by coordinate), ``inputs``
-    (symbols) and ``values``.
+    than unknowns. It starts from a rough ``posture``, drives included, and ``numbers`` of time and
+    parameters.
 
     Raises :class:`MobilityError`, with the count of freedoms, where the drives do not match them.
     """
@@ -132,15 +134,11 @@ def solving_order(multibody: Multibody, start: Mapping[str, Expression]) -> tupl
     parts = _decomposed(equations, unknown)
     if any(len(rows) != len(columns) for rows, columns in parts):
         # Drives are free to give way in it, for there may be too many.
-        numbers = Numbers()
-        for symbols, value in zip(start["inputs"], start["values"], strict=True):
-            numbers.note(symbols, np.atleast_1d(value).tolist())
-        place_roughly(multibody, start["posture"], numbers, {})
-        released = ReleasedLoops.of(multibody, numbers, start["inputs"], start["values"])
+        rough = Numbers(numbers)
+        place_roughly(multibody, posture, rough, {})
+        released = ReleasedLoops.of(multibody, rough)
         slopes = released.slopes()
-        slopes = _require_freedom(
-            multibody, len(equations), parts, slopes, released.rank, start["posture"]
-        )
+        slopes = _require_freedom(multibody, len(equations), parts, slopes, released.rank, posture)
         parts = [piece for part in parts for piece in _pieces(part)]
         if multibody.mechanism.space:
             at = (

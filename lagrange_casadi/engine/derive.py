@@ -38,6 +38,7 @@ from .mobility import internal_forces
 from .model_data import ModelData, template
 from .moving import Moving
 from .multibody import Multibody
+from .placement import explain
 from .program import Program
 from .reciprocals import share_reciprocals
 from .sampling import Sampling
@@ -116,7 +117,11 @@ def derived(
     names = scene.wanted if wanted is None else wanted
     listed = texts(names)
     want = Wanted.of(scene.mechanism, names) if listed is None else _wanted(scene, tuple(listed))
-    return _chosen(scene, want, None if values is None else tuple(values.items()))
+    try:
+        return _chosen(scene, want, None if values is None else tuple(values.items()))
+    except (AssemblyError, MobilityError) as error:
+        explain(error, scene, values)
+        raise
 
 
 @functools.lru_cache(maxsize=32)

@@ -1,18 +1,33 @@
-"""Gaps of loops that do not close: between what ends, and how wide they are."""
+"""Gaps of loops that do not close: between what ends they are, how wide, how far links reach, and
+which lengths would close them.
+"""
 
 from __future__ import annotations
 
+import itertools
 import math
-from dataclasses import dataclass
-from typing import Literal
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal, TypeAlias
 
 import numpy as np
 
-from ..base.arrays import Array
+from ..base.arrays import Array, Flags
 from ..base.scalars import column
-from .joint_closure import carried, held_directions, off
-from .multibody import LoopEquations, Multibody
-from .substitution import Numbers
+from ..base.tables import LENGTH
+from ..model.declared_parts import Point
+from ..model.joints import Joint
+from .joint_closure import carried, held_directions
+from .multibody import LoopEquations
+from .nearest import Nearest
+from .released_loops import State
+from .tree import Branch, Tree
+
+_OFFERED = 3
+"""Changes of lengths that are said."""
+
+Step: TypeAlias = tuple[Point, Joint | None, Point]
+"""The way from one body to the next, by a point of each; without a joint along a two-force link."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,59 +49,148 @@ class Gap:
     sentence: str
 
 
-def gap_of(multibody: Multibody, loop: LoopEquations, numbers: Numbers, size: float) -> Gap:
-    """The gap of a loop, where coordinates have some numbers, of a mechanism of a ``size`` [m]."""
-    if loop.two_force_link is not None:
-        bar = loop.two_force_link
-        points = [bar.other(joint) for joint in bar.joints]
-        bodies = tuple(point.body.name for point in points)
-        first, last = (
-            np.array(numbers.of(column(multibody.frames[p.body.name].place_of(p.place))))
-            for p in points
-        )
-        (length,) = numbers.of(bar.length)
-        along = (last - first) / (np.linalg.norm(last - first) or 1.0)
-        ends, angle = np.array([first + length * along, last]), 0.0
-    elif loop.joint is not None:
-        joint = loop.joint
-        parent, child = (multibody.frames[body.name] for body in joint.bodies)
-        bodies = tuple(body.name for body in joint.bodies)
-        there = carried(joint, parent, child)
-        ends = np.array(
-            [
-                numbers.of(column(parent.place_of(there))),
-                numbers.of(column(child.place_of(joint.child.place))),
-            ]
-        )
-        angle = _turned(multibody, loop, numbers)
-    else:
+def gaps_of(nearest: Nearest, state: State, left: Sequence[int]) -> tuple[Gap, ...]:
+    """The gaps of the loops that are ``left`` open in a state."""
+    closed = nearest.rows([k for k in range(len(nearest.loops)) if k not in left])
+    held = nearest.held(state, closed) if left else set()
+    found = []
+    for k in left:
+        gap = _gap(nearest, nearest.multibody.loop_equations[k])
+        words = _reach(nearest, nearest.multibody.loop_equations[k], held) or gap.sentence
+        if lengths := " or ".join(_lengths(nearest, state, closed, nearest.rows([k]))):
+            words += f"; it closes with {lengths}"
+        found.append(replace(gap, sentence=words))
+    return tuple(found)
+
+
+def _gap(nearest: Nearest, loop: LoopEquations) -> Gap:
+    """The gap of a loop, and in words what is apart."""
+    numbers, frames = nearest.numbers, nearest.multibody.frames
+    if loop.declared:
         (residual,) = numbers.of(loop.residual)
-        return Gap(
-            loop.name,
-            loop.kind,
-            (),
-            np.zeros((0, 3)),
-            abs(residual),
-            "",
-            f"constraint '{loop.name}' is {residual:.6g} in place of 0",
+        words = f"constraint '{loop.name}' is {residual:.6g} in place of 0"
+        return Gap(loop.name, loop.kind, (), np.zeros((0, 3)), abs(residual), "", words)
+    if (bar := loop.two_force_link) is not None:
+        one, other = (bar.other(joint) for joint in bar.joints)
+        first, last = nearest.place(one), nearest.place(other)
+        along = (last - first) / (np.linalg.norm(last - first) or 1.0)
+        ends, angle = np.array([first + numbers.of(bar.length)[0] * along, last]), 0.0
+    else:
+        assert loop.joint is not None
+        one, other = loop.joint.parent, loop.joint.child
+        parent, child = (frames[body.name] for body in loop.joint.bodies)
+        there = numbers.of(column(parent.place_of(carried(loop.joint, parent, child))))
+        sines = loop.residual[loop.residual.numel() - held_directions(loop.joint) :]
+        ends, angle = (
+            np.array([there, nearest.place(other)]),
+            math.asin(min(1.0, float(np.linalg.norm(numbers.of(sines))))),
         )
-    apart = float(np.linalg.norm(ends[1] - ends[0]))
-    one, other = bodies
-    where = f"at {loop.kind} '{loop.name}'"
-    if angle > apart / size:
-        sentence = f"{one} and {other} are turned by {math.degrees(angle):.3g} deg too far {where}"
-        return Gap(loop.name, loop.kind, bodies, ends, angle, "rad", sentence)
-    sentence = f"{one} and {other} are {apart:.3g} m apart {where}"
-    return Gap(loop.name, loop.kind, bodies, ends, apart, "m", sentence)
+    apart, bodies = float(np.linalg.norm(ends[1] - ends[0])), (one.body.name, other.body.name)
+    what, where = f"{bodies[0]} and {bodies[1]} are", f"at {loop.kind} '{loop.name}'"
+    if angle * nearest.size > apart:
+        words = f"{what} turned by {math.degrees(angle):.3g} deg against each other {where}"
+        return Gap(loop.name, loop.kind, bodies, ends, angle, "rad", words)
+    return Gap(
+        loop.name, loop.kind, bodies, ends, apart, "m", f"{what} {apart:.3g} m apart {where}"
+    )
 
 
-def _turned(multibody: Multibody, loop: LoopEquations, numbers: Numbers) -> float:
-    """The angle by which a joint's directions miss what the joint holds [rad]."""
-    assert loop.joint is not None
-    sines = loop.residual[loop.residual.numel() - held_directions(loop.joint) :]
-    frames = [multibody.frames[body.name] for body in loop.joint.bodies]
-    turned = off(loop.joint, *frames) if loop.joint.bears_moment else None
-    sine = float(np.linalg.norm(numbers.of(sines)))
-    if turned is None:
-        return math.asin(min(sine, 1.0))
-    return math.atan2(sine, 1.0 - numbers.of(turned)[0])
+def _reach(nearest: Nearest, loop: LoopEquations, held: Collection[str]) -> str:
+    """How far the ends of links are apart, and how far these reach, in words; nothing where the
+    loop is no chain of links that turn, between bodies that are ``held``, or where they reach.
+    """
+    steps = _around(nearest.multibody.tree, loop)
+    still = [leaving.body.name in held for leaving, _, _ in steps]
+    starts = [k for k, one in enumerate(still) if one and not still[(k + 1) % len(steps)]]
+    if len(starts) != 1:
+        return ""
+    run = [*steps[starts[0] :], *steps[: starts[0]]][: 1 + still.count(False)]
+    kinds = [_kind(nearest, joint) for _, joint, _ in run]
+    pins = [k for k, kind in enumerate(kinds) if kind == "pin"]
+    lines = [joint for (_, joint, _), kind in zip(run, kinds, strict=True) if kind == "line"]
+    if "other" in kinds or len(pins) < 2 or len(lines) > 1:
+        return ""
+    lengths = [
+        nearest.length(run[one][2], run[other][0]) for one, other in itertools.pairwise(pins)
+    ]
+    apart, least = nearest.place(run[pins[-1]][2]) - nearest.place(run[pins[0]][0]), 0.0
+    for line in lines:
+        if line is None or line.parent.body.name not in held:
+            return ""
+        carrier = nearest.multibody.frames[line.parent.body.name].rotation
+        along = np.array(nearest.numbers.of(column(carrier.apply(line.triad[0]))))
+        # To the line, not to where the gap leaves what should be on it.
+        back = nearest.place(line.parent) - nearest.place(line.child)
+        apart = apart + (back if kinds[0] != "line" else -back)
+        apart = apart - along * (along @ apart)
+    far, most = float(np.linalg.norm(apart)), sum(lengths)
+    if not lines:
+        least = max(0.0, 2.0 * max(lengths) - most)
+    gap = max(far - most, least - far)
+    if gap <= 0.0:
+        return ""
+    between = {entering.body.name for _, _, entering in run[pins[0] : pins[-1]]}
+    *links, link = [name for name in nearest.multibody.mechanism.bodies if name in between]
+    names = f"{', '.join(links)} and {link}" if links else link
+    led = f" at least, as joint '{lines[0].name}' leads them" if lines and lines[0] else ""
+    reach = (
+        _read(most, gap) if lines or least == most else f"{_read(least, gap)} to {_read(most, gap)}"
+    )
+    return (
+        f"the ends of {names} are {_read(far, gap)} m apart{led}; with"
+        f" {'these lengths' if links else 'this length'} they reach {reach} m"
+    )
+
+
+def _kind(nearest: Nearest, joint: Joint | None) -> str:
+    """Whether links turn about a joint in all ways, slide along a line, or do not move there."""
+    if joint is None:
+        return "pin"
+    driven = joint.axes and all(axis.coordinate in nearest.drives for axis in joint.axes)
+    if joint.kind == "weld" or (driven and joint.kind != "slot"):
+        return "fixed"
+    if joint.kind == "spherical" or (joint.planar and joint.kind == "revolute"):
+        return "pin"
+    return "line" if joint.kind == "prismatic" else "other"
+
+
+def _around(tree: Tree, loop: LoopEquations) -> list[Step]:
+    """The way around a loop, from body to body and back."""
+    bar, joint = loop.two_force_link, loop.joint
+    if bar is not None:
+        first, last = bar.joints
+        one, other = bar.other(first), bar.other(last)
+        closing: list[Step] = [(other, None, bar.on_bar(last)), (bar.on_bar(first), None, one)]
+    elif joint is not None:
+        one, other = joint.parent, joint.child
+        closing = [(other, joint, one)]
+    else:
+        return []
+    led = {branch.far.body: branch for branch in tree.branches}
+    ways: list[list[Branch]] = [[], []]
+    for way, body in zip(ways, (one.body, other.body), strict=True):
+        while body in led:
+            way.append(led[body])
+            body = led[body].near.body
+    up = [(b.far, b.joint, b.near) for b in ways[0] if b not in ways[1]]
+    down = [(b.near, b.joint, b.far) for b in reversed(ways[1]) if b not in ways[0]]
+    return [*up, *down, *closing]
+
+
+def _lengths(nearest: Nearest, state: State, closed: Flags, rows: Flags) -> Iterator[str]:
+    """The changes of one length each that close a gap, in words, the least of them first."""
+    found = []
+    for k, parameter in enumerate(nearest.multibody.mechanism.parameters.values()):
+        before = state[3][k]
+        value = nearest.closing(state, closed, rows, k) if parameter.unit == LENGTH else None
+        if value is not None and max(parameter.low, 0.0) < value <= parameter.high:
+            change = f"{value - before:+.3g}"
+            words = f"{parameter.name} {_read(value, value - before)} m ({change} m)"
+            found.append((abs(float(change)), k, words))
+    yield from (words for _, _, words in sorted(found)[:_OFFERED])
+
+
+def _read(value: float, beside: float) -> str:
+    """A number with three digits, or so many that a difference has two of its own."""
+    digits = 2 + math.ceil(math.log10(max(abs(value / beside), 1e-300)))
+    return f"{value:.{min(max(digits, 3), 15)}g}"

@@ -94,7 +94,7 @@ def solve(multibody: Multibody, posture: Mapping[str, float], start: Start) -> K
             f"the motion is no number where it starts, at t = {start.t:.9g} s{solver.where()};"
             " loops cannot be closed there"
         )
-    blocks = solving_order(multibody, solver.beginning())
+    blocks = solving_order(multibody, solver.beginning(), solver.numbers)
     waiting: list[tuple[int, ...]] = []
     for tried in range(_WAYS):
         try:
@@ -123,7 +123,7 @@ def begun(multibody: Multibody, posture: Mapping[str, float], start: Start) -> N
     """
     solver = _Solver(multibody, dict(posture), start)
     with suppress(AssemblyError, MobilityError):
-        for block in solving_order(multibody, solver.beginning()):
+        for block in solving_order(multibody, solver.beginning(), solver.numbers):
             solver.close(block)
     return solver.roughly()
 
@@ -171,18 +171,10 @@ class _Solver:
         self.numbers.note(variables, self.numbers.of(placed))
         self.known |= zip(driven, ca.vertsplit(placed, ends), strict=False)
 
-    def beginning(self) -> dict[str, Any]:
-        """Data for the count of degrees of freedom: the rough posture, drives included, and the
-        inputs with their values at the start.
-        """
-        mechanism = self.multibody.mechanism
+    def beginning(self) -> dict[Coordinate, float]:
+        """The rough posture, drives included."""
         rough = self._rough([c for c in self.multibody.coordinates if not c.driven], needed=False)
-        rough |= dict(zip(self.known, self.start.driven, strict=True))
-        return {
-            "posture": rough,
-            "inputs": [mechanism.time, mechanism.symbols],
-            "values": [self.start.t, self.start.parameters],
-        }
+        return rough | dict(zip(self.known, self.start.driven, strict=True))
 
     def roughly(self) -> Numbers:
         """The numbers of all coordinates, rough ones of those that are not solved."""
@@ -286,7 +278,11 @@ class _Solver:
             signs: self.numbers.of(ca.substitute(form_values, branches, ca.SX(ca.DM(signs))))
             for signs in itertools.product((1, -1), repeat=len(form.branches))
         }
-        values = {signs: found for signs, (closure, *found) in every.items() if closure > 0.0}
+        values = {
+            signs: found
+            for signs, (closure, *found) in every.items()
+            if closure > 0.0 and not any(map(math.isnan, found))
+        }
         if not values:
             what = (
                 "is at a dead centre"

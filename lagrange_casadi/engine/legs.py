@@ -47,7 +47,7 @@ def solve_leg(
 def _leg(
     joint: Joint, first: Coordinate, later: Sequence[Coordinate], multibody: Multibody
 ) -> tuple[ClosedForm, ...]:
-    branch = multibody.tree.branch_of[multibody.mechanism.coordinates[first.name][0]]
+    branch = multibody.tree.branch_of[multibody.mechanism.coordinates[first.name][0].name]
     foot = multibody.frames[branch.near.body.name].place_of(branch.near.place)
     axis = times(branch.sign, multibody.axes[first.name])
     ends = [

@@ -428,7 +428,7 @@ def _on_parent(multibody: Multibody, joint: Joint, actions: Mapping[str, ca.SX])
         for c in rotations
         if c is not None
     ] + [joint.turned]
-    if joint.child.body is multibody.tree.branch_of[joint].far.body:
+    if joint.child.body is multibody.tree.branch_of[joint.name].far.body:
         for rotation in reversed(turned):
             force, moment = rotation.apply(force), rotation.apply(moment)
     child = functools.reduce(Rotation.then, turned)
@@ -441,7 +441,7 @@ def _on_child(
     """Force and moment on a joint's child, from a mobility of the tree, in the axes of the
     mobility.
     """
-    action = multibody.tree.branch_of[joint].sign * actions[joint.name]
+    action = multibody.tree.branch_of[joint.name].sign * actions[joint.name]
     if multibody.mechanism.space:
         x, y, z, *about = ca.vertsplit(action)
         return (x, y, z), ((about[0], about[1], about[2]) if about else ZERO)

@@ -13,27 +13,43 @@ import itertools
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import casadi as ca
 import numpy as np
 
 from ..base.arrays import Array, Flags
+from ..base.scalars import column
+from ..base.vectors import ZERO
+from ..model.declared_parts import Point
 from .multibody import Multibody
 from .released_loops import ReleasedLoops, State
+from .sizes import extent
+from .substitution import Numbers
 
-_STARTS, _TRIED, _STEPS = 8, 60, 100
+_STARTS, _TRIED, _STEPS = 4, 40, 40
 """Postures from which loops are closed, steps for each, and steps of :meth:`Nearest.least`."""
 
-_LARGEST, _RANK, _FLAT = 0.3, 1e-9, 1e-12
+_LARGEST, _RANK, _FLAT = 0.3, 1e-9, 1e-10
 """Largest step of a coordinate, singular values that are none, and a step that is none."""
+
+_TRIALS, _WEAK, _TIGHT, _OPEN = 20, 1e-3, 1e-4, 1e-9
+"""Values of a parameter that are tried, slopes of a gap that are too small for one, the part of a
+change with less of which a loop must be open, and what is open of an equation that is to hold.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class Nearest:
-    """Loops, by the rows of their equations. Of the coordinates some are ``driven``, the others in
-    the equations are ``free``, and some are ``posed``, given by a posture.
+    """The loops of a mechanism, by the rows of their equations.
+
+    Of the coordinates some are ``driven``, the others in the equations are ``free``, and some are
+    ``posed``, given by a posture. ``numbers`` are those of the mechanism's symbols, and follow
+    :meth:`note`.
     """
 
+    multibody: Multibody
+    numbers: Numbers
     released: ReleasedLoops
     loops: Sequence[slice]
     driven: Flags
@@ -41,15 +57,79 @@ class Nearest:
     posed: Flags
 
     @classmethod
-    def of(cls, multibody: Multibody, released: ReleasedLoops, posed: Collection[str]) -> Nearest:
-        """The loops of a mechanism; ``posed`` names what is in a posture."""
+    def of(cls, multibody: Multibody, numbers: Numbers, posed: Collection[str]) -> Nearest:
+        """The loops of a mechanism near the numbers of its coordinates; ``posed`` names what is in
+        a posture.
+        """
+        released, coordinates = ReleasedLoops.of(multibody, numbers), multibody.coordinates
         ends = np.cumsum([0, *(loop.residual.numel() for loop in multibody.loop_equations)])
         present = released.gaps.sparsity_out(1).get_triplet()[1]
-        held = np.isin(np.arange(released.sizes.size), present)
-        driven = np.array([c.driven for c in multibody.coordinates], bool)
-        given = np.array([c.posture_key in posed for c in multibody.coordinates], bool)
-        loops = [slice(*pair) for pair in itertools.pairwise(ends.tolist())]
-        return cls(released, loops, driven, held & ~driven, given)
+        driven = np.array([c.driven for c in coordinates], bool)
+        return cls(
+            multibody,
+            numbers,
+            released,
+            [slice(*pair) for pair in itertools.pairwise(ends.tolist())],
+            driven,
+            np.isin(np.arange(len(coordinates)), present) & ~driven,
+            np.array([c.posture_key in posed for c in coordinates], bool),
+        )
+
+    @property
+    def drives(self) -> set[str]:
+        """The driven coordinates."""
+        return {c.name for c in self.multibody.coordinates if c.driven}
+
+    @property
+    def size(self) -> float:
+        """The mechanism's size [m]."""
+        return self.numbers.of(extent(self.multibody.mechanism))[0]
+
+    def note(self, state: State) -> None:
+        """Take the coordinates of a state for the numbers of the mechanism's symbols."""
+        values = self.released.placed(*state[:2]).full().ravel()
+        self.numbers.note(self.released.variables, values.tolist())
+
+    def poses(self) -> dict[str, Array]:
+        """The place of the origin of each body, and its axes, rows (4, 3), in ground axes."""
+        frames = self.multibody.frames
+        rows = [
+            row
+            for frame in frames.values()
+            for turn in (frame.rotation,)
+            for row in (frame.place_of(ZERO), turn.x, turn.y, turn.z)
+        ]
+        found = np.array(self.numbers.of(column(itertools.chain(*rows)))).reshape(-1, 4, 3)
+        # A two-force link that does not fit between its ends is not stretched.
+        found[:, 1] /= np.linalg.norm(found[:, 1], axis=1, keepdims=True)
+        return dict(zip(frames, found, strict=True))
+
+    def place(self, point: Point) -> Array:
+        """A point of a body, in ground axes [m]."""
+        frame = self.multibody.frames[point.body.name]
+        return np.array(self.numbers.of(column(frame.place_of(point.place))))
+
+    def length(self, one: Point, other: Point) -> float:
+        """The distance of two points, of one body or of bodies that do not move on each other."""
+        for bar in self.multibody.tree.two_force_links:
+            if one.body is bar.link:
+                return abs(self.numbers.of(bar.length)[0])
+        return float(np.linalg.norm(self.place(one) - self.place(other)))
+
+    def held(self, state: State, closed: Flags) -> set[str]:
+        """The bodies that do not move where equations are kept that are ``closed``."""
+        self.note(state)
+        before, step = self.poses(), np.zeros(self.free.size)
+        across = _kernel(self.released.at(state)[1][np.ix_(closed, self.free)])
+        step[self.free] = 1e-3 * across @ np.cos(np.arange(across.shape[1]))
+        self.note(self.released.moved(state, step))
+        after = self.poses()
+        self.note(state)
+        return {
+            body
+            for body, pose in before.items()
+            if np.abs((after[body] - pose) / [[self.size], [1.0], [1.0], [1.0]]).max() < 1e-9
+        }
 
     def closed(self, state: State, rows: Flags | None = None) -> State | None:
         """A state near another in which equations hold, by default all."""
@@ -63,14 +143,16 @@ class Nearest:
             if (found := self.closed(start)) is not None:
                 return found, []
         closed, left = self.rows([]), []
-        for k in sorted(range(len(self.loops)), key=self._size):
+        for k in range(len(self.loops)):
             closed |= self.rows([k])
             if (found := self.closed(state, closed)) is None:
                 closed &= ~self.rows([k])
                 left.append(k)
             else:
                 state = found
-        return self.least(state, closed), left
+        # Where a sum of squares is largest its slopes are zero too.
+        beside = np.where(self.free, 1e-3 * np.cos(np.arange(self.free.size)), 0.0)
+        return self.least(self.released.moved(state, beside), closed, ~closed), left
 
     def rows(self, loops: Sequence[int]) -> Flags:
         """The equations of loops, marked."""
@@ -79,10 +161,11 @@ class Nearest:
             marked[self.loops[k]] = True
         return marked
 
-    def _size(self, k: int) -> int:
-        """The number of free coordinates of a loop."""
-        _, slope = self.released.at(self.released.first)
-        return int(np.any(slope[self.loops[k]] != 0.0, axis=0)[self.free].sum())
+    @cached_property
+    def _by_parameters(self) -> ca.Function:
+        """The derivatives of the equations by the parameters."""
+        slope = ca.jacobian(self.released.residuals, self.released.given[-1])
+        return ca.Function("by_parameters", self.released.given, [slope])
 
     def _starts(self, state: State) -> Iterator[State]:
         """A state, and others spread beside it, but for the coordinates of a posture."""
@@ -102,37 +185,81 @@ class Nearest:
         total = ca.dot(squares, residuals**2) / 2 + ca.dot(linear, residuals)
         return ca.Function("bend", [u, *rest, squares, linear], [ca.hessian(total, u)[0]])
 
-    def least(self, state: State, closed: Flags) -> State:
-        """The state near another with the least sum of squares of the other equations, while those
-        that are ``closed`` hold.
+    def least(self, state: State, closed: Flags, left: Flags) -> State:
+        """The state near another with the least sum of squares of equations that are ``left``,
+        while those that are ``closed`` hold.
         """
-        size = self.free.sum()
-        for number in range(_STEPS):
+        for _ in range(_STEPS):
             residual, slope = self.released.at(state)
             slope = slope[:, self.free]
-            gradient = slope[~closed].T @ residual[~closed]
-            inverse = np.linalg.pinv(slope[closed], rcond=_RANK)
-            linear = np.zeros(residual.size)
-            linear[closed] = -inverse.T @ gradient
-            bend = self._bend(*state, ~closed, linear).full()
-            bend = bend[np.ix_(self.free, self.free)]
-            back = -inverse @ residual[closed]
+            gradient, linear = self._gradient(residual, slope, closed, left)
+            bend = self._bend(*state, left, linear).full()[np.ix_(self.free, self.free)]
+            if not np.isfinite(bend).all():
+                return state
+            back = -np.linalg.pinv(slope[closed], rcond=_RANK) @ residual[closed]
             across = _kernel(slope[closed])
             turns, ways = np.linalg.eigh(across.T @ bend @ across)
-            least = max(np.abs(turns).max(initial=0.0) * _RANK, 1e-300)
             down = ways.T @ (across.T @ (gradient + bend @ back))
-            small = np.abs(turns) < least
-            along = -ways @ np.where(small, 0.0, down / np.where(small, 1.0, np.abs(turns)))
+            flat = np.abs(turns) <= np.abs(turns).max(initial=0.0) * _RANK
+            along = -ways @ np.where(flat, 0.0, down / np.where(flat, 1.0, np.abs(turns)))
             step = np.zeros(self.free.size)
             step[self.free] = back + across @ along
-            if number == 0:
-                # Where a sum of squares is largest its slopes are zero too.
-                step[self.free] += 1e-3 * np.cos(np.arange(size))
             moves = np.abs(step).max(initial=0.0)
             state = self.released.moved(state, step * min(1.0, _LARGEST / (moves + 1e-300)))
             if moves < _FLAT:
                 break
         return state
+
+    def _gradient(
+        self, residual: Array, slope: Array, closed: Flags, left: Flags
+    ) -> tuple[Array, Array]:
+        """The derivatives of half the sum of squares of equations that are ``left``, and the
+        multipliers of those that are ``closed``, zero for the others.
+        """
+        gradient = slope[left].T @ residual[left]
+        multipliers = np.zeros(residual.size)
+        multipliers[closed] = -np.linalg.pinv(slope[closed], rcond=_RANK).T @ gradient
+        return gradient, multipliers
+
+    def closing(self, state: State, closed: Flags, left: Flags, k: int) -> float | None:
+        """The value of a parameter, by its number, nearest to its own, with which equations hold
+        that are ``left``, and those that are ``closed`` too; None where none is found.
+
+        By Newton's method on the root of the least sum of squares, whose slope is that at fixed
+        coordinates; between a value that does not close and one that does.
+        """
+        p, size = [*state[3]], self.size
+        own = p[k]
+        shut: float | None = None
+
+        def given(value: float, *at: Any) -> State:
+            """A state with another value of the parameter."""
+            return *at, [*p[:k], value, *p[k + 1 :]]
+
+        for _ in range(_TRIALS):
+            residual, slope = self.released.at(state)
+            _, multipliers = self._gradient(residual, slope[:, self.free], closed, left)
+            wide = float(np.linalg.norm(residual[left]))
+            by_value = self._by_parameters(*state).full()[:, k]
+            rate = float((residual * left / wide + multipliers / wide) @ by_value)
+            if abs(rate) * size < _WEAK:
+                return shut
+            value = float(state[3][k])
+            ahead = value - wide / rate
+            if shut is not None and not min(value, shut) < ahead < max(value, shut):
+                ahead = (value + shut) / 2.0
+            if abs(ahead - own) > size:
+                return None
+            if self.closed(given(ahead, *state[:3]), closed | left) is None:
+                state = self.least(given(ahead, *state[:3]), closed, left)
+                if np.abs(self.released.at(state)[0][closed]).max(initial=0.0) > _OPEN:
+                    return shut
+                continue
+            shut, before = ahead, ahead + _TIGHT * (value - ahead)
+            if self.closed(given(before, *state[:3]), closed | left) is None:
+                return shut
+            shut = before
+        return shut
 
 
 def _kernel(slope: Array) -> Array:

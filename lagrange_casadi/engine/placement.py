@@ -8,7 +8,9 @@ closed as they can, from the posture that is given.
 from __future__ import annotations
 
 import copy
+import math
 from collections.abc import Collection, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -16,11 +18,12 @@ import casadi as ca
 import numpy as np
 
 from ..base.arrays import Array
+from ..base.numerals import readable
 from ..base.rotation import Rotation
-from ..base.scalars import column
 from ..base.symbolic import symbolic
-from ..base.vectors import AXES, ZERO
-from ..model.declared_parts import Point
+from ..base.vectors import AXES
+from ..errors import AssemblyError, LagrangeCasadiError, MobilityError
+from ..model.declared_parts import Parameter, Point
 from ..model.description import Description
 from ..model.directions import Reference
 from ..model.guiding import guided, laws_of
@@ -33,21 +36,17 @@ from ..model.scene import Scene
 from ..model.scene_arguments import rough_posture
 from ..model.spatial import SpatialMechanism
 from .assembly import assemble
-from .gaps import Gap, gap_of
+from .gaps import Gap, gaps_of
 from .iteration import Start
 from .kinematics import begun
 from .model_data import described
-from .multibody import Multibody
 from .nearest import Nearest
-from .released_loops import ReleasedLoops, State
-from .sizes import extent
-from .spherical import axes_of
-from .substitution import Numbers
+from .released_loops import State
 from .tree import Tree, grow
 
-_TURN, _MOST, _SAMPLES, _HALVES = 0.2, 2000, 2001, 40
+_TURN, _MOST, _SAMPLES, _TINY = 0.2, 2000, 2001, 1e-12
 """Largest change of a driven coordinate in a step of time [rad or mechanism's size], steps, samples
-of drives that measure the change, and halvings of the step after the last instant that closes.
+of drives that measure the change, and the part of a step with less of which no loop closes.
 """
 
 _BESIDE = 0.25
@@ -88,8 +87,24 @@ def place_scene(
         t=t,
         values={**scene.assembly, **(values or {})},
         posture=scene.posture,
+        drives=scene.weights,
         closed=closed,
     )
+
+
+def explain(
+    error: AssemblyError | MobilityError, scene: Scene, values: Mapping[str, float] | None
+) -> None:
+    """Give an error the placement that shows it, and say in its message what is apart; or of a
+    motion that began, the last instant at which all loops close.
+    """
+    t = error.t if isinstance(error, AssemblyError) else None
+    with suppress(LagrangeCasadiError):
+        found = place_scene(scene, t=t, values=values, closed=t is not None)
+        words = [gap.sentence for gap in found.gaps]
+        if t is not None and found.t != t:
+            words.append(f"all loops close until t = {readable(found.t, t)} s")
+        error.placement, error.args = found, ("; ".join([str(error), *words]),)
 
 
 @symbolic
@@ -101,6 +116,7 @@ def place(
     t: float | None = None,
     values: Mapping[str, float] | None = None,
     posture: Mapping[str, Any] | None = None,
+    drives: Collection[str] | None = None,
     closed: bool = False,
 ) -> Placement:
     """Place the bodies of a mechanism, which need not be finished, and may be declared further.
@@ -118,6 +134,8 @@ def place(
         Values of parameters, by default the parameters' defaults.
     posture
         Rough directions of links and coordinates of joints at the ``start``.
+    drives
+        The joints whose efforts make the motion, by default those that are driven.
     closed
         True for the last instant until ``t`` at which all loops close, where they do at the start.
 
@@ -127,29 +145,51 @@ def place(
         What is driven is where its law has it. Other coordinates are near the posture, or near
         zero, and so that loops close, or are as little open as they can be.
     """
-    p = list(parameter_values(mechanism.parameters, values).values())
+    given = parameter_values(mechanism.parameters, values)
     laws = laws_of(mechanism, motion or {})
-    whole, tree, loose = _joined(guided(mechanism, motion or {}), laws)
+    whole, tree, loose = _joined(_measured(guided(mechanism, motion or {}), given), laws)
+    p = list(parameter_values(whole.parameters, given).values())
     carried = [axis.coordinate for branch in tree.branches for axis in branch.joint.axes]
     driven = [name for name in carried if name in laws]
     multibody = assemble(whole, tree, driven, ())
-    law = Laws.of(laws, mechanism.symbols).only(driven).motion
+    law = Laws.of(laws, whole.symbols).only(driven).motion
     rough = mechanism.rough | rough_posture(mechanism, posture or {})
     numbers = begun(multibody, rough, Start(law, (start, start), p, ""))
-    inputs = [mechanism.time, mechanism.symbols]
-    released = ReleasedLoops.of(multibody, numbers, inputs, [start, p])
-    nearest = Nearest.of(multibody, released, rough)
-    state, left = nearest.found(released.first)
+    nearest = Nearest.of(multibody, numbers, rough)
+    state, left = nearest.found(nearest.released.first)
     if t is not None and t != start and not (closed and left):
         state, left = _followed(nearest, law, state, t, closed)
-    (size,) = numbers.of(extent(whole))
-    _note(multibody, numbers, released, state)
-    bases, axes = _poses(multibody, numbers, [body.name for body in mechanism.moving])
-    description = described(mechanism, tree, driven, None).at(p)
+    gaps = gaps_of(nearest, state, left)
+    nearest.note(state)
+    poses = nearest.poses()
+    description = described(mechanism, tree, laws, drives).at(list(given.values()))
+    bases = {name: poses[name][0] for name in description.bodies}
+    axes = {name: poses[name][1:] for name in description.bodies}
     declared = getattr(mechanism, "references", {})
     _set_beside(bases, axes, description, [name for name in loose if name not in declared])
-    gaps = tuple(gap_of(multibody, multibody.loop_equations[k], numbers, size) for k in left)
     return Placement(float(state[2]), description, bases, axes, tuple(driven), gaps)
+
+
+def _measured(mechanism: Mechanism, values: Mapping[str, float]) -> Mechanism:
+    """The mechanism with a parameter for the length of each link that has a number for it."""
+    found = copy.copy(mechanism)
+    found.parameters, found.joints = dict(mechanism.parameters), dict(mechanism.joints)
+    symbols: dict[Any, Any] = {}
+    for name, link in mechanism.links.items():
+        if not isinstance(link.length, ca.SX) and link.length > 0.0:
+            what, symbol = f"length of {name}", ca.SX.sym(f"length_of_{name}")
+            found.parameters[what] = Parameter(what, link.length, "m", 0.0, math.inf, symbol)
+            symbols[link] = symbol
+
+    def measured(point: Point) -> Point:
+        at_tip = point.end == "tip" and point.body in symbols
+        return replace(point, x=symbols[point.body]) if at_tip else point
+
+    for name, joint in mechanism.joints.items():
+        found.joints[name] = replace(
+            joint, parent=measured(joint.parent), child=measured(joint.child)
+        )
+    return found
 
 
 def _followed(
@@ -159,7 +199,7 @@ def _followed(
     loops that are open then; or the last state on the way in which all are ``closed``.
     """
     sizes = nearest.released.sizes[nearest.driven]
-    start, p = float(state[2]), state[3]
+    start, p = state[2], state[3]
 
     def driven_at(t: float, state: State) -> State:
         """A state that is driven as it is at an instant."""
@@ -169,21 +209,12 @@ def _followed(
 
     samples = np.linspace(start, t, _SAMPLES)
     ways = np.abs(np.diff(law(samples[None], p)[0].full())).sum(axis=1) / sizes
-    steps = np.linspace(start, t, 2 + int(min(_MOST, np.max(ways, initial=0.0) / _TURN)))[1:]
-    for one in steps:
-        ahead = nearest.closed(driven_at(one, state))
-        if ahead is None and closed:
-            low, high = float(state[2]), one
-            for _ in range(_HALVES):
-                middle = (low + high) / 2.0
-                ahead = nearest.closed(driven_at(middle, state))
-                low, high = (low, middle) if ahead is None else (middle, high)
-                state = state if ahead is None else ahead
-            return state, []
-        if ahead is None:
-            return nearest.found(driven_at(t, state))
-        state = ahead
-    return state, []
+    step = least = (t - start) / (1 + min(_MOST, np.max(ways, initial=0.0) / _TURN))
+    while state[2] != t and abs(step) > abs(least) * _TINY:
+        at = state[2] + step
+        ahead = nearest.closed(driven_at(t if abs(at - start) > abs(t - start) else at, state))
+        state, step = (state, step / 2.0) if ahead is None else (ahead, step)
+    return (state, []) if closed or state[2] == t else nearest.found(driven_at(t, state))
 
 
 def _joined(mechanism: Mechanism, driven: Collection[str]) -> tuple[Mechanism, Tree, list[str]]:
@@ -247,33 +278,3 @@ def _set_beside(
             for body in groups[name]:
                 bases[body] = bases[body] + shift
             standing |= groups[name]
-
-
-def _note(multibody: Multibody, numbers: Numbers, released: ReleasedLoops, state: State) -> None:
-    """Take the coordinates of a state for the numbers of the symbols of a mechanism."""
-    single = [c for c in multibody.coordinates if c.spherical is None]
-    placed = ca.substitute(
-        column(c.by_values for c in single),
-        column(c.value for c in multibody.coordinates),
-        ca.SX(ca.DM(state[0] * released.sizes)),
-    )
-    numbers.note(column(c.variables for c in single), numbers.of(placed))
-    for one, quaternion in zip(multibody.sphericals, state[1].reshape(-1, 4), strict=True):
-        numbers.note(one.axes, numbers.of(axes_of(ca.SX(ca.DM(quaternion)))))
-
-
-def _poses(
-    multibody: Multibody, numbers: Numbers, bodies: Sequence[str]
-) -> tuple[dict[str, Array], dict[str, Array]]:
-    """The places of the origins of bodies, and their axes, by body, in ground axes."""
-    frames = [multibody.frames[body] for body in bodies]
-    turns = [frame.rotation for frame in frames]
-    rows = column(
-        column([*frame.place_of(ZERO), *turn.x, *turn.y, *turn.z])
-        for frame, turn in zip(frames, turns, strict=True)
-    )
-    found = np.array(numbers.of(rows)).reshape(-1, 4, 3)
-    return (
-        {body: one[0] for body, one in zip(bodies, found, strict=True)},
-        {body: one[1:] for body, one in zip(bodies, found, strict=True)},
-    )

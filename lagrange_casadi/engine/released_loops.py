@@ -11,7 +11,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..base.arrays import Array, Expression, Flags
+from ..base.arrays import Array, Flags
 from ..base.scalars import column
 from .multibody import Multibody
 from .sizes import extent, units
@@ -29,8 +29,8 @@ is there twice, or a turntable, which turns a loop with the gap that it may have
 
 
 State = tuple[Any, ...]
-"""Coordinates u, slides beside the mechanism's extent; quaternions q of balls; and the numbers of
-inputs.
+"""Coordinates u, slides beside the mechanism's extent; quaternions q of balls; the time; and the
+parameters.
 """
 
 
@@ -40,14 +40,16 @@ class ReleasedLoops:
     mechanism's extent, and so are gaps; a constraint is beside its slopes where it starts.
 
     ``gaps(u, q, *inputs)`` gives the equations and their derivatives by u; ``turned(u, q)`` the
-    quaternions after the small rotations u of balls, which ``resting`` marks. ``residuals`` are the
-    equations over ``given``, the symbols of u and q and the inputs. ``first`` is the state at the
-    start, and ``sizes`` are the units of u. What is below ``slack`` may be the rounding of axes and
-    places.
+    quaternions after the small rotations u of balls, which ``resting`` marks; ``placed(u, q)`` the
+    coordinates' ``variables``. ``residuals`` are the equations over ``given``, the symbols of u and
+    q and the inputs. ``first`` is the state at the start, and ``sizes`` are the units of u. What is
+    below ``slack`` may be the rounding of axes and places.
     """
 
     gaps: Any
     turned: Any
+    placed: Any
+    variables: Any
     residuals: Any
     given: Sequence[Any]
     first: State
@@ -56,21 +58,16 @@ class ReleasedLoops:
     slack: float
 
     @classmethod
-    def of(
-        cls,
-        multibody: Multibody,
-        numbers: Numbers,
-        inputs: Sequence[Expression],
-        values: Sequence[Expression],
-    ) -> ReleasedLoops:
-        """Coordinates near their ``numbers``; ``values`` are those of the symbols ``inputs``."""
-        coordinates = multibody.coordinates
+    def of(cls, multibody: Multibody, numbers: Numbers) -> ReleasedLoops:
+        """Coordinates near their ``numbers``, where time and parameters have theirs too."""
+        coordinates, mechanism = multibody.coordinates, multibody.mechanism
+        inputs = [mechanism.time, mechanism.symbols]
         turned = {spherical: ca.SX.sym("quaternion", 4) for spherical in multibody.sphericals}
         free = ca.SX.sym("u", len(coordinates))
         single = [c for c in coordinates if c.spherical is None]
         symbols = column(c.value for c in coordinates)
         counted = column(c.by_values for c in single)
-        (size,) = numbers.of(extent(multibody.mechanism))
+        (size,) = numbers.of(extent(mechanism))
         sizes = np.array([size if c.kind == "slide" else 1.0 for c in coordinates])
         placed = [ca.substitute(counted, symbols, free * ca.DM(sizes))]
         # Of balls a step is a small rotation of where they are.
@@ -90,7 +87,7 @@ class ReleasedLoops:
         )
         quaternion = column(turned.values())
         u, q = _state(multibody, numbers)
-        first = u / sizes, q, *values
+        first = u / sizes, q, *numbers.of(mechanism.time), numbers.of(mechanism.symbols)
         given = [free, quaternion, *inputs]
         slope = ca.Function("slope", given, [ca.jacobian(residuals, free)])
         rows = np.linalg.norm(slope(*first).full(), axis=1)
@@ -108,6 +105,8 @@ class ReleasedLoops:
                 [free, quaternion],
                 [column(turn(turned[spherical], local[spherical]) for spherical in turned)],
             ),
+            ca.Function("placed", given[:2], [column(placed)]),
+            column(variables),
             residuals,
             given,
             first,
@@ -141,6 +140,8 @@ class ReleasedLoops:
         for _ in range(steps):
             residual, slope = self.at(state)
             residual, slope = (residual, slope) if rows is None else (residual[rows], slope[rows])
+            if not np.isfinite(slope).all() or not np.isfinite(residual).all():
+                return None
             step = np.zeros(self.sizes.size)
             if free.any():
                 step[free] = np.linalg.lstsq(slope[:, free], -residual, rcond=singular)[0]

@@ -59,8 +59,8 @@ class Expressions:
 class Numbers:
     """Numbers by the symbols that they stand for."""
 
-    def __init__(self) -> None:
-        self._known: dict[int, float] = {}
+    def __init__(self, others: Numbers | None = None) -> None:
+        self._known: dict[int, float] = {} if others is None else dict(others._known)
 
     def note(self, symbols: Expression, values: Sequence[float]) -> None:
         """Let numbers stand for symbols, entry by entry."""

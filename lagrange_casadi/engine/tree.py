@@ -59,9 +59,9 @@ class Tree:
     two_force_links: tuple[TwoForceLink, ...] = ()
 
     @cached_property
-    def branch_of(self) -> dict[Joint, Branch]:
-        """The branch of each joint that closes no loop."""
-        return {branch.joint: branch for branch in self.branches}
+    def branch_of(self) -> dict[str, Branch]:
+        """The branch of each joint that closes no loop, by the joint's name."""
+        return {branch.joint.name: branch for branch in self.branches}
 
     @cached_property
     def two_force_link_of(self) -> dict[Joint, TwoForceLink]:
@@ -90,7 +90,7 @@ class Tree:
         """Return whether the motion of a joint along an axis is an output: not the angles of one
         with three turns that closes a loop.
         """
-        return axis.kind == "slide" or joint.turns < 3 or joint in self.branch_of
+        return axis.kind == "slide" or joint.turns < 3 or joint.name in self.branch_of
 
 
 def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:

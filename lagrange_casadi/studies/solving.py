@@ -14,8 +14,9 @@ from ..engine.instants.evaluation_method import EvaluationMethod, seconds
 from ..engine.instants.from_table import columns
 from ..engine.instants.phases import outputs_of, phases
 from ..engine.instants.refusing import refuse, refuse_laws
+from ..engine.placement import explain
 from ..engine.program import Program
-from ..errors import CertificateWarning, DeclarationError, warn
+from ..errors import AssemblyError, CertificateWarning, DeclarationError, warn
 from ..model.even_points import checked_ratios, points
 from ..model.scene import Scene
 from ..model.scene_arguments import Elastic
@@ -71,7 +72,11 @@ def solve(
     if method.table is not None:
         program, indeterminate = determinate(program, instants.t, p)
     evaluated, provenance = columns(program, instants.t, p, method, threads)
-    refuse(program, evaluated, instants.t, p, method)
+    try:
+        refuse(program, evaluated, instants.t, p, method)
+    except AssemblyError as error:
+        explain(error, scene, values)
+        raise
     out = np.asarray(evaluated.out, float)
     data.corners.refuse_constraints(lambda name: program.seen(name, out), p.tolist())
     indeterminate += undetermined(program, out, p, method)

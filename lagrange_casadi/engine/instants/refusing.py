@@ -35,12 +35,13 @@ _SAMPLED = 4001
 
 @dataclass(frozen=True)
 class Refusal:
-    """Reason why there is no result: a status, and a message that names the joint, the instant and
-    the driven coordinates.
+    """Reason why there is no result at an instant ``t`` [s]: a status, and a message that names the
+    joint, the instant and the driven coordinates.
     """
 
     status: Status
     message: str
+    t: float
 
 
 @functools.lru_cache(maxsize=64)
@@ -70,7 +71,9 @@ def refuse(
     """Raise :class:`AssemblyError` for the first instant that has no result."""
     found = refusal(program, evaluated, t, p, method)
     if found is not None:
-        raise AssemblyError(found.message)
+        error = AssemblyError(found.message)
+        error.t = found.t
+        raise error
 
 
 def refusal(
@@ -105,7 +108,7 @@ def refusal(
             else ""
         )
         words = words_of(program, int(numbers[i]), out, most, at, loops)
-    return Refusal(status, _beyond(program, p, precision, at) or words)
+    return Refusal(status, _beyond(program, p, precision, at) or words, float(t[i]))
 
 
 def words_of(
