@@ -96,7 +96,7 @@ def _gap(nearest: Nearest, loop: LoopEquations) -> Gap:
 
 
 def _reach(nearest: Nearest, loop: LoopEquations, held: Collection[str]) -> str:
-    """How far the ends of links are apart, and how far these reach, in words; nothing where the
+    """Say how far the ends of links are apart, and how far these reach, in words; nothing where the
     loop is no chain of links that turn, between bodies that are ``held``, or where they reach.
     """
     steps = _around(nearest.multibody.tree, loop)
@@ -143,7 +143,7 @@ def _reach(nearest: Nearest, loop: LoopEquations, held: Collection[str]) -> str:
 
 
 def _kind(nearest: Nearest, joint: Joint | None) -> str:
-    """Whether links turn about a joint in all ways, slide along a line, or do not move there."""
+    """Say whether links turn about a joint in all ways, slide along a line, or rest there."""
     if joint is None:
         return "pin"
     driven = joint.axes and all(axis.coordinate in nearest.drives for axis in joint.axes)

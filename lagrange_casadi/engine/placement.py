@@ -147,7 +147,7 @@ def place(
     """
     given = parameter_values(mechanism.parameters, values)
     laws = laws_of(mechanism, motion or {})
-    whole, tree, loose = _joined(_measured(guided(mechanism, motion or {}), given), laws)
+    whole, tree, floating = _joined(_measured(guided(mechanism, motion or {}), given), laws)
     p = list(parameter_values(whole.parameters, given).values())
     carried = [axis.coordinate for branch in tree.branches for axis in branch.joint.axes]
     driven = [name for name in carried if name in laws]
@@ -166,7 +166,7 @@ def place(
     bases = {name: poses[name][0] for name in description.bodies}
     axes = {name: poses[name][1:] for name in description.bodies}
     declared = getattr(mechanism, "references", {})
-    _set_beside(bases, axes, description, [name for name in loose if name not in declared])
+    _set_beside(bases, axes, description, [name for name in floating if name not in declared])
     return Placement(float(state[2]), description, bases, axes, tuple(driven), gaps)
 
 
@@ -223,16 +223,16 @@ def _joined(mechanism: Mechanism, driven: Collection[str]) -> tuple[Mechanism, T
     """
     whole = copy.copy(mechanism)
     whole.joints, whole.loads, whole.rows = dict(mechanism.joints), {}, {}
-    loose: list[str] = []
+    floating: list[str] = []
     tree, lacking = grow(whole, driven)
     while lacking:
         body = next((body for body in lacking if body.oriented), lacking[0])
-        loose.append(body.name)
+        floating.append(body.name)
         joint = _holding_nothing(whole, body)
         whole.joints[joint.name] = joint
         tree, lacking = grow(whole, driven)
     closing = tuple(joint for joint in tree.closing if joint.kind != "screw")
-    return whole, replace(tree, closing=closing), loose
+    return whole, replace(tree, closing=closing), floating
 
 
 def _holding_nothing(mechanism: Mechanism, body: Any) -> Joint:
@@ -240,7 +240,7 @@ def _holding_nothing(mechanism: Mechanism, body: Any) -> Joint:
     the body was declared to be.
     """
     near, far = Point(mechanism.ground, 0.0, 0.0), Point(body, 0.0, 0.0)
-    name, z, x, y = f"{body.name} (loose)", AXES[2], AXES[0], AXES[1]
+    name, z, x, y = f"{body.name} (floating)", AXES[2], AXES[0], AXES[1]
     if not isinstance(mechanism, SpatialMechanism):
         return Joint(name, "planar", near, far, (z, x, y), Rotation())
     where = mechanism.references.get(body.name, Reference())
@@ -252,7 +252,7 @@ def _set_beside(
     bases: dict[str, Array],
     axes: Mapping[str, Array],
     description: Description,
-    loose: Sequence[str],
+    floating: Sequence[str],
 ) -> None:
     """Move bodies that no chain of joints connects to the ground beside the others, those that are
     connected with each other together.
@@ -271,7 +271,7 @@ def _set_beside(
         return points.min(axis=0), points.max(axis=0)
 
     room, standing = _BESIDE * description.size, groups["ground"] - {"ground"}
-    for name in loose:
+    for name in floating:
         if name not in standing:
             (low, _), (bottom, right) = corners(groups[name]), corners(standing)
             shift = np.array([right[0] + room - low[0], bottom[1] - low[1], 0.0])
