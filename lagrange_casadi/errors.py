@@ -191,7 +191,11 @@ class PostureError(DeclarationError):
 
 
 class MobilityError(DeclarationError):
-    """The number of drives does not fit the mechanism's degrees of freedom."""
+    """The number of drives does not fit the degrees of freedom; these were counted where the
+    mechanism was ``assembled``, if it can be.
+    """
+
+    assembled: bool = True
 
 
 class CaseError(LagrangeCasadiError):

@@ -384,7 +384,9 @@ def _require_freedom(
                 multibody.mechanism, [c.name for c in multibody.coordinates if c.driven]
             )
         )
-    raise MobilityError(
+    error = MobilityError(
         f"mechanism '{multibody.mechanism.name}' has {freedom} degree(s) of freedom ({how}) and"
         f" {driven} drive(s); {advice}"
     )
+    error.assembled = slopes is not None
+    raise error

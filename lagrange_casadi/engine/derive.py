@@ -93,7 +93,11 @@ def compile_scene(
         If the loops cannot be solved.
     """
     values = None if parameters is None else scene.values(parameters)
-    program, _ = derived(scene, wanted, values)
+    try:
+        program, _ = derived(scene, wanted, values)
+    except (AssemblyError, MobilityError) as error:
+        explain(error, scene, values)
+        raise
     return program
 
 
@@ -117,11 +121,7 @@ def derived(
     names = scene.wanted if wanted is None else wanted
     listed = texts(names)
     want = Wanted.of(scene.mechanism, names) if listed is None else _wanted(scene, tuple(listed))
-    try:
-        return _chosen(scene, want, None if values is None else tuple(values.items()))
-    except (AssemblyError, MobilityError) as error:
-        explain(error, scene, values)
-        raise
+    return _chosen(scene, want, None if values is None else tuple(values.items()))
 
 
 @functools.lru_cache(maxsize=32)

@@ -191,11 +191,12 @@ class Nearest:
         """
         for _ in range(_STEPS):
             residual, slope = self.released.at(state)
+            if not np.isfinite(slope).all():
+                break
             slope = slope[:, self.free]
             gradient, linear = self._gradient(residual, slope, closed, left)
-            bend = self._bend(*state, left, linear).full()[np.ix_(self.free, self.free)]
-            if not np.isfinite(bend).all():
-                return state
+            bend = np.nan_to_num(self._bend(*state, left, linear).full())
+            bend = bend[np.ix_(self.free, self.free)]
             back = -np.linalg.pinv(slope[closed], rcond=_RANK) @ residual[closed]
             across = _kernel(slope[closed])
             turns, ways = np.linalg.eigh(across.T @ bend @ across)

@@ -101,13 +101,17 @@ def explain(
     t = error.t if isinstance(error, AssemblyError) else None
     with suppress(LagrangeCasadiError):
         found = place_scene(scene, t=t, values=values, closed=t is not None)
-        words = [gap.sentence for gap in found.gaps]
+        # Where parts fit, and drives are too many, what is open with these says nothing of parts.
+        fits = isinstance(error, MobilityError) and error.assembled
+        words = [] if fits else [gap.sentence for gap in found.gaps]
         if t is not None and found.t != t:
+            words = [gap.sentence for gap in place_scene(scene, t=t, values=values).gaps]
             words.append(f"all loops close until t = {readable(found.t, t)} s")
         error.placement, error.args = found, ("; ".join([str(error), *words]),)
 
 
 @symbolic
+@np.errstate(all="ignore")
 def place(
     mechanism: Mechanism,
     *,

@@ -20,7 +20,6 @@ from ...base.vocabulary import Precision
 from ...errors import AssemblyError, DeclarationError
 from ...model.beyond_ends import BEYOND
 from ..codegen.stages import plain
-from ..iteration import LARGEST_STEP
 from ..kinematics import where
 from ..model_data import ModelData
 from ..program import Program
@@ -29,7 +28,6 @@ from .backends import Evaluated, Interpreter
 from .evaluation_method import EvaluationMethod
 from .passed_dead_centres import Placed, dead_steps
 
-_TRIALS, _WIDE = 100, 0.1
 _SAMPLED = 4001
 
 
@@ -102,25 +100,16 @@ def refusal(
     if status in (Status.OK, Status.AT_REST):
         status, words = Status.NOT_FINITE, _not_finite(program, out, at)
     else:
-        loops = (
-            _unclosed_loops(program, evaluated.iterated[:, i], float(t[i]), p)
-            if status == Status.NOT_CONVERGED
-            else ""
-        )
-        words = words_of(program, int(numbers[i]), out, most, at, loops)
+        words = words_of(program, int(numbers[i]), out, most, at)
     return Refusal(status, _beyond(program, p, precision, at) or words, float(t[i]))
 
 
-def words_of(
-    program: Program, number: int, out: Array, most: Sequence[float], at: str, loops: str = ""
-) -> str:
-    """Message for the rule of a number, broken by columns ``out`` (columns,) ``at`` some instant;
-    ``loops`` are those that iteration did not close, if they are known.
-    """
+def words_of(program: Program, number: int, out: Array, most: Sequence[float], at: str) -> str:
+    """Message for the rule of a number, broken by columns ``out`` (columns,) ``at`` an instant."""
     rule, k = program.rules[number - 1]
     if k is None:
         assert program.newton is not None
-        it = Instance("", loops or program.newton.joints, at, math.nan, math.nan)
+        it = Instance("", program.newton.joints, at, math.nan, math.nan)
     else:
         part, column = str(program.bounds[k].part), program.bounds[k].column
         it = Instance(part, program.data.closing(part), at, float(out[column]), most[k])
@@ -211,28 +200,6 @@ def _beyond(program: Program, p: Array, precision: Precision, at: str) -> str | 
             )
             return f"the mechanism has no result {at}: {what}"
     return None
-
-
-def _unclosed_loops(program: Program, start: Array, t: float, p: Array) -> str:
-    """Describe the loops that iteration does not close at an instant: those with the largest
-    residuals, or all if these are not known.
-
-    What it was begun from says nothing of that: it goes on from there, each coordinate by steps of
-    its own, so that loops that can be closed are.
-    """
-    assert program.newton is not None
-    motion, z = program.motion(t, p), start[:, None]
-    largest = LARGEST_STEP * np.where(program.newton.turning, 1.0, program.extent(p))[:, None]
-    for _ in range(_TRIALS):
-        correction, size = (found.full() for found in program.newton.step(z, t, motion[0], p))
-        z = z + np.clip(correction * max(1.0, float(size[0, 0]) / LARGEST_STEP), -largest, largest)
-    out = program.instant(t, *motion, z, p).full()[:, 0]
-    gaps = {closing: abs(float(out[k])) for closing, k in program.checks("gap").items()}
-    widest = max(gaps.values(), default=math.nan)
-    remaining = [
-        program.data.closing(closing) for closing, gap in gaps.items() if gap > _WIDE * widest
-    ]
-    return ", ".join(remaining) if 0 < len(remaining) < len(gaps) else program.newton.joints
 
 
 def _not_finite(program: Program, out: Array, at: str) -> str:

@@ -16,7 +16,7 @@ import numpy as np
 from ...base.arrays import Array, Json, spread
 from ...base.space import in_words, require
 from ...base.vocabulary import Keep, PeakSearch, Precision
-from ...engine.derive import compile_scene
+from ...engine.derive import compile_scene, derived
 from ...errors import AssemblyError, DeclarationError, MobilityError, ParameterError, SizeError
 from ...model.description import Description
 from ...model.even_points import checked_ratios
@@ -243,10 +243,10 @@ def _assembly(
     """Return values with which a scene is assembled: its own, None; else those of the first of some
     designs that can be.
 
-    Raises what :func:`.compile_scene` does for the scene's own where there is none.
+    Raises what :func:`.derived` does for the scene's own where there is none.
     """
     try:
-        compile_scene(scene, wanted)
+        derived(scene, wanted, None)
     except (AssemblyError, MobilityError):
         for number in spread(designs.size, _TRIED):
             row = dict(
@@ -258,7 +258,7 @@ def _assembly(
             )
             tried = {**values, **row}
             try:
-                compile_scene(scene, wanted, parameters=tried)
+                derived(scene, wanted, scene.values(tried))
             except (AssemblyError, DeclarationError, ParameterError):
                 continue
             return tried
