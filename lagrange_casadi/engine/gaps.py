@@ -26,8 +26,8 @@ from .tree import Branch, Tree
 _OFFERED = 3
 """Changes of lengths that are said."""
 
-Step: TypeAlias = tuple[Point, Joint | None, Point]
-"""The way from one body to the next, by a point of each; without a joint along a two-force link."""
+Step: TypeAlias = tuple[Point, Joint, Point]
+"""The way from one body to the next, by a point of each."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,11 +111,12 @@ def _reach(nearest: Nearest, loop: LoopEquations, held: Collection[str]) -> str:
     if "other" in kinds or len(pins) < 2 or len(lines) > 1:
         return ""
     lengths = [
-        nearest.length(run[one][2], run[other][0]) for one, other in itertools.pairwise(pins)
+        float(np.linalg.norm(nearest.place(run[one][2]) - nearest.place(run[other][0])))
+        for one, other in itertools.pairwise(pins)
     ]
     apart, least = nearest.place(run[pins[-1]][2]) - nearest.place(run[pins[0]][0]), 0.0
     for line in lines:
-        if line is None or line.parent.body.name not in held:
+        if line.parent.body.name not in held:
             return ""
         carrier = nearest.multibody.frames[line.parent.body.name].rotation
         along = np.array(nearest.numbers.of(column(carrier.apply(line.triad[0]))))
@@ -132,7 +133,7 @@ def _reach(nearest: Nearest, loop: LoopEquations, held: Collection[str]) -> str:
     between = {entering.body.name for _, _, entering in run[pins[0] : pins[-1]]}
     *links, link = [name for name in nearest.multibody.mechanism.bodies if name in between]
     names = f"{', '.join(links)} and {link}" if links else link
-    led = f" at least, as joint '{lines[0].name}' leads them" if lines and lines[0] else ""
+    led = f" at least, as joint '{lines[0].name}' leads them" if lines else ""
     reach = (
         _read(most, gap) if lines or least == most else f"{_read(least, gap)} to {_read(most, gap)}"
     )
@@ -142,10 +143,8 @@ def _reach(nearest: Nearest, loop: LoopEquations, held: Collection[str]) -> str:
     )
 
 
-def _kind(nearest: Nearest, joint: Joint | None) -> str:
+def _kind(nearest: Nearest, joint: Joint) -> str:
     """Say whether links turn about a joint in all ways, slide along a line, or rest there."""
-    if joint is None:
-        return "pin"
     driven = joint.axes and all(axis.coordinate in nearest.drives for axis in joint.axes)
     if joint.kind == "weld" or (driven and joint.kind != "slot"):
         return "fixed"
@@ -155,17 +154,10 @@ def _kind(nearest: Nearest, joint: Joint | None) -> str:
 
 
 def _around(tree: Tree, loop: LoopEquations) -> list[Step]:
-    """The way around a loop, from body to body and back."""
-    bar, joint = loop.two_force_link, loop.joint
-    if bar is not None:
-        first, last = bar.joints
-        one, other = bar.other(first), bar.other(last)
-        closing: list[Step] = [(other, None, bar.on_bar(last)), (bar.on_bar(first), None, one)]
-    elif joint is not None:
-        one, other = joint.parent, joint.child
-        closing = [(other, joint, one)]
-    else:
+    """The way around a loop that a joint closes, from body to body and back; else none."""
+    if loop.joint is None:
         return []
+    one, other = loop.joint.parent, loop.joint.child
     led = {branch.far.body: branch for branch in tree.branches}
     ways: list[list[Branch]] = [[], []]
     for way, body in zip(ways, (one.body, other.body), strict=True):
@@ -174,7 +166,7 @@ def _around(tree: Tree, loop: LoopEquations) -> list[Step]:
             body = led[body].near.body
     up = [(b.far, b.joint, b.near) for b in ways[0] if b not in ways[1]]
     down = [(b.near, b.joint, b.far) for b in reversed(ways[1]) if b not in ways[0]]
-    return [*up, *down, *closing]
+    return [*up, *down, (other, loop.joint, one)]
 
 
 def _lengths(nearest: Nearest, state: State, closed: Flags, rows: Flags) -> Iterator[str]:

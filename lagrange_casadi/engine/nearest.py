@@ -109,26 +109,17 @@ class Nearest:
         frame = self.multibody.frames[point.body.name]
         return np.array(self.numbers.of(column(frame.place_of(point.place))))
 
-    def length(self, one: Point, other: Point) -> float:
-        """The distance of two points, of one body or of bodies that do not move on each other."""
-        for bar in self.multibody.tree.two_force_links:
-            if one.body is bar.link:
-                return abs(self.numbers.of(bar.length)[0])
-        return float(np.linalg.norm(self.place(one) - self.place(other)))
-
     def held(self, state: State, closed: Flags) -> set[str]:
         """The bodies that do not move where equations are kept that are ``closed``."""
-        self.note(state)
-        before, step = self.poses(), np.zeros(self.free.size)
         across = _kernel(self.released.at(state)[1][np.ix_(closed, self.free)])
-        step[self.free] = 1e-3 * across @ np.cos(np.arange(across.shape[1]))
-        self.note(self.released.moved(state, step))
-        after = self.poses()
-        self.note(state)
+        moving = np.flatnonzero(self.free)[np.abs(across).max(axis=1, initial=0.0) > _RANK]
+        symbols = column(self.multibody.coordinates[k].variables for k in moving)
         return {
             body
-            for body, pose in before.items()
-            if np.abs((after[body] - pose) / [[self.size], [1.0], [1.0], [1.0]]).max() < 1e-9
+            for body, frame in self.multibody.frames.items()
+            if not ca.depends_on(
+                column([*frame.place_of(ZERO), *frame.rotation.x, *frame.rotation.y]), symbols
+            )
         }
 
     def closed(self, state: State, rows: Flags | None = None) -> State | None:

@@ -163,8 +163,8 @@ def place(
     state, left = nearest.found(nearest.released.first)
     if t is not None and t != start and not (closed and left):
         state, left = _followed(nearest, law, state, t, closed)
-    gaps = gaps_of(nearest, state, left)
     nearest.note(state)
+    gaps = gaps_of(nearest, state, left)
     poses = nearest.poses()
     description = described(mechanism, tree, laws, drives).at(list(given.values()))
     bases = {name: poses[name][0] for name in description.bodies}
