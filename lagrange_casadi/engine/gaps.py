@@ -175,7 +175,7 @@ def _lengths(nearest: Nearest, state: State, closed: Flags, rows: Flags) -> Iter
     for k, parameter in enumerate(nearest.multibody.mechanism.parameters.values()):
         before = state[3][k]
         value = nearest.closing(state, closed, rows, k) if parameter.unit == LENGTH else None
-        if value is not None and max(parameter.low, 0.0) < value <= parameter.high:
+        if value not in (None, before) and max(parameter.low, 0.0) < value <= parameter.high:
             change = f"{value - before:+.3g}"
             words = f"{parameter.name} {_read(value, value - before)} m ({change} m)"
             found.append((abs(float(change)), k, words))

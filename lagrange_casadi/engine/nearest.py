@@ -143,7 +143,9 @@ class Nearest:
                 state = found
         # Where a sum of squares is largest its slopes are zero too.
         beside = np.where(self.free, 1e-3 * np.cos(np.arange(self.free.size)), 0.0)
-        return self.least(self.released.moved(state, beside), closed, ~closed), left
+        state = self.least(self.released.moved(state, beside), closed, ~closed)
+        apart = np.abs(self.released.at(state)[0]) > _OPEN
+        return state, [k for k in left if apart[self.loops[k]].any()]
 
     def rows(self, loops: Sequence[int]) -> Flags:
         """The equations of loops, marked."""
