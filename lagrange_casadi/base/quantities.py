@@ -192,14 +192,6 @@ class Check:
 Column: TypeAlias = Output | Check
 
 
-def column_of(name: str) -> Column:
-    """The output or check that a name says."""
-    if not name.startswith("_"):
-        return Output.of(name)
-    kind, _, part = name.removeprefix("_").partition(":")
-    return Check(kind, Output.of(part) if kind == "open" else part)
-
-
 def motions_of(coordinate: str) -> tuple[Output, ...]:
     """The outputs of a coordinate's motion: its value, its rate and its acceleration."""
     return tuple(Output("motion", coordinate, member) for member in ("", *_ENDINGS))

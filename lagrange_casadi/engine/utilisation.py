@@ -28,6 +28,7 @@ from ..model.declared_parts import Link
 from ..model.limits import END
 from ..model.link_density import Density
 from ..model.mechanism import Mechanism
+from ..model.polynomials import value_at
 from . import buckling
 from .section_function import Section, edge
 from .section_stress import KINDS, CrossSections, squared
@@ -57,10 +58,7 @@ class Part:
 
     def force(self, name: str, x: Expression) -> Expression:
         """A section force at a place from 0 to 1."""
-        *others, found = self.forces[name]
-        for coefficient in reversed(others):
-            found = found * x + coefficient
-        return found
+        return value_at(self.forces[name], x)
 
 
 class Loaded:
@@ -92,14 +90,6 @@ class Loaded:
     def parts(self) -> list[Part]:
         """Parts of the link, with their section forces."""
         return [replace(part, forces=self._polynomials(part)) for part in self.spans]
-
-    @property
-    def cells(self) -> list[Part]:
-        """Parts between breaks of the cross-section."""
-        return [
-            Part(ca.SX(low), ca.SX(high - low), cell)
-            for cell, (low, high) in enumerate(itertools.pairwise(self.course.breaks))
-        ]
 
     @property
     def spans(self) -> list[Part]:

@@ -20,6 +20,7 @@ from ..errors import DeclarationError, shown
 from .curves import curve, rows
 from .declared_parts import Expression
 from .expressions import coordinates, scalar, symbols_of
+from .polynomials import value_at
 from .stretches import Stretch
 from .validity import Demand
 
@@ -89,14 +90,7 @@ def polynomial(*coefficients: Expression) -> Motion:
     if not coefficients:
         raise DeclarationError("polynomial: expected at least one coefficient")
     terms, unit = coordinates("polynomial", ((c, _per(k)) for k, c in enumerate(coefficients)))
-
-    def graph(t: ca.SX) -> ca.SX:
-        value = ca.SX(terms[-1])
-        for coefficient in reversed(terms[:-1]):
-            value = value * t + coefficient
-        return value
-
-    return Motion(graph, unit=unit)
+    return Motion(lambda t: value_at(terms, t), unit=unit)
 
 
 def _per(order: int) -> str:

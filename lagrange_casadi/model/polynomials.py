@@ -150,10 +150,10 @@ def lowest(cell: Sequence[Expression], start: float, stop: float) -> tuple[ca.SX
     """Place u from ``start`` to ``stop`` at which sum_j cell[j] u^j is lowest, and its value there,
     for finite coefficients.
     """
-    place, value = ca.SX(start), _at(cell, ca.SX(start))
+    place, value = ca.SX(start), value_at(cell, ca.SX(start))
     turning = _zeros(_derivative(cell), start, stop) if len(cell) > 2 else []
     for u in (ca.SX(stop), *turning):
-        other = _at(cell, u)
+        other = value_at(cell, u)
         lower = other < value
         place, value = ca.if_else(lower, u, place), ca.if_else(lower, other, value)
     return place, value
@@ -181,19 +181,17 @@ def _zeros(cell: Sequence[Expression], start: float, stop: float) -> list[ca.SX]
 
 
 def _zero(cell: Sequence[Expression], low: Expression, high: Expression) -> Expression:
-    negative = _at(cell, low) < 0.0
+    negative = value_at(cell, low) < 0.0
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
-        same = ca.eq(_at(cell, middle) < 0.0, negative)
+        same = ca.eq(value_at(cell, middle) < 0.0, negative)
         low, high = ca.if_else(same, middle, low), ca.if_else(same, high, middle)
     return high
 
 
-def _at(cell: Sequence[Expression], u: ca.SX) -> ca.SX:
-    value = ca.SX(cell[-1])
-    for coefficient in reversed(cell[:-1]):
-        value = value * u + coefficient
-    return value
+def value_at(cell: Sequence[Expression], u: Expression) -> ca.SX:
+    """The value sum_j cell[j] u^j, by Horner's rule."""
+    return ca.polyval(ca.densify(ca.SX(ca.vertcat(*reversed(cell)))), u)
 
 
 def _derivative(cell: Sequence[Expression]) -> list[Expression]:

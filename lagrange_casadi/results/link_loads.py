@@ -53,15 +53,6 @@ class DistributedLoad(_Load):
         """True if the load acts on some part of the link."""
         return bool(np.isfinite([self.width, self.end]).all() and (self.width > 0.0).all())
 
-    def outputs(self, link: str) -> dict[Output, Array]:
-        """The numbers in it, as outputs of a link."""
-        ends = {"width": self.width, "end": self.end}
-        found = {Output("spread", link, name, self.name): ends[name] for name in ends}
-        for member, rows in self.terms.items():
-            for power, values in enumerate(rows):
-                found[Output("spread", link, member, self.name, power)] = values
-        return found
-
     def of(self, link: str, outputs: Mapping[Output, Array]) -> DistributedLoad:
         """Load of a link with other numbers, (..., t)."""
 

@@ -126,16 +126,6 @@ class SectionLaw(Brief):
         """
         return self.pieces(force).at(np.asarray(xi, dtype=float), side)
 
-    def outputs(self, link: str) -> dict[Output, Array]:
-        """The numbers in it, as outputs of a link."""
-        found = {Output("law", link, name): values for name, values in self.coefficients.items()}
-        for load in self.loads:
-            for member in self.table.place_first:
-                found[Output("station", link, member, load.name)] = getattr(load, member)
-        for distributed in self.distributed_loads:
-            found |= distributed.outputs(link)
-        return found
-
     def of(self, link: str, outputs: Mapping[Output, Array]) -> SectionLaw:
         """The law of the same link with other numbers in it, (..., t)."""
         coefficients = {name: outputs[Output("law", link, name)] for name in self.coefficients}

@@ -287,7 +287,7 @@ class _Truth:
         moves = ~resting(program, evaluated.out)  # at rest there is nothing to compare
         compared = compared[moves[compared]] if moves[compared].any() else compared
         self.compared = compared
-        rows = reference(program, list(t[compared]), list(p), z=evaluated.iterated[:, compared])
+        rows = reference(program, list(t[compared]), list(p), evaluated.iterated[:, compared])
         self.columns = {output: [row[k] for row in rows] for output, k in program.outputs.items()}
         self.angles = program.loop_angles
         peaks = {name: max(abs(float(x)) for x in column) for name, column in self.columns.items()}

@@ -42,7 +42,7 @@ def test_formulas_to_forty_digits(name, monkeypatch):
     t = scene.t[0] + np.array(PARTS.get(name, (0.0, 0.4, 0.77))) * (scene.t[1] - scene.t[0])
     grid = np.unique([*np.linspace(scene.t[0], t[-1], 100), *t])
     table, _ = run(program, grid, np.array(p), EvaluationMethod("vm"))
-    rows = reference(program, t, p, z=table.iterated[:, np.searchsorted(grid, t)])
+    rows = reference(program, t, p, table.iterated[:, np.searchsorted(grid, t)])
     with MP.workdps(60):
         for moment, row in zip(t, rows, strict=True):
             driven = interpret(program.motion, [[MP.mpf(moment)], [MP.mpf(x) for x in p]], EXACT)

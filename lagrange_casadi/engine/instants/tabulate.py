@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.arrays import Array
-from ...base.quantities import Check, Output, column_of
+from ...base.quantities import Output
 from ...base.tables import LARGEST as LARGEST_ALONG
 from ...errors import DeclarationError
 from ..program import Program
@@ -91,11 +91,10 @@ def tabulate(
             break
         values = np.stack((values, between), axis=-1).reshape(*values.shape[:2], -1)
         nodes = 2 * nodes
-    column = column_of(best.columns[int(np.argmax(best.errors))])
-    worst = f"the {column.kind} of '{column.part}'" if isinstance(column, Check) else f"'{column}'"
+    worst = best.columns[int(np.argmax(best.errors))].removeprefix("_")
     raise DeclarationError(
         f"table: an accuracy of {accuracy:g} is not possible; the best is {best.error:.2g}, with"
-        f" {best.nodes} nodes, and {worst} is the worst there"
+        f" {best.nodes} nodes, and '{worst}' is the worst there"
     )
 
 

@@ -32,7 +32,7 @@ def control(source: Source) -> dict[str, str]:
         "drives": _strings([m.source.partition(":")[2] for _, m in efforts]),
         "time": ", double time" if c.timed else "",
         "time_given": ", time" if c.timed else "",
-        "time_pair": ", ".join(_parts(source, "time")),
+        "time_pair": ", ".join(c.split("time")),
         "parameters": f"const {c.prefix}_parameters* parameters = nullptr" if settings else "",
         "prepare": "&model_, parameters" if settings else "&model_",
         **_between(source),
@@ -92,16 +92,6 @@ def _strings(names: Sequence[str]) -> str:
     return ", ".join(f'"{quoted(name)}"' for name in names)
 
 
-def _parts(source: Source, value: str) -> list[str]:
-    """Return a double as numbers of the precision: one, or in single precision two that add up to
-    it.
-    """
-    real = f"{source.contract.prefix}_real"
-    first = f"static_cast<{real}>({value})"
-    rest = f"static_cast<{real}>({value} - static_cast<double>({first}))"
-    return [first, rest] if source.contract.rests else [first]
-
-
 def _moved(c: Contract) -> Iterator[tuple[str, str]]:
     """Yield positions, rates and accelerations in C++, each with the full name of its input."""
     for values, names in zip(("q", "dq", "ddq"), c.moved, strict=True):
@@ -113,7 +103,7 @@ def _to_inputs(source: Source) -> Iterator[str]:
     c = source.contract
     for value, name in (*([("time", "time")] if c.timed else []), *_moved(c)):
         # Rates and accelerations have no rest.
-        for member, part in zip(c.parts_of(name), _parts(source, value), strict=False):
+        for member, part in zip(c.parts_of(name), c.split(value), strict=False):
             yield f"    inputs.{member} = {part};"
 
 

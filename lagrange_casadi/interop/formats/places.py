@@ -104,11 +104,7 @@ class Places:
         if body == GROUND:
             return np.eye(3)
         base, tip = (np.array(place) for place in self.between[body])
-        x = (tip - base) / np.linalg.norm(tip - base)
-        y = np.eye(3)[int(np.argmin(np.round(np.abs(x), 6)))]
-        y = y - (y @ x) * x
-        y /= np.linalg.norm(y)
-        return np.column_stack([x, y, np.cross(x, y)])
+        return Frame.about(tip - base).axes[:, [2, 0, 1]]
 
     def components(self, place: Place) -> list[str]:
         """Return the components of a place, by parameters where these have them."""

@@ -33,23 +33,19 @@ def reference(
     program: Program,
     t: Sequence[float],
     p: Sequence[float],
-    *,
-    z: Array | None = None,
-    digits: int = DIGITS,
-    following: Callable[[Arithmetic], Arithmetic] = lambda arithmetic: arithmetic,
+    z: Array,
 ) -> list[list[mpf]]:
-    """Every column of a graph at instants ``t``, a row an instant, as mpmath numbers of so many
-    digits.
+    """Every column of a graph at instants ``t``, a row an instant, as mpmath numbers of
+    :data:`DIGITS` digits.
 
     Times and parameters are doubles, taken as exact, or mpmath numbers. Iterated loops start from
     ``z`` (k, n), and are closed to all digits. A motion by samples is read in doubles.
-    ``following`` has the last word on the arithmetic of an instant. Raises :class:`AssemblyError`
-    where a loop does not close, and :class:`DeclarationError` for graphs that call functions of
-    their own.
+    Raises :class:`AssemblyError` where a loop does not close, and :class:`DeclarationError` for
+    graphs that call functions of their own.
     """
     from mpmath import mp  # takes its time
 
-    with mp.workdps(digits):
+    with mp.workdps(DIGITS):
         # A turn is meant, not the double that is nearest to it.
         plain = arithmetic()
         known = replace(
@@ -60,17 +56,17 @@ def reference(
         for i, moment in enumerate(t):
             time = mp.mpf(moment)
             driven = interpret(program.laws.motion, [[time], values], plain)
-            guess = [] if z is None else [mp.mpf(float(x)) for x in z[:, i]]
+            guess = [mp.mpf(float(x)) for x in z[:, i]]
             if program.newton is not None:
                 given = [[time], driven[0], values]
-                small = mp.mpf(10) ** (4 - digits)
+                small = mp.mpf(10) ** (4 - DIGITS)
                 guess, done = closed(program.newton.step, guess, given, plain, small.__gt__, _STEPS)
                 if not done:
                     raise AssemblyError(
                         f"the loops closed by {program.newton.joints} do not close to all digits at"
                         f" t = {float(time):.6g} s"
                     )
-            (out,) = interpret(program.instant, [[time], *driven, guess, values], following(known))
+            (out,) = interpret(program.instant, [[time], *driven, guess, values], known)
             rows.append(out)
     return rows
 
