@@ -177,7 +177,7 @@ def test_files_and_tables_have_them(tmp_path, capsys, solution):
 
     edit(file, change)
     assert check(file) == [
-        "sensitivity/r/effort/O: units differs from the schema",
+        "sensitivity/r/effort/O: units 'N', expected 'N m/m'",
         "sensitivity/l/effort/O: values that are not finite",
     ]
 

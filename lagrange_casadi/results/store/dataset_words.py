@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from ...base.quantities import Output
 from ...base.tables import CF, Table
 
 if TYPE_CHECKING:
     import h5py
+
+
+def place_of(name: str | Output) -> str:
+    """The place in a file of a quantity's full name."""
+    return str(name).replace(":", "/")
 
 
 def conventions(table: Table) -> dict[str, str]:
@@ -33,6 +39,13 @@ def unlike(dataset: h5py.Dataset, unit: str, words: Mapping[str, str]) -> Iterat
         for key, text in words.items()
         if not _states(dataset, key, text)
     )
+
+
+def without_scale(dataset: h5py.Dataset, axes: Sequence[str]) -> Iterator[str]:
+    """Yield the axes of a dataset that have not the scales of given names, a line each."""
+    for axis, scale in enumerate(axes):
+        if dataset.file[scale] not in dataset.dims[axis].values():
+            yield f"{dataset.name.removeprefix('/')}: axis {axis} has no scale /{scale}"
 
 
 def unlike_conventions(file: h5py.File, table: Table) -> Iterator[str]:

@@ -41,11 +41,19 @@ from .attributes import (
     figures_of,
     read_attributes,
 )
-from .dataset_words import say, unlike, unlike_conventions
+from .dataset_words import place_of, say, unlike, unlike_conventions, without_scale
 from .kept_slopes import add_slopes, check_slopes, slopes_of
 from .opening import KINDS, RUN, kind_of, opened_file, sealed
 from .scales import LARGE, Scales
-from .untrusted import check_chunks, check_dataset, check_links, number, parsed, reported_as, shown
+from .untrusted import (
+    check_links,
+    check_numbers,
+    number,
+    numbers,
+    parsed,
+    reported_as,
+    shown,
+)
 
 _CHUNK_BYTES = 1 << 20
 _BLOCK_BYTES = 1 << 23
@@ -243,7 +251,7 @@ def check(path: str | os.PathLike[str]) -> list[str]:
             [*quantities, *solution.outputs, *held_outputs(solution.holding), *certificate]
         )
         listed = map(Output.of, parsed(file.attrs["outputs"], [str]))
-        found = [f"{_place(output)}: missing" for output in listed if output not in outputs]
+        found = [f"{place_of(output)}: missing" for output in listed if output not in outputs]
         found += check_attributes(file.attrs, solution.description)
         if not found:
             found += unlike_conventions(file, solution.table)
@@ -276,7 +284,7 @@ def _check_certificate(file: h5py.File, solution: Solution) -> Iterator[str]:
 
 
 def _check_dataset(file: h5py.File, solution: Solution, output: Output) -> Iterator[str]:
-    place, quantity, name = _place(output), output.meant(solution.table), output
+    place, quantity, name = place_of(output), output.meant(solution.table), output
     dataset = file[place]
     check_numbers(
         dataset, [{"t": solution.t.size, "xi": solution.xi.size}[axis] for axis in quantity.axes]
@@ -290,9 +298,7 @@ def _check_dataset(file: h5py.File, solution: Solution, output: Output) -> Itera
     yield from unlike(dataset, solution.unit(name), quantity.attributes)
     if strange := dataset.attrs.keys() - {*quantity.attributes, *_BESIDE}:
         yield f"{place}: {min(strange)} is not in the schema"
-    for axis, scale in enumerate(quantity.axes):
-        if file[scale] not in dataset.dims[axis].values():
-            yield f"{place}: axis {axis} has no scale /{scale}"
+    yield from without_scale(dataset, quantity.axes)
 
 
 def _check_axes(file: h5py.File, solution: Solution) -> Iterator[str]:
@@ -347,10 +353,6 @@ def _read_through(dataset: h5py.Dataset, solution: Solution, output: Output) -> 
     return gap, finite
 
 
-def _place(output: Output) -> str:
-    return str(output).replace(":", "/")
-
-
 def _write(
     file: h5py.File,
     solution: Solution,
@@ -364,25 +366,17 @@ def _write(
     scales = Scales(file)
     if solution.over:
         _add_drive_axis(file, scales, solution.over)
-    for output, values in solution.outputs.items():
+    residuals = {Output("certificate", "", name): x for name, x in solution.certificate.items()}
+    every = {**solution.outputs, **held_outputs(solution.holding), **residuals}
+    for output, values in every.items():
         breathe()
-        _add(file, scales, solution, output, values)
-    for output, values in held_outputs(solution.holding).items():
-        _add(file, scales, solution, output, values)
-    for name, values in solution.certificate.items():
-        _add(file, scales, solution, Output("certificate", "", name), values)
+        _create(file, scales, solution, output, values.shape)[...] = values
     for link in grids:
         for force in solution.table.forces:
             _add_grid(file, scales, solution, Output("section", link, force), breathe)
     breathe()
     add_slopes(file, scales, solution, partial(_empty, file))
     scales.finish()
-
-
-def _add(
-    file: h5py.File, scales: Scales, solution: Solution, output: Output, values: Array
-) -> None:
-    _create(file, scales, solution, output, values.shape)[...] = values
 
 
 def _add_drive_axis(file: h5py.File, scales: Scales, over: DriveAxis) -> None:
@@ -427,7 +421,7 @@ def _create(
     file: h5py.File, scales: Scales, solution: Solution, output: Output, shape: tuple[int, ...]
 ) -> h5py.Dataset:
     quantity, name = output.meant(solution.table), str(output)
-    dataset = _empty(file, _place(output), shape)
+    dataset = _empty(file, place_of(output), shape)
     say(dataset, solution.unit(output), quantity.attributes)
     if name in solution.errors:
         dataset.attrs["error_estimate"] = solution.errors[name]
@@ -474,7 +468,7 @@ def _read(file: h5py.File) -> Solution:
     residuals = file.get("certificate", {})
     evidence |= {
         "certificate": {name: numbers(residuals[name], t.shape) for name in residuals},
-        "sensitivities": slopes_of(file, histories, numbers),
+        "sensitivities": slopes_of(file, histories),
         "holding": _held(file, histories, reasons),
     }
     return solution_of(histories, **evidence)
@@ -490,7 +484,7 @@ def _held(file: h5py.File, histories: Histories, reasons: Mapping[str, str]) -> 
         if Output("effort", name) not in histories.outputs:
             raise ValueError(f"there is a range of efforts of '{name}', which is no drive")
         least, largest = (
-            numbers(file[_place(Output("holding", name, end))], histories.t.shape) for end in ENDS
+            numbers(file[place_of(Output("holding", name, end))], histories.t.shape) for end in ENDS
         )
         found[name] = Holding(least, largest, histories.unit(Output("effort", name)), reason)
     return found
@@ -514,18 +508,3 @@ def drive_axis(
             f"the instants are over '{joint}' in {unit}, which is no drive's coordinate"
         )
     return DriveAxis(joint, unit, values)
-
-
-def numbers(dataset: h5py.Dataset, shape: tuple[int, ...] | None = None) -> Array:
-    """The numbers of a dataset, of a shape if one is given.
-
-    Raises ``ValueError`` for what has others.
-    """
-    check_numbers(dataset, shape)
-    return np.asarray(dataset[()], np.float64)
-
-
-def check_numbers(dataset: h5py.Dataset, shape: Sequence[int] | None) -> None:
-    """Raise ``ValueError`` for a dataset that has no numbers, or another shape."""
-    check_dataset(dataset, shape)
-    check_chunks(dataset)

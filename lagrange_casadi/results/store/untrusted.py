@@ -21,6 +21,7 @@ from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 import h5py
 import numpy as np
 
+from ...base.arrays import Array
 from ...errors import DeclarationError, LagrangeCasadiError, StoreError, one_line
 
 Shape = Any
@@ -162,6 +163,21 @@ def check_dataset(dataset: h5py.Dataset, shape: Sequence[int] | None = None) -> 
         raise ValueError(f"{name} is kept in another file")
     if shape is not None and dataset.shape != tuple(shape):
         raise ValueError(f"{name} has the shape {dataset.shape}, expected {tuple(shape)}")
+
+
+def numbers(dataset: h5py.Dataset, shape: tuple[int, ...] | None = None) -> Array:
+    """The numbers of a dataset, of a shape if one is given.
+
+    Raises ``ValueError`` for what has others.
+    """
+    check_numbers(dataset, shape)
+    return np.asarray(dataset[()], np.float64)
+
+
+def check_numbers(dataset: h5py.Dataset, shape: Sequence[int] | None) -> None:
+    """Raise ``ValueError`` for a dataset that has no numbers, or another shape."""
+    check_dataset(dataset, shape)
+    check_chunks(dataset)
 
 
 def check_chunks(dataset: h5py.Dataset) -> None:

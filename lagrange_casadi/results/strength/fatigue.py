@@ -23,7 +23,7 @@ from ...base.arrays import Array, Operand
 from ...errors import UnknownNameError
 from ...model.beams.material import Material
 from ...model.beams.properties import larger
-from .rainflow import counted
+from .rainflow import StressCycle, counted
 
 _LEAST = 1e3
 """Cycles from which on S-N lines hold."""
@@ -244,13 +244,12 @@ def loaded(values: Array) -> Loaded:
     along = vector[:, last] - vector[:, first]
     size = float(np.linalg.norm(along))
     stress_cycles = counted(along @ vector / size, repeating=True) if size else []
-    if not stress_cycles:  # none that is more than rounding
-        pairs, counts = [(first, first)], [1.0]
-    else:
-        pairs, counts = [(s.first, s.last) for s in stress_cycles], [s.times for s in stress_cycles]
-    a, b = (values[:, list(side)] for side in zip(*pairs, strict=True))
+    # Where nothing is more than rounding, there is one swing of none.
+    stress_cycles = stress_cycles or [StressCycle(0.0, 0.0, 1.0, first, first)]
+    _, _, counts, *ends = zip(*stress_cycles, strict=True)
+    a, b = (values[:, list(side)] for side in ends)
     amplitude, mean = (np.sqrt(square) for square in cycle_squares(a, b))
-    return Loaded(amplitude, mean, np.array(counts), pairs)
+    return Loaded(amplitude, mean, np.array(counts), list(zip(*ends, strict=True)))
 
 
 def widest(values: Array) -> tuple[int, int]:
