@@ -26,6 +26,9 @@ _STEPS = 60
 _CLOSE = float(np.sqrt(np.finfo(float).eps))
 """Length of a step of Newton's method that leaves a miss of rounding, for it squares the miss."""
 
+EIGHTHS = np.arange(8.0) / 8.0
+"""Begins of the eighths of 0 to 1."""
+
 
 def value(c: Array, x: Array) -> Array:
     """The values (k, ...) of polynomials at places ``x`` (k, ...) of each.
@@ -80,6 +83,22 @@ def halves(c: Array) -> tuple[Array, Array]:
         first.append(c[0])
         last.append(c[-1])
     return np.stack(first), np.stack(last[::-1])
+
+
+def eighths(c: Array) -> Array:
+    """Ordinates (n + 1, k, 8 m, t) of polynomials (n + 1, k, m, t) on eighths of 0 to 1.
+
+    One matrix gives all of a polynomial: its bits depend on the number of instants t alone.
+    """
+    found = _eighths(len(c)) @ np.moveaxis(c, 0, 2)
+    return np.moveaxis(found.reshape(c.shape[1], -1, len(c), c.shape[3]), 2, 0)
+
+
+@functools.cache
+def _eighths(many: int) -> Array:
+    """Ordinates of eighths, one after another, (8 many, many) by those of the whole."""
+    found = within(np.eye(many)[:, None], EIGHTHS[:, None], EIGHTHS[:, None] + 0.125)
+    return np.concatenate(np.moveaxis(found, 1, 0))
 
 
 def within(c: Array, start: Array, stop: Array) -> Array:

@@ -21,7 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.arrays import Array
-from ...base.bernstein import halves, value
+from ...base.bernstein import EIGHTHS, eighths, halves, value
 from ...engine.section_function import SIDES, Side
 from ...engine.section_stress import concentration, notch_factor
 from ...model.beams.beam import Notch
@@ -264,23 +264,33 @@ def _largest(
     ``size`` is a function of stresses (k, ..., t). It raises the ``best`` of a design, and is
     followed where it may be above ``beside`` times that.
     """
-    sizes = size(np.moveaxis(c, 1, 0))
-    found, places = np.maximum(sizes[0], sizes[-1]), np.where(sizes[-1] > sizes[0], 1.0, 0.0)
-    strip, start, width = np.arange(design.size), np.zeros(design.size), 1.0
+    found, places = np.full(design.size, -np.inf), np.zeros(design.size)
+    strip, start, width = np.repeat(np.arange(design.size), 8), np.tile(EIGHTHS, design.size), 0.125
+    c = eighths(c)
     for _ in range(_HALVED):
+        sizes = size(np.moveaxis(c, 1, 0))
+        for values, place in ((sizes[0], start), (sizes[-1], start + width)):
+            np.maximum.at(found, strip, values)
+            higher = values == found[strip]
+            places[strip[higher]] = place[higher]
         np.maximum.at(best, design, found)
         floor = np.fmax(found, beside * best[design])[strip]
         some = np.flatnonzero(sizes.max(axis=0) > floor * (1.0 + CLOSE))
         if not some.size:
             break
         width /= 2.0
-        strip, start = strip[some], start[some]
-        middle = start + width
-        c = np.concatenate(halves(c[:, :, some]), axis=2)
-        sizes = size(np.moveaxis(c, 1, 0))
-        values = sizes[0, some.size :]
-        np.maximum.at(found, strip, values)
-        higher = values == found[strip]
-        places[strip[higher]] = middle[higher]
-        strip, start = np.tile(strip, 2), np.concatenate([start, middle])
+        c = np.concatenate(halves(_outermost(c[:, :, some])), axis=2)
+        strip = np.tile(strip[some], 2)
+        start = np.concatenate([start[some], start[some] + width])
     return found, places
+
+
+def _outermost(c: Array) -> Array:
+    """Ordinates (n + 1, k, strips, few) at the instants, of all (n + 1, k, strips, t), at which a
+    stress may be the smallest or the largest somewhere in a strip.
+    """
+    low, high = c.min(axis=0), c.max(axis=0)
+    some = (high >= low.max(axis=-1, keepdims=True)) | (low <= high.min(axis=-1, keepdims=True))
+    some = some.any(axis=0)
+    order = np.argsort(~some, axis=-1, kind="stable")[:, : some.sum(axis=-1).max()]
+    return np.take_along_axis(c, order[None, None], -1)

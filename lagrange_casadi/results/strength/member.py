@@ -336,7 +336,8 @@ class Member(Brief):
             found = self.cross.factors(index, low + (high - low) * x[:, None])
             return np.moveaxis(found[:, self.cross.fibres(index).alone], 3, 0)
 
-        x = np.linspace(0.0, 1.0, 2 * _DEGREE + 3)
+        # The ends, and places between nodes.
+        x = (1.0 - np.cos(np.pi * np.arange(_DEGREE + 2) / (_DEGREE + 1))) / 2.0
         expected = factors(x)
         # Of each force, and of each design, its own unit.
         most = self.accuracy * np.abs(expected).max(axis=(0, 1, 2))

@@ -30,7 +30,7 @@ from .meanings import LEAST, LIFE, MASS, WAYS
 _ENDLESS = 0.999
 """Utilisation up to which nothing wears: what is found of it is nearer to the largest."""
 
-_MANY = 4096
+_MANY = 8192
 """Number of instants of designs that are looked at together, if none has a load that travels along
 the link: their stresses stay near a processor.
 """
