@@ -56,9 +56,9 @@ _ROUNDING = 16 * float(np.finfo(float).eps)
 _APART = (-1.0, -(2.0**-20), 2.0**-20, 1.0)
 """Distances, in steps, at which a mark that stays zero is no place."""
 
-_LEAST, _MOST = 2.0**-40, 1 << 20
-"""Part of a step in which nothing is left but a kink, and the number of such parts that are looked
-at together.
+_LEAST, _MOST = 2.0**-40, 1 << 13
+"""Part of a step in which nothing is left but a kink, and the most parts of steps that are halved
+together.
 """
 
 _AT_ONCE = 1 << 17
@@ -68,7 +68,7 @@ _AT_ONCE = 1 << 17
 @dataclass(frozen=True)
 class Kink:
     """A place, by symbol, at which a value or a slope jumps by a part of it, infinite where it has
-    no limit; or is other than on both sides, ``alone``.
+    no limit, NaN where that is not known; or is other than on both sides, ``alone``.
     """
 
     what: str
@@ -84,6 +84,11 @@ class Kink:
                 f"{what}: its {self.what} where {where} differs from its values on both sides: the"
                 " value is that of this instant alone; expected other instants, or a curve that is"
                 " continuous there: if_else, fabs, sign and floor are not"
+            )
+        if math.isnan(self.jump):
+            return DeclarationError(
+                f"{what}: its {self.what} near {where} changes too fast between two instants for a"
+                " kink to be seen; expected a shorter span, more instants or a slower curve"
             )
         does = f"jumps by {100.0 * self.jump:.3g} %" if math.isfinite(self.jump) else "has no limit"
         return DeclarationError(
@@ -387,8 +392,8 @@ def _within(here: Array, sides: Sequence[Array], least: Array) -> Flags:
 
 
 def _inconsistent(bends: ca.Function, line: Line) -> Iterator[_Found]:
-    """Steps in which value, slope and curvature at the ends do not agree, however often they are
-    halved: cubic polynomials miss the value by h^5, and the slope by h^3.
+    """Steps over which value and slope do not change by the integrals of slope and curvature,
+    however often they are halved: Simpson's rule misses these by h^5.
 
     For what cannot be followed, as a function of another program.
     """
@@ -402,24 +407,22 @@ def _inconsistent(bends: ca.Function, line: Line) -> Iterator[_Found]:
     low, high = np.zeros(step.size), np.ones(step.size)
     before, after = at(low), at(high)
     usual = np.where(np.isfinite(before[:2]), np.abs(before[:2]), 0.0).max(axis=1, initial=0.0)
+    usual = np.fmax(usual, np.finfo(float).tiny)[:, None]
     while step.size:
-        h = high - low
-        value, slope, _ = after - before
-        value = value - h * (before[1] + after[1]) / 2 + h**2 * (after[2] - before[2]) / 12
-        slope = slope - h * (before[2] + after[2]) / 2
-        part = np.abs([value, slope]) / np.fmax(usual, np.finfo(float).tiny)[:, None]
+        middle, there = (low + high) / 2, at((low + high) / 2)
+        rates = (before + 4.0 * there + after)[1:] / 6.0
+        part = np.abs((after - before)[:2] - (high - low) * rates) / usual
         left = ~(part <= _SAME).all(axis=0)
-        step, low, high, part = step[left], low[left], high[left], part[:, left]
-        before, after = before[:, left], after[:, left]
+        step, part = step[left], part[:, left]
+        low, middle, high = low[left], middle[left], high[left]
         if step.size > _MOST or (high - low < _LEAST).all():
             break
-        middle = (low + high) / 2
-        there = at(middle)
+        before, there, after = (rows[:, left] for rows in (before, there, after))
         step, low, high = np.tile(step, 2), np.r_[low, middle], np.r_[middle, high]
         before, after = np.hstack([before, there]), np.hstack([there, after])
     for k, place in enumerate(line.at(step, high).T):
         row = 1 if part[0, k] <= _SAME else 0
-        jump = float(part[row, k]) if high[k] - low[k] < _LEAST else math.inf
+        jump = float(part[row, k]) if high[k] - low[k] < _LEAST else math.nan
         yield _Found(int(line.owner[step[k]]), ("value", "slope")[row], jump, False, place)
 
 

@@ -105,6 +105,13 @@ def test_broken(name):
     assert re.match(f"the motion of joint 'way': its {what} (jumps|has no limit)", kink(program))
 
 
+def test_waves_too_fast_to_be_followed_are_refused(monkeypatch):
+    """Of another program, whose marks are not known."""
+    for name, few in (("kinks._MOST", 8), ("corners._SAMPLED", 41)):
+        monkeypatch.setattr(f"lagrange_casadi.model.{name}", few)
+    assert "changes too fast between two instants" in kink(Y - ca.sin(100 * doubled(X)), count=41)
+
+
 def test_it_says_by_how_much_and_where():
     says = "its slope jumps by 33.3 % where t = 0.7"
     assert says in kink(ca.if_else(X < 0.7, 3 * X, 2.1 + 2 * (X - 0.7)))
