@@ -261,8 +261,8 @@ def _largest(
 ) -> tuple[Array, Array]:
     """The largest of a convex size of stresses along strips (strips,), and its places from 0 to 1.
 
-    ``size`` is a function of stresses (k, ..., t). It raises the ``best`` of a design, and is
-    followed where it may be above ``beside`` times that.
+    ``size`` is a function of the extremes over t of stresses (k, ..., t). It raises the ``best`` of
+    a design, and is followed where it may be above ``beside`` times that.
     """
     found, places = np.full(design.size, -np.inf), np.zeros(design.size)
     strip, start, width = np.repeat(np.arange(design.size), 8), np.tile(EIGHTHS, design.size), 0.125
