@@ -19,9 +19,9 @@ from typing import Annotated, Any, Literal, NamedTuple, ParamSpec, TypeAlias, Ty
 import casadi as ca
 import numpy as np
 
-from ..errors import DeclarationError, shown
+from ..errors import DeclarationError, NumberError, shown
 from .space import MOST_THREADS
-from .units import Within, double, is_whole, typed
+from .units import Within, double, in_words, is_whole, number, typed
 
 Thing = TypeVar("Thing", bound=Callable[..., Any])
 _P = ParamSpec("_P")
@@ -115,10 +115,15 @@ def _looking(function: Callable[_P, _Result], kinds: bool = True) -> Callable[_P
             kind, default = known.get(name, others)
             if kind is None or value is default or (value is None and kind.optional):
                 return value
-            found = kind.read(value)
+            found, why = None, ""
+            try:
+                found = kind.read(value)
+            except NumberError as error:
+                why = str(error)
             if found is None:
                 what = f"{_called(function)}{_part(names, given)}: {name}"
-                raise DeclarationError(f"{what}: expected {kind.words}, got {shown(value)}")
+                why = why or f"expected {kind.words}, got {shown(value)}"
+                raise DeclarationError(f"{what}: {why}")
             return found
 
         placed: Any = map(read, chain(names, repeat(rest)), given)
@@ -234,14 +239,15 @@ def _one_of(hints: Sequence[object]) -> _Kind | None:
 
 def _ranged(of: type, span: Within) -> _Kind:
     """The kind of numbers in a range."""
-    simple = _SIMPLE[of]
+    simple = _SIMPLE[float if span.unit else of]
 
     def read(value: object) -> Any:
-        found = simple.read(value)
+        found = number(value, span.unit) if span.unit else simple.read(value)
         return found if found is not None and span.admits(found) else None
 
     named = {Within(): "a finite number", Within(0.0, above=True): "a positive number"}
-    return _Kind(named.get(span, f"{simple.words}{span.words}"), read)
+    words = named.get(span._replace(unit=""), f"{simple.words}{span.words}")
+    return _Kind(words + in_words(span.unit).removeprefix("number") if span.unit else words, read)
 
 
 _NO_TEXTS = (str, Mapping)
@@ -300,7 +306,9 @@ def _whole(value: object) -> Any:
 
 
 def _pair(value: object) -> Any:
-    """Two numbers."""
+    """A stress and a number."""
+    if isinstance(value, tuple | list) and len(value) == 2 and isinstance(value[0], str):
+        value = number(value[0], "Pa"), value[1]
     return tuple(found.tolist()) if np.shape(found := _array(value)) == (2,) else None
 
 
@@ -358,6 +366,9 @@ _ARRAYS = {
 LATER = None
 """Annotation of an argument that its function checks itself, with a better message."""
 
+Measured: TypeAlias = Annotated[Any, LATER]
+"""A number in SI units, or a text with its unit."""
+
 Finite: TypeAlias = Annotated[float, Within()]
 """A number that is not infinite."""
 
@@ -368,6 +379,17 @@ Count: TypeAlias = Annotated[int, Within(1)]
 Index: TypeAlias = Annotated[int, Within(0)]
 
 ThreadCount: TypeAlias = Annotated[int, Within(1, MOST_THREADS)]
+
+Length: TypeAlias = Annotated[Any, Within(0.0, above=True, unit="m")]
+"""A positive number [m], or a text with its unit; those below in their units."""
+
+Force: TypeAlias = Annotated[Any, Within(0.0, above=True, unit="N")]
+Stress: TypeAlias = Annotated[Any, Within(0.0, above=True, unit="Pa")]
+Angle: TypeAlias = Annotated[Any, Within(0.0, above=True, unit="rad")]
+Time: TypeAlias = Annotated[Any, Within(0.0, above=True, unit="s")]
+Duration: TypeAlias = Annotated[Any, Within(0.0, unit="s")]
+Frequency: TypeAlias = Annotated[Any, Within(0.0, above=True, unit="1/s")]
+Hours: TypeAlias = Annotated[Any, Within(0.0, above=True, unit="h")]
 
 Elastic: TypeAlias = Annotated[
     tuple[float, float], _Kind("Young's modulus [Pa] and Poisson's ratio", _pair)

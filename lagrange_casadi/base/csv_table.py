@@ -12,11 +12,11 @@ import math
 import os
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from decimal import Decimal
 from itertools import chain
 from pathlib import Path
-from typing import TypeAlias, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
@@ -24,37 +24,23 @@ from ..errors import DeclarationError, PathError, UnknownNameError, one_line
 from .arrays import Array
 from .numerals import plain
 from .streams import check_regular
-from .units import UNITS, double
+from .time_stamps import Clock, stamp
+from .units import Unit, differs, double, known
 
-MEASURED: dict[str, dict[str, float]] = {
-    **UNITS,
-    "rad/s": {"rad/s": 1.0, "deg/s": math.radians(1.0)},
-    "rad/s^2": {"rad/s^2": 1.0, "deg/s^2": math.radians(1.0)},
-    "m/s": {"m/s": 1.0, "mm/s": 1e-3},
-    "m/s^2": {"m/s^2": 1.0, "mm/s^2": 1e-3},
-    "N": {"N": 1.0, "kN": 1e3},
-    "N m": {"N m": 1.0, "Nm": 1.0, "kN m": 1e3, "mN m": 1e-3},
-    "W": {"W": 1.0, "kW": 1e3},
-    "1": {"1": 1.0, "ustrain": 1e-6},
-}
-"""Units that a column may have, and their sizes, for each SI unit."""
-
-SIZES = {word: (unit, size) for unit, words in MEASURED.items() for word, size in words.items()}
 COUNTS = ("count", "counts")
+_SI = Unit()
 _MISSING = ("", "nan", "na", "n/a", "null", "-")
 """Cells of values that are missing."""
 
 Given = TypeVar("Given")
-
-Per: TypeAlias = int | Decimal
-"""Number of a unit in one of SI: 1000 for mm, so that 35 mm is 0.035 m."""
-
 
 _DELIMITERS = (";", "\t", ",")
 _QUOTED = re.compile(r'"[^"]*"')
 _DECIMAL = re.compile(r"[-+]?(?=[.,]?[0-9])[0-9]*([.,])[0-9]*(?:[eE][-+]?[0-9]+)?(?: *[a-z]+)?")
 _HEADING = re.compile(r"(.*?)\s*(?:[\[(]\s*([^\[\]()]+?)\s*[\])])?")
 _TWO_NUMBERS = re.compile("[0-9],[0-9]")
+_TEXT = re.compile(r"(?![-+.,]?\d|[-+]?inf(inity)?$)\S", re.IGNORECASE)
+_TWO_TIMES = re.compile(r"(.*)secs?\n\1n(?:ano)?secs?")
 _MARKS = {".": "decimal points", ",": "decimal commas"}
 
 
@@ -89,36 +75,36 @@ class Row:
                 raise DeclarationError(f"{self.where}: '{cell}' among {other}; expected one kind")
         return cell.replace(",", ".")
 
-    def number(self, cell: str, per: Per = 1) -> float:
-        """A cell's number over ``per``, rounded once, so that 35 over 1000 is 0.035; NaN for what
-        is no finite number.
+    def number(self, cell: str, unit: Unit = _SI) -> float:
+        """A cell's number in a ``unit``, in SI and rounded once, so that 35 mm are 0.035; NaN for
+        what is no finite number.
 
         Raises :class:`.DeclarationError` as :meth:`pointed` does.
         """
         try:
-            found = float(Decimal(plain(self.pointed(cell))) / per)
+            found = unit.number(plain(self.pointed(cell)))
         except (ArithmeticError, ValueError):
             return math.nan
         return found if math.isfinite(found) else math.nan
 
-    def finite(self, column: object, cell: str, per: Per = 1) -> float:
+    def finite(self, column: object, cell: str, unit: Unit = _SI) -> float:
         """A cell's number as :meth:`number` gives it.
 
         Raises :class:`.DeclarationError`, which names the ``column``, for what is no finite number.
         """
-        found = self.number(cell, per)
+        found = self.number(cell, unit)
         if math.isnan(found):
             raise DeclarationError(
                 f"{self.where}, column '{column}': expected a finite number, got {cell!r}"
             )
         return found
 
-    def positive(self, column: str, cell: str, per: Per = 1, *, zero: bool = False) -> float:
+    def positive(self, column: str, cell: str, unit: Unit = _SI, *, zero: bool = False) -> float:
         """A cell's number, above zero, or at least that if it may be ``zero``.
 
         Raises :class:`.DeclarationError`, which names the ``column``, for any other.
         """
-        found = self.number(cell, per)
+        found = self.number(cell, unit)
         if not (found > 0.0 or (zero and found == 0.0)):
             raise DeclarationError(
                 f"{self.where}: {column}: expected a positive number, got {cell!r}"
@@ -137,7 +123,8 @@ def _headings(cells: Sequence[str]) -> list[tuple[str, str]]:
 @dataclass(frozen=True, eq=False)
 class Table:
     """A file's columns: the row of its ``head``, the ``names`` and the ``units`` in that, and the
-    rows below. There are no names if the first row is of numbers.
+    rows below. There are no names if the first row is of numbers. ``texts`` are the cells of the
+    first row of a log that are no numbers, by their place.
     """
 
     path: Path
@@ -145,6 +132,7 @@ class Table:
     names: tuple[str, ...]
     units: tuple[str, ...]
     rows: Iterator[Row]
+    texts: Mapping[int, str] = field(default_factory=dict)
 
     @classmethod
     def read(
@@ -163,35 +151,49 @@ class Table:
         """Read a table of values over time: the first row may be of numbers, and units may stand in
         a row below the heads.
         """
+        table = cls._headed(path, expected, skip)
+        if (first := next(table.rows, None)) is None:
+            return table
+        texts = {
+            place: cell
+            for place, (cell, unit) in enumerate(zip(first.cells, table.units, strict=True))
+            if _TEXT.match(cell) and not unit and cell.lower() not in _MISSING
+        }
+        return replace(table, rows=chain([first], table.rows), texts=texts)
+
+    @classmethod
+    def _headed(cls, path: Path, expected: str, skip: int) -> Table:
+        """A log with its heads and units."""
         table = cls.read(path, expected, skip)
         head, rows = table.head, table.rows
         unread = [cell for cell in head.cells if math.isnan(head.number(cell))]
         if meant := [cell for cell in unread if _is_meant(cell)]:
             raise DeclarationError(f"{head.where}: expected a finite number, got {meant[0]!r}")
-        if not unread:
+        if not unread or _is_time(head.pointed(head.cells[0])):
             return replace(table, names=(), units=("",) * len(head.cells), rows=chain([head], rows))
         below = next(rows, None)
         if below is None:
             return table
         words = [cell.strip("[]()") for cell in below.cells]
-        if {"", "1"}.issuperset(words) or not {"", *SIZES, *COUNTS}.issuperset(words):
+        if {"", "1"}.issuperset(words) or not all(map(_is_unit, words)):
             return replace(table, rows=chain([below], rows))
         units = (unit or word for unit, word in zip(table.units, words, strict=True))
         return replace(table, units=tuple(units))
 
-    def sizes(
+    def units_of(
         self,
-        needed: Mapping[str, Mapping[str, Given]],
-        optional: Mapping[str, Mapping[str, Given]] | None = None,
-    ) -> dict[str, Given]:
-        """Return the sizes of the units of columns, by what each unit may be; of those that are
-        ``optional``, if they are there.
+        needed: Mapping[str, str],
+        optional: Mapping[str, str] | None = None,
+        usual: Mapping[str, str] | None = None,
+    ) -> dict[str, Unit]:
+        """Return the units of columns, each of which has one of the kind of a unit; of those that
+        are ``optional``, if they are there. ``usual`` are those of heads without a unit.
 
         Raises :class:`.DeclarationError` for a column that is there twice, or is needed and is not
-        there, and for other units.
+        there, and for units of other kinds.
         """
         found = {}
-        for name, sizes in {**needed, **(optional or {})}.items():
+        for name, unit in {**needed, **(optional or {})}.items():
             where, many = self.head.where, self.names.count(name)
             if not many and name not in needed:
                 continue
@@ -200,12 +202,10 @@ class Table:
                     f"{where}: expected one column '{name}' of {', '.join(needed)}, got"
                     f" {', '.join(self.head.cells)}"
                 )
-            unit = self.units[self.names.index(name)]
-            if unit not in sizes:
-                wrong = f"cannot be in '{unit}'" if unit else "has no unit"
-                valid = ", ".join(filter(None, sizes))
-                raise DeclarationError(f"{where}: column '{name}' {wrong}; valid: {valid}")
-            found[name] = sizes[unit]
+            word = self.units[self.names.index(name)] or (usual or {}).get(name, "")
+            if wrong := differs(word or ("1" if unit == "1" else ""), unit):
+                raise DeclarationError(f"{where}: column '{name}' is in {wrong}")
+            found[name] = Unit.of(word or unit)
         return found
 
     def entries(self, what: str) -> Iterator[tuple[Row, dict[str, str]]]:
@@ -243,7 +243,7 @@ class Table:
         where, many = self.path.name, len(self.units)
         if isinstance(column, str):
             both = zip(self.head.cells, self.names, strict=False)
-            found = [k for k, words in enumerate(both) if column in words]
+            found = [k for k, words in enumerate(both) if column in words] or self._joint(column)
             if not found:
                 valid = self.names or [f"the numbers 1 to {many}"]
                 raise UnknownNameError(what, column, valid, place=where)
@@ -256,36 +256,69 @@ class Table:
             )
         return column - 1
 
-    def columns(self, time: int, places: Sequence[int], gaps: bool = False) -> Array:
-        """Return times, which increase, and the columns at some places, (1 + columns, rows); with
-        ``gaps``, missing values are NaN.
+    def _joint(self, name: str) -> list[int]:
+        """Places of a joint's position in a log of ROS: below ``.../NAME/position``, or beside the
+        column whose cells are its name, as ``position_0`` beside ``name_0``.
+        """
+        named = [self.head.cells[k] for k, cell in self.texts.items() if cell == name]
+        heads = {"position".join(head.rsplit("name", 1)) for head in named if "name" in head}
+        cells = enumerate(self.head.cells)
+        return [k for k, head in cells if head in heads or head.endswith(f"/{name}/position")]
+
+    def times(self, column: str | int | Sequence[str | int]) -> list[int]:
+        """Places of the times: of one column, or of two with seconds and nanoseconds; where the
+        first of these is named, the second may stand beside it.
+        """
+        if not isinstance(column, str | int):
+            return [self.place(one, "column of times") for one in column]
+        at = self.place(column, "column of times")
+        beside = "\n".join(self.names[at : at + 2])
+        return [at, at + 1] if _TWO_TIMES.fullmatch(beside) else [at]
+
+    def columns(
+        self, time: Sequence[int], places: Sequence[int], unit: str = "", gaps: bool = False
+    ) -> tuple[Array, Clock]:
+        """Return times [s], which increase, and the columns at some places, (1 + columns, rows),
+        and the clock by which times were read, in a ``unit`` if that is stated; with ``gaps``,
+        missing values are NaN.
         """
         found: list[list[float]] = []
+        clock, before = Clock(_SI), ""
 
         def column(place: int) -> object:
             return self.head.cells[place] if self.names else place + 1
 
+        if unit and (wrong := differs(unit, "s")):
+            raise DeclarationError(f"{self.path.name}: column '{column(time[0])}' is in {wrong}")
         for row in self.rows:
-            numbers = [row.finite(column(time), row.cells[time])]
+            cells = [row.pointed(row.cells[place]) for place in time]
+            try:
+                clock = clock if found else Clock.of(cells, unit)
+                numbers = [clock.read(cells)]
+            except (ArithmeticError, ValueError):
+                raise DeclarationError(
+                    f"{row.where}, column '{column(time[0])}': expected a finite number, or a time"
+                    f" as 2025-01-31T12:00:00Z, got '{', '.join(cells)}'"
+                ) from None
             for place in places:
                 cell = row.cells[place]
                 missing = gaps and cell.lower() in _MISSING
                 numbers.append(math.nan if missing else row.finite(column(place), cell))
             if found and not numbers[0] > found[-1][0]:
                 raise DeclarationError(
-                    f"{row.where}: times must increase, but {row.cells[time]} follows"
-                    f" {found[-1][0]:g}"
+                    f"{row.where}: times must increase, but {' and '.join(cells)} follows {before}"
                 )
             found.append(numbers)
+            before = " and ".join(cells)
         columns: Array = np.array(found, float).reshape(-1, 1 + len(places)).T
-        return columns
+        return columns, clock
 
 
 def read_rows(
     path: str | os.PathLike[str], expected: str, skip: int = 0, names: str = ""
 ) -> Iterator[Row]:
-    """The rows of a table in UTF-8, the head first where it has one; lines that are empty or begin
-    with ``#``, and the first ``skip`` lines, are passed over.
+    """The rows of a table in UTF-8 or UTF-16, the head first where it has one; lines that are empty
+    or begin with ``#``, and the first ``skip`` lines, are passed over.
 
     Cells are parted by semicolons, tabs or commas: the first of these that the first row has, if
     it has any; below lines that were skipped, which other programs wrote, by spaces if it has none.
@@ -301,7 +334,7 @@ def read_rows(
     first, delimiter, length = "", "", 0
     marks: dict[str, str] | None = None
     try:
-        with open(path, encoding="utf-8-sig") as file:
+        with open(path, encoding=encoding_of(path)) as file:
             for number, line in enumerate(file, 1):
                 if number <= skip or line.lstrip().startswith("#") or not line.strip():
                     continue
@@ -326,7 +359,7 @@ def read_rows(
                     )
                     raise DeclarationError(f"{where}: {len(cells)} cells, expected {length}{why}")
                 yield Row(where, number, cells, marks)
-    except (OSError, UnicodeDecodeError) as error:
+    except (OSError, UnicodeError) as error:
         raise PathError(f"{path}: cannot be read as text: {one_line(error)}") from None
     if not first:
         raise DeclarationError(f"{path}: it has no rows; expected {expected}")
@@ -390,6 +423,23 @@ def _cells(where: str, line: str, delimiter: str) -> tuple[str, ...]:
             f"{where}: no cells with {delimiter!r} between them: {why}"
         ) from None
     return tuple(cell.strip() for cell in cells)
+
+
+def encoding_of(path: str | os.PathLike[str]) -> str:
+    """The encoding of a text: UTF-16 where the first bytes say so. Raises ``OSError``."""
+    with open(path, "rb") as file:
+        return "utf-16" if file.read(2) in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
+
+
+def _is_time(cell: str) -> bool:
+    with suppress(ArithmeticError, ValueError):
+        stamp([cell])
+        return True
+    return False
+
+
+def _is_unit(word: str) -> bool:
+    return word in ("", *COUNTS) or known(word) is not None
 
 
 def _is_meant(cell: str) -> bool:

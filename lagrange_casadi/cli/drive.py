@@ -13,6 +13,7 @@ from typing import Any
 import click
 
 from ..base.arrays import Array
+from ..base.units import quantity, typed
 from ..errors import NoDesignError, UnknownNameError
 from ..results.solution import Solution
 from ..results.verification.certificate import certified_outputs, refuse_failed, summary
@@ -39,7 +40,7 @@ def drive(
     ratios: tuple[float, ...] = (),
     lead: float | None = None,
     efficiency: float = 1.0,
-    inertia: float = 0.0,
+    inertia: float | str = 0.0,
     plot: Path | None = None,
     **given: Any,
 ) -> None:
@@ -62,7 +63,7 @@ def drive(
         Set the travel per turn [m] of the screw or belt of a sliding drive.
     efficiency : NUMBER
         Set the efficiency of the gearbox, from 0 to 1.
-    inertia : NUMBER
+    inertia : INERTIA
         Add this moment of inertia to that of the motor's rotor [kg m^2].
     parameters
         As of :func:`.studies.evaluate.evaluate`.
@@ -80,8 +81,8 @@ def drive(
             f"--lead: expected a positive length [m], got {lead}",
         ),
         (
-            not 0.0 <= inertia < math.inf,
-            f"--inertia: expected a number that is not negative [kg m^2], got {inertia:g}",
+            not 0.0 <= typed(inertia)[0] < math.inf,
+            f"--inertia: expected a number that is not negative [kg m^2], got {inertia}",
         ),
     )
     loaded = load_case(case)
@@ -141,7 +142,7 @@ def _choose(
     ratios: Sequence[float],
     lead: float | None,
     efficiency: float,
-    inertia: float,
+    inertia: float | str,
     carried: Array,
 ) -> Choice:
     """The motor of a drive.
@@ -159,8 +160,10 @@ def _choose(
         )
     per_unit = 1.0 if lead is None else math.tau / lead
 
+    beside_rotor = quantity("--inertia", inertia, "kg" if linear else "kg m^2")
+
     def asked(ratio: float, rotor: float) -> Duty:
-        total_inertia = rotor + inertia
+        total_inertia = rotor + beside_rotor
         beside = partial(duty_of, solution, name, linear=linear, carried=carried)
         return beside(ratio=ratio, efficiency=efficiency, inertia=total_inertia)
 

@@ -9,7 +9,6 @@ from typing import Any
 
 import click
 
-from ..base.numerals import real
 from ..errors import UnknownNameError
 from ..model.even_points import EvenPoints
 from ..model.torques import Law, dc_motor, induction_motor, power, torque
@@ -22,7 +21,7 @@ from ..studies.forward.running import free as run
 from ..views.charts.free_cycle import plot_cycle
 from ..views.shapes.picture_files import check_picture
 from .echo import echo
-from .options import HDF5, refuse, target
+from .options import HDF5, measured, refuse, target
 
 LAWS: dict[str, tuple[Callable[..., Law], int]] = {
     "torque": (torque, 1),
@@ -38,8 +37,8 @@ def free(
     *,
     drive: str | None = None,
     geared: float = 1.0,
-    load: float = 0.0,
-    inertia: float = 0.0,
+    load: float | str = 0.0,
+    inertia: float | str = 0.0,
     start: str | None = None,
     steady: bool = False,
     fluctuation: float | None = None,
@@ -65,9 +64,9 @@ def free(
         a steady cycle the torque that keeps the mean speed.
     geared : NUMBER
         Set the gear ratio, turns of the motor per turn of the drive.
-    load : NUMBER
+    load : TORQUE
         Apply this resisting torque [N m].
-    inertia : NUMBER
+    inertia : INERTIA
         Put a flywheel of this inertia on the drive [kg m^2].
     start : COORDINATE,RATE
         Set the initial coordinate and rate [rad, rad/s or m, m/s]; default: those of the case.
@@ -91,7 +90,6 @@ def free(
         (sized and inertia, "--fluctuation finds the flywheel; expected it without --inertia"),
         (sized and t, "--fluctuation computes a steady cycle; expected it without --t"),
         (drive is None and geared != 1.0, "--geared goes with --drive"),
-        (not math.isfinite(load), f"--load: expected a finite number, got {load:g}"),
         (
             not 0.0 < cycle < math.inf,
             f"--cycle: expected a positive number of turns, got {cycle:g}",
@@ -138,12 +136,12 @@ def _law(text: str) -> Law:
     return make(*_numbers(f"--drive {word}", numbers, many))
 
 
-def _numbers(what: str, text: str, many: int) -> list[float]:
+def _numbers(what: str, text: str, many: int) -> list[float | str]:
     try:
-        found = [real(word) for word in text.split(",")]
-    except ValueError:
+        found = [measured(word) for word in text.split(",")]
+    except click.BadParameter:
         found = []
-    if len(found) != many or not all(map(math.isfinite, found)):
+    if len(found) != many or not all(isinstance(x, str) or math.isfinite(x) for x in found):
         numbers = "a finite number" if many == 1 else f"{many} finite numbers with commas between"
         raise click.UsageError(f"{what}: expected {numbers}, got '{text}'")
     return found

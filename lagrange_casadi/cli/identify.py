@@ -89,6 +89,8 @@ def identify(
     read = partial(read_measurements, names=names, noise=noise, counts_per_turn=turns)
     record, other = read(data), None if validate is None else read(validate)
     found = estimate(loaded.scene, record, trim=trim, **given)
+    if record.first:
+        echo(f"note: times of {data.name} count from the stamp of its first row, {record.first}")
     second = None if other is None else found.validate(other, trim)
     echo(*_lines(found, second))
     save_identification(found, out, second)

@@ -139,12 +139,23 @@ def axis(text: str) -> tuple[str, Axis]:
         raise click.BadParameter(f"{name}: {error}") from None
 
 
-@_reads("a length [m], as in 0.005 or 5mm")
-def length(text: str) -> float:
-    """A length, which may have a unit, as 5mm."""
-    from ..base.units import number
+def _in_unit(unit: str, what: str) -> Callable[[str], float]:
+    """The reader of a number, which may have another unit."""
 
-    return number(_value(text), "m", finite=False)
+    @_reads(what)
+    def reader(text: str) -> float:
+        from ..base.units import number
+
+        return number(_value(text), unit, finite=False)
+
+    return reader
+
+
+@_reads("a number in SI units, or one with its unit")
+def measured(text: str) -> float | str:
+    """A number, or a text with its unit, which is checked later."""
+    found: float | str = _value(text)
+    return found
 
 
 @_reads("NAME=VALUE with a number in SI units, as in l=0.25 or phi=30deg")
@@ -241,11 +252,14 @@ def _named(text: str) -> tuple[str, str]:
     return name, words
 
 
-def _value(word: str) -> Any:
-    """A number, or the text of one with a unit. Raises ``ValueError`` for anything else."""
+def _value(word: object) -> Any:
+    """A number, or the text of one with a unit; a default is a number already.
+
+    Raises ``ValueError`` for anything else.
+    """
     from ..base.units import typed
 
-    return word if typed(word)[1] else real(word)
+    return word if not isinstance(word, str) or typed(word)[1] else real(word)
 
 
 def _read(read: Callable[[str], Value], what: str, word: str, words: str) -> Value:
@@ -270,7 +284,11 @@ _READERS: Mapping[str, Kind] = {
     "JOINT=NAME": _reads("NAME=NAME")(_named),
     "NUMBER|NAME=NUMBER": counts,
     "NODES|ACCURACY": table,
-    "LENGTH": length,
+    "LENGTH": _in_unit("m", "a length [m], as in 0.005 or 5mm"),
+    "TORQUE": measured,
+    "INERTIA": measured,
+    "HZ": _in_unit("1/s", "a frequency [Hz], as in 50 or 50Hz"),
+    "SECONDS": _in_unit("s", "a time [s], as in 0.5 or 500ms"),
     "SHARE": share,
     "N": click.IntRange(1),
     "THREADS": click.IntRange(1, MOST_THREADS),

@@ -20,6 +20,7 @@ import casadi as ca
 from ..base.quantities import Output
 from ..base.scalars import graph
 from ..base.symbolic import Graphs, symbolic
+from ..base.tables import FORCE, MOMENT
 from ..errors import DeclarationError
 from ..model.loads import Friction
 from ..model.scene import Scene
@@ -81,9 +82,11 @@ def free_equation(scene: Scene, drive: Law, load: Law, values: Mapping[str, floa
     program = compile_scene(scene, ["effort"], parameters=values)
     t, d, rate, acceleration, z, p = program.instant.sx_in()
     symbols = scene.mechanism.symbols
+    slides = scene.mechanism.coordinates[joint][1].kind == "slide"
+    unit = FORCE if slides else MOMENT
     pushed, resisting = (
         ca.substitute(
-            torque_of(law, f"{what}= of the free machine", (t, d, rate), symbols), symbols, p
+            torque_of(law, f"{what}= of the free machine", (t, d, rate), symbols, unit), symbols, p
         )
         for what, law in (("drive", drive), ("load", load))
     )
@@ -112,7 +115,6 @@ def free_equation(scene: Scene, drive: Law, load: Law, values: Mapping[str, floa
     all_rows = ca.vertcat(*rows)
     given = {"t": t, "angle": d, "speed": rate, "z": z, "added": added, "p": p}
     state = graph("state", given, out=all_rows)
-    slides = scene.mechanism.coordinates[joint][1].kind == "slide"
     timed = bool(ca.depends_on(all_rows, t))
     jams = tuple(_joints(scene, names) for names in program.checks("jam"))
     return FreeEquation(program, joint, state, _loops(program), jams, timed, slides)

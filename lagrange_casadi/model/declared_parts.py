@@ -14,10 +14,10 @@ from ..base.arguments import Symbolic, public
 from ..base.brief import Brief
 from ..base.numerals import readable
 from ..base.quantities import Output
-from ..base.units import Number, in_words, number
+from ..base.units import Number, number
 from ..base.vectors import Expression as Expression
 from ..base.vectors import Vector as Vector
-from ..errors import NumberError, ParameterError, shown
+from ..errors import NumberError, ParameterError
 from .beams.beam import Beam
 from .link_density import Density
 
@@ -54,8 +54,8 @@ class Parameter(Brief):
         """Describe the fault of a value; empty if it is a finite number within ``[low, high]``."""
         try:
             found = self.number(value)
-        except NumberError:
-            return f"parameter '{self.name}' must be a {in_words(self.unit)}, got {shown(value)}"
+        except NumberError as error:
+            return f"parameter '{self.name}': {error}"
         if not math.isfinite(found):
             return f"parameter '{self.name}' must be a finite number, got {found}"
         if not self.low <= found <= self.high:

@@ -225,13 +225,13 @@ def tensor(what: str, inertia: Expression, checked: Checked) -> tuple[Vector, Ve
         and len(inertia) == 3
         and not any(isinstance(row, (tuple, list)) for row in inertia)
     ):
-        x, y, z = vector(where, inertia, checked)
+        x, y, z = vector(where, inertia, checked, "kg m^2")
         return (x, 0.0, 0.0), (0.0, y, 0.0), (0.0, 0.0, z)
     if not isinstance(inertia, (tuple, list)) or len(inertia) != 3:
         raise DeclarationError(
             f"{where} must be three moments of inertia or a 3 x 3 matrix, got {inertia!r}"
         )
-    rows = [list(vector(where, row, checked)) for row in inertia]
+    rows = [list(vector(where, row, checked, "kg m^2")) for row in inertia]
     size = max(
         (abs(entry) for row in rows for entry in row if isinstance(entry, float)), default=0.0
     )

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from ..base.arrays import Array
 from ..base.space import require
 from ..base.units import number
-from ..errors import DeclarationError, shown
+from ..errors import DeclarationError, NumberError, shown
 
 EvenPoints = tuple[float, float, int]
 """Evenly spaced: start, stop and count; both ends are included."""
@@ -39,6 +39,10 @@ def checked(what: str, even: EvenPoints, unit: str = "1") -> EvenPoints:
             raise TypeError
         start, stop = (number(end, unit, finite=False) for end in (even[0], even[1]))
         count = int(number(even[2]))
+    except NumberError as error:
+        raise DeclarationError(
+            f"{what}: expected (start, stop, count), got {shown(even)}: {error}"
+        ) from None
     except (TypeError, ValueError, LookupError, OverflowError):
         raise DeclarationError(
             f"{what}: expected (start, stop, count), got {shown(even)}"

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Annotated, Any, TypeAlias
 
-from ..base.arguments import NotNegative, Positive, Symbolic, public
+from ..base.arguments import Force, Hours, NotNegative, Positive, Stress, Symbolic, public
 from ..base.brief import Brief
+from ..base.units import Within
 from .beams.material import Material
+
+Heating: TypeAlias = Annotated[Any, Within(0.0, above=True, unit="W/m^2")]
 
 
 @public
@@ -23,7 +27,7 @@ class Pin(Brief):
     eye: Symbolic
     cheek: Symbolic
     material: Material
-    pressure: Positive | None = None
+    pressure: Stress | None = None
     gap: Symbolic = 0.0
 
 
@@ -39,9 +43,9 @@ class Plain:
 
     bore: Symbolic
     width: Symbolic
-    pressure: Positive | None = None
+    pressure: Stress | None = None
     speed: Symbolic | None = None
-    heating: Positive | None = None
+    heating: Heating | None = None
 
 
 @public
@@ -54,9 +58,9 @@ class Rolling:
     the pin's axis, and ``axial`` times that along it (ISO 281).
     """
 
-    dynamic: Positive
-    hours: Positive
-    static: Positive | None = None
+    dynamic: Force
+    hours: Hours
+    static: Force | None = None
     exponent: Positive = 3.0
     radial: NotNegative = 1.0
     axial: NotNegative = 0.0

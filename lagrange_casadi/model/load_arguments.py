@@ -53,7 +53,7 @@ def line_load(
         )
 
     def checked(value: Expression) -> Expression:
-        return own.expression(what, value, moving=True)
+        return own.expression(what, value, "N/m", moving=True)
 
     if between is None:
         start: Expression = 0.0
@@ -134,7 +134,11 @@ def friction(
     own.free("load", name, own.declared.loads)
     what = f"friction '{name}'"
     axis, beside = _axes(own, what, joint, along)
-    units = _UNITS | {"smooth": "rad/s" if axis.kind == "angle" else "m/s"}
+    angular = axis.kind == "angle"
+    units = _UNITS | {
+        "smooth": "rad/s" if angular else "m/s",
+        "viscous": "N m s/rad" if angular else "N s/m",
+    }
     numbers = {
         key: _number(own, what, key, value, units.get(key, "1"))
         for key, value in given.items()

@@ -70,11 +70,13 @@ def mass_properties_of(
                 f"{what}: second moments of slices are for links in space; leave them out in a"
                 " plane"
             )
-        checked_density = _checked(density, f"{what}: density", checked)
+        unit = "kg/m" if density.per_length else "kg"
+        checked_density = _checked(density, f"{what}: density", checked, unit)
         if density.slices is None:
             return checked_density
         moments = (
-            _checked(moment, f"{what}: second moments", checked) for moment in density.slices.each
+            _checked(moment, f"{what}: second moments", checked, "kg m")
+            for moment in density.slices.each
         )
         return replace(checked_density, slices=Slices(*moments))
     if centre is not None:
@@ -90,7 +92,7 @@ def _in_plane(
     if not isinstance(centre, (tuple, list)) or len(centre) != 2:
         raise DeclarationError(f"{what}: centre must be two components (x, y), got {centre!r}")
     x, y = (checked(f"{what}: centre", c, "m") for c in centre)
-    return (x, y, 0.0), (ZERO, ZERO, (0.0, 0.0, checked(f"{what}: inertia", inertia)))
+    return (x, y, 0.0), (ZERO, ZERO, (0.0, 0.0, checked(f"{what}: inertia", inertia, "kg m^2")))
 
 
 def beam_of(what: str, beam: Beam | None, checked: Callable[..., Expression]) -> Beam | None:
@@ -105,8 +107,8 @@ def beam_of(what: str, beam: Beam | None, checked: Callable[..., Expression]) ->
     return beam.mapped(lambda name, value: checked(f"{what}: {name} of its cross-section", value))
 
 
-def _checked(density: Density, what: str, checked: Callable[..., Expression]) -> Density:
-    cells = tuple(tuple(checked(what, c) for c in cell) for cell in density.cells)
+def _checked(density: Density, what: str, checked: Callable[..., Expression], unit: str) -> Density:
+    cells = tuple(tuple(checked(what, c, unit) for c in cell) for cell in density.cells)
     return Density(density.breaks, cells, density.per_length)
 
 

@@ -17,6 +17,7 @@ import casadi as ca
 from ..base.arguments import public
 from ..base.brief import listed
 from ..base.symbolic import symbolic
+from ..base.tables import FORCE, MOMENT
 from ..base.units import Number, quantity
 from ..errors import DeclarationError
 from .beams.beam import Beam
@@ -94,8 +95,7 @@ class Mechanism(Declaration):
         name : str
             A letter, then letters, digits or underscores.
         default : float or str
-            Its value, in ``unit``; a length, mass, time or angle may be a text such as ``"45
-            deg"``.
+            Its value, in ``unit``, or a text with its unit such as ``"45 deg"`` or ``"5 kN"``.
         unit : str
             Its unit, by default none.
         low, high : float or str
@@ -493,7 +493,7 @@ class Mechanism(Declaration):
                 f"load '{name}': a force on the ground has no effect; expected a point of a link"
                 " or a point mass"
             )
-        x, y, z = (self._load(name, component) for component in components)
+        x, y, z = (self._load(name, component, FORCE) for component in components)
         self.loads[name] = load = Force(name, place, (x, y, z), turning)
         return load
 
@@ -546,7 +546,7 @@ class Mechanism(Declaration):
                     f"load '{name}': point mass '{end.body.name}' cannot take a torque; expected a"
                     " link"
                 )
-        x, y, z = (self._load(name, component) for component in components)
+        x, y, z = (self._load(name, component, MOMENT) for component in components)
         self.loads[name] = load = Torque(name, first, (x, y, z), second, turning)
         return load
 
@@ -627,8 +627,9 @@ class Mechanism(Declaration):
             If the name is taken.
         """
         ends = self._load_point(name, first), self._load_point(name, second)
-        stiffness, length = self._load(name, stiffness), self._load(name, length, "m")
-        self.loads[name] = load = Spring(name, *ends, stiffness, length, self._load(name, damping))
+        stiffness, length = self._load(name, stiffness, "N/m"), self._load(name, length, "m")
+        damping = self._load(name, damping, "N s/m")
+        self.loads[name] = load = Spring(name, *ends, stiffness, length, damping)
         return load
 
     def damper(
@@ -692,8 +693,8 @@ class Mechanism(Declaration):
             raise DeclarationError(
                 f"load '{name}': joint '{joint.name}' has no angle for a torsion spring"
             )
-        k, free = self._load(name, stiffness), self._load(name, angle, "rad")
-        c = self._load(name, damping)
+        k, free = self._load(name, stiffness, "N m/rad"), self._load(name, angle, "rad")
+        c = self._load(name, damping, "N m s/rad")
         return self._turn_back(
             name, joint, -(k * (self.coordinate(joint) - free)) - c * self.rate(joint)
         )
@@ -948,7 +949,7 @@ class Mechanism(Declaration):
             If a scene has been made.
         """
         self.ownership.refuse_frozen("set gravity")
-        x, y = (self.ownership.expression("gravity", component) for component in (x, y))
+        x, y = (self.ownership.expression("gravity", part, "m/s^2") for part in (x, y))
         self.gravity = x, y, 0.0
 
     def freeze(self) -> None:
@@ -1013,5 +1014,5 @@ class Mechanism(Declaration):
         self.ownership.free("load", name, self.loads)
         return self.ownership.point(f"load '{name}'", place)
 
-    def _load(self, name: str, value: Expression, unit: str = "1") -> Expression:
+    def _load(self, name: str, value: Expression, unit: str) -> Expression:
         return self.ownership.expression(f"load '{name}'", value, unit, moving=True)

@@ -109,7 +109,7 @@ def harmonic(
     mean, amplitude
         Mean value and amplitude [rad or m], or texts such as ``"45 deg"``.
     frequency
-        Frequency [Hz], a number or an expression of parameters.
+        Frequency [Hz], or a text such as ``"50 Hz"``.
     phase
         Phase [rad], or a text such as ``"90 deg"``.
 
@@ -124,7 +124,7 @@ def harmonic(
         For a value that is neither a number nor an expression of parameters.
     """
     (middle, size), unit = coordinates("harmonic", ((mean, ""), (amplitude, "")))
-    often = scalar("harmonic: frequency", frequency, symbols_of(frequency), "parameter")
+    often = scalar("harmonic: frequency", frequency, symbols_of(frequency), "parameter", "1/s")
     ahead = scalar("harmonic: phase", phase, symbols_of(phase), "parameter", "rad")
     return Motion(lambda t: middle + size * ca.sin(2.0 * math.pi * often * t + ahead), unit=unit)
 

@@ -13,16 +13,14 @@ import numpy as np
 
 from ..base.arguments import public
 from ..base.arrays import Array
-from ..base.csv_table import Table, count_sizes, for_each
-from ..base.units import UNITS, count, quantity
+from ..base.csv_table import Table, count_sizes, encoding_of, for_each
+from ..base.units import count, differs, known, quantity
 from ..errors import DeclarationError, PathError, UnknownNameError, one_line
 from .curves import Curve, curve
 from .declared_parts import Expression
 from .expressions import coordinates, scalar, symbols_of
 from .motion_laws import Motion
 
-_UNITS = UNITS["rad"] | UNITS["m"]
-_TIMES = UNITS["s"]
 _LEAST = 5
 """So many rows are needed at least for four pieces."""
 
@@ -45,7 +43,8 @@ _FOURTH = 70.0
 @dataclass(frozen=True, eq=False)
 class Recording:
     """Values over time as a file has them, times in s, values in their ``unit``, and how they are
-    called. ``size`` is the unit in rad or m.
+    called. ``size`` is the unit in rad or m, ``first`` the time stamp
+    that is time zero, if any.
     """
 
     name: str
@@ -53,6 +52,7 @@ class Recording:
     t: Array
     values: Array
     size: float
+    first: str
 
 
 @public
@@ -60,7 +60,7 @@ def read_samples(
     path: str | Path,
     *,
     value: str | int = 2,
-    time: str | int = 1,
+    time: str | int | Sequence[str | int] = 1,
     unit: str | None = None,
     time_unit: str | None = None,
     counts_per_turn: float | None = None,
@@ -83,10 +83,11 @@ def read_samples(
         ``#`` are passed over.
     value, time
         The columns of the values and of the times: by their name in the first line, or by their
-        number, from 1.
+        number, from 1. Times may stand in two columns, of seconds and of nanoseconds. Stamps since
+        1970 (in s, ms, us or ns) and those of ISO 8601 count from the first row.
     unit, time_unit
         The units in the file: ``rad``, ``deg``, ``turn``, or ``m``, ``cm``, ``mm``, ``um``, or
-        ``counts``; ``s``, ``ms`` or ``us``. By default those that the file states, as
+        ``counts``; ``s``, ``ms`` or another of time. By default those that the file states, as
         :func:`read_motion` reads them; without these, rad and s.
     counts_per_turn
         Counts of an encoder for a turn, for a column in ``counts``.
@@ -142,7 +143,7 @@ def read_motion(
     path: str | Path,
     columns: Mapping[str, str | int] | Sequence[str] | None = None,
     *,
-    time: str | int = 1,
+    time: str | int | Sequence[str | int] = 1,
     unit: str | Mapping[str, str] | None = None,
     time_unit: str | None = None,
     counts_per_turn: float | Mapping[str, float] | None = None,
@@ -164,8 +165,10 @@ def read_motion(
         ``knee (deg)``, or a row of units below the heads; or a motion of OpenSim (``.mot``,
         ``.sto``), whose header says if angles are in degrees.
     columns
-        For each coordinate its column, by head without unit, or by number from 1. A sequence names
-        coordinates that are called as their columns; None takes all columns but the time.
+        For each coordinate its column, by head without unit, or by number from 1; or the name of a
+        joint in a log of ROS, with a head as ``/joint_states/NAME/position``, or with its name in a
+        column ``name_0`` and its position in ``position_0``. A sequence names coordinates that are
+        called as their columns; None takes all columns of numbers but the time.
     unit
         Units of values, for all or by coordinate, in place of those of the file: those of
         :func:`read_samples`, and ``counts``. Without either, rad.
@@ -196,8 +199,8 @@ def read_motion(
     path = Path(path)
     table = _table(path)
     if columns is None:
-        at = table.place(time)
-        columns = [name for k, name in enumerate(table.names) if name and k != at]
+        others = {*table.times(time), *table.texts}
+        columns = [name for k, name in enumerate(table.names) if name and k not in others]
         if not columns:
             raise DeclarationError(
                 f"{path.name}: the file has no column heads; name the columns with columns="
@@ -244,36 +247,36 @@ def _table(path: Path) -> Table:
 def _recordings(
     table: Table,
     named: Mapping[str, str | int],
-    time: str | int,
+    time: str | int | Sequence[str | int],
     unit: str | Mapping[str, str] | None,
     time_unit: str | None,
     counts_per_turn: float | Mapping[str, float] | None,
 ) -> tuple[list[Recording], float]:
     """Read columns by name, and the unit of the times in s."""
-    path, at = table.path, table.place(time)
+    path, at = table.path, table.times(time)
     places = {name: table.place(column) for name, column in named.items()}
-    second = _known(path, time_unit or table.units[at] or "s", _TIMES, "time unit")
     stated = for_each(path.name, named, "coordinate of unit=", unit, None)
     units = {name: stated[name] or table.units[k] or "rad" for name, k in places.items()}
     turns = count_sizes(path.name, named, units, counts_per_turn)
-    t, *series = table.columns(at, list(places.values()))
+    (t, *series), clock = table.columns(at, [*places.values()], time_unit or table.units[at[0]])
     if t.size < _LEAST:
         raise DeclarationError(
             f"{path.name}: expected at least {_LEAST} rows of numbers, got {t.size}"
         )
     found = []
     for (name, word), values in zip(units.items(), series, strict=True):
-        size = turns.get(name) or _known(path, word, {**_UNITS, "counts": 0.0}, "unit")
+        size = turns.get(name) or _known(path, word)
         called = f"{path.name}, column {named[name]}"
-        found.append(Recording(called, word, t * second, values, size))
-    return found, second
+        found.append(Recording(called, word, t, values, size, clock.first))
+    return found, clock.unit.factor
 
 
-def _known(path: Path, word: str, valid: Mapping[str, float], what: str) -> float:
-    """The size of a unit."""
-    if word not in valid:
-        raise UnknownNameError(what, str(word), valid, place=path.name)
-    return valid[word]
+def _known(path: Path, word: str) -> float:
+    """The size of a unit of angles or lengths."""
+    unit = known(word) if isinstance(word, str) else None
+    if unit is None or (differs(word, "rad") and differs(word, "m")):
+        raise UnknownNameError("unit", str(word), ("rad", "m", "counts"), place=path.name)
+    return unit.factor
 
 
 def _motion(
@@ -303,7 +306,9 @@ def _motion(
         raise DeclarationError(f"{name}: advance= needs periodic=True")
     # A ratio may make turns of lengths, and radians may be a rule's usual unit.
     if not unit_in and isinstance(ratio, float) and ratio == 1.0:
-        unit_in = "m" if recording.unit in UNITS["m"] else "" if recording.unit == "rad" else "rad"
+        unit_in = (
+            "m" if not differs(recording.unit, "m") else "" if recording.unit == "rad" else "rad"
+        )
     noise = _noise(recording, smoothing)
     return _law(recording, noise, points, cyclic, advance, found, unit_in)
 
@@ -316,13 +321,13 @@ def _header(path: Path) -> tuple[int, dict[str, str]]:
         return 0, {}
     described: dict[str, str] = {}
     try:
-        with open(path, encoding="utf-8-sig") as file:
+        with open(path, encoding=encoding_of(path)) as file:
             for count_read, line in zip(range(1, _LONGEST), file, strict=False):
                 word, _, value = line.strip().partition("=")
                 described[word.strip().lower()] = value.strip()
                 if word.lower() == "endheader":
                     return count_read, described
-    except (OSError, UnicodeDecodeError) as error:
+    except (OSError, UnicodeError) as error:
         raise PathError(f"{path}: cannot be read as text: {one_line(error)}") from None
     raise DeclarationError(f"{path.name}: expected a header that ends in the line 'endheader'")
 
@@ -397,9 +402,10 @@ def _law(
 
     every = f", resampled at {points} equally spaced times" if points else ""
     smoothed = f", smoothed by {noise:.3g} {recording.unit}" if noise else ""
+    since = f" since {recording.first}" if recording.first else ""
     described = (
         f"{t.size} samples of {recording.name} from {t[0]:g} to {t[-1]:g}"
-        f" s{', repeated' if periodic else ''}"
+        f" s{since}{', repeated' if periodic else ''}"
     )
     return Motion(
         graph,

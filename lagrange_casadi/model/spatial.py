@@ -564,7 +564,7 @@ class SpatialMechanism(Mechanism):
             Components [m/s^2] on ground axes, numbers or expressions of parameters.
         """
         self.ownership.refuse_frozen("set gravity")
-        self.gravity = self._vector("gravity", (x, y, z))
+        self.gravity = self._vector("gravity", (x, y, z), "m/s^2")
 
     def _spatial(
         self,

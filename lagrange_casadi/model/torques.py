@@ -7,10 +7,12 @@ from dataclasses import dataclass
 
 import casadi as ca
 
-from ..base.arguments import Symbolic, public
+from ..base.arguments import Measured, Symbolic, public
 from ..base.arrays import Expression
 from ..base.scalars import entries
 from ..base.symbolic import symbolic
+from ..base.tables import FORCE, MOMENT
+from ..base.units import typed
 from ..errors import DeclarationError
 from . import curves
 from .expressions import expressed, scalar, symbols_of
@@ -19,10 +21,12 @@ from .expressions import expressed, scalar, symbols_of
 @dataclass(frozen=True, eq=False)
 class Law:
     """A torque [N m], or force [N] of a drive that slides, over the time [s], the coordinate [rad
-    or m] and the rate [rad/s or m/s] of the drive: ``graph(t, angle, speed)``.
+    or m] and the rate [rad/s or m/s] of the drive: ``graph(t, angle, speed)``. ``unit`` is that of
+    a text that gives a number.
     """
 
     graph: Callable[[Expression, Expression, Expression], Expression]
+    unit: str = ""
 
     @public
     def geared(self, ratio: Symbolic) -> Law:
@@ -39,21 +43,28 @@ class Law:
             Its torque [N m] or force [N] at the drive.
         """
         times = _number("geared: ratio", ratio, "1")
-        return Law(lambda t, angle, speed: times * self.graph(t, times * angle, times * speed))
+        return Law(
+            lambda t, angle, speed: times * self.graph(t, times * angle, times * speed), self.unit
+        )
 
 
 @symbolic
-def torque_of(law: Law, what: str, arguments: Sequence[ca.SX], parameters: ca.SX) -> ca.SX:
+def torque_of(
+    law: Law, what: str, arguments: Sequence[ca.SX], parameters: ca.SX, unit: str
+) -> ca.SX:
     """Return a law as an expression of symbols for time, angle and speed, and of parameters.
 
-    Raises :class:`.DeclarationError`, saying ``what`` it is, for what is no such expression.
+    Raises :class:`.DeclarationError`, saying ``what`` it is, for what is no such expression, and
+    for one in another ``unit``.
     """
+    if law.unit not in ("", unit):
+        raise DeclarationError(f"{what} is in {law.unit}; expected {unit}")
     value = expressed(what, law.graph, arguments, "t, angle and speed")
     symbols = [*arguments, *entries(parameters)]
-    return ca.SX(scalar(what, value, symbols, "parameter", "N*m"))
+    return ca.SX(scalar(what, value, symbols, "parameter", "N m"))
 
 
-def law_of(given: Law | float | None, what: str) -> Law:
+def law_of(given: Law | Measured | None, what: str) -> Law:
     """Read a law; a number is a constant torque, and None no torque at all."""
     if isinstance(given, Law):
         return given
@@ -79,8 +90,9 @@ def torque(value: Symbolic) -> Law:
     Law
         The torque or force.
     """
-    constant = _number("torque", value, "N*m")
-    return Law(lambda t, angle, speed: constant)
+    unit = typed(value)[1]
+    constant = _number("torque", value, FORCE if unit == FORCE else MOMENT)
+    return Law(lambda t, angle, speed: constant, unit)
 
 
 @public
@@ -147,7 +159,7 @@ def dc_motor(stall_torque: Symbolic, no_load_speed: Symbolic) -> Law:
     DeclarationError
         For numbers of different signs, and for zero.
     """
-    stall = _number("dc_motor: stall_torque", stall_torque, "N*m")
+    stall = _number("dc_motor: stall_torque", stall_torque, "N m")
     free = _number("dc_motor: no_load_speed", no_load_speed, "rad/s")
     _check_direction("dc_motor", stall, free)
     return Law(lambda t, angle, speed: stall * (1.0 - speed / free))
@@ -179,7 +191,7 @@ def induction_motor(
     DeclarationError
         For torque and speed of different signs, for a slip that is not positive, and for zero.
     """
-    most = _number("induction_motor: breakdown_torque", breakdown_torque, "N*m")
+    most = _number("induction_motor: breakdown_torque", breakdown_torque, "N m")
     at = _number("induction_motor: breakdown_slip", breakdown_slip, "1")
     field = _number("induction_motor: synchronous_speed", synchronous_speed, "rad/s")
     _check_direction("induction_motor", most, field)

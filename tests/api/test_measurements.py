@@ -107,9 +107,9 @@ def written(given, heads, path):
 @pytest.mark.parametrize(
     ("column", "head", "says"),
     [
-        (1, "A [mm]", "'A' is in mm; expected rad"),
-        (3, "effort:A [mm]", "'effort:A' is in mm; expected N m"),
-        (0, "t [deg]", "'t' is in deg; expected s"),
+        (1, "A [mm]", "'A' is in mm, a length; expected an angle"),
+        (3, "effort:A [mm]", "'effort:A' is in mm, a length; expected a moment"),
+        (0, "t [deg]", "is in deg, an angle; expected a time"),
     ],
 )
 def test_a_unit_of_another_quantity_is_refused(arm_record, tmp_path, column, head, says):

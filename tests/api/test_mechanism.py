@@ -243,7 +243,7 @@ def test_a_mechanism_freezes_in_a_scene(m):
             {"l": math.nan, "m2": "big"},
             ParameterError,
             (
-                r"parameter 'l' must be a finite number, got nan; parameter 'm2' must be a number"
+                r"parameter 'l' must be a finite number, got nan; parameter 'm2': expected a number"
                 r" \[kg\], or a text such"
             ),
         ),

@@ -4,6 +4,7 @@ cycles, and what is refused of them.
 
 import math
 import re
+from datetime import datetime, timedelta, timezone
 
 import casadi as ca
 import numpy as np
@@ -104,6 +105,56 @@ def test_several_joints_are_read_with_the_units_of_the_file(here, layout):
     same(chosen["right"], curve(TIMES, 2.0 * math.tau * HIP), AT)
 
 
+NANO = 1_700_000_000_123_456_789
+"""A stamp [ns] that is no double; every tick of a log is a double of nanoseconds later."""
+
+TICKS = [NANO + 20_000_000 * k for k in range(61)]
+
+
+def split(tick, size):
+    return f"{tick // size}.{tick % size:0{len(str(size)) - 1}}"
+
+
+def iso(tick, ahead=0):
+    day = datetime.fromtimestamp(tick // 10**9, timezone(timedelta(hours=ahead)))
+    return f"{day:%Y-%m-%dT%H:%M:%S}.{tick % 10**9:09}{f'{ahead:+03}:00' if ahead else 'Z'}"
+
+
+LOGS = {
+    "seconds": ("t,q", "q", lambda n: split(n, 10**9), {}),
+    "milliseconds": ("t [ms],q [°]", "q", lambda n: split(n, 10**6), {"unit": "rad"}),
+    "nanoseconds": ("stamp,q", "q", str, {}),
+    "commas": ("t [us];q", "q", lambda n: split(n, 1000), {}),
+    "iso": ("t,q", "q", iso, {}),
+    "zone": ("t,q", "q", lambda n: iso(n, 2), {}),
+    "two": ("stamp.secs,stamp.nsecs,frame,q", "q", lambda n: f"{n // 10**9},{n % 10**9},up", {}),
+    "named": ("ns,s,q", "q", lambda n: f"{n % 10**9},{n // 10**9}", {"time": ["s", "ns"]}),
+    "no heads": ("", 5, lambda n: f"{n // 10**9},{n % 10**9},up,J1", {"time": [1, 2]}),
+    "rostopic": ("%time,field.name0,field.name1,field.position0,field.position1", "J1",
+                 lambda n: f"{n},J2,J1,7", {}),
+    "plotjuggler": ("__time,/joint_states/J1/position", "J1", lambda n: split(n, 10**9), {}),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
+@pytest.mark.parametrize("log", LOGS)
+def test_a_log_with_stamps_begins_at_its_first_row(here, log, encoding):
+    """No nanosecond since 1970 is lost; texts are passed over, and joints are found as ROS names
+    them.
+    """
+    heads, column, stamped, options = LOGS[log]
+    mark = ";" if ";" in heads else ","
+    rows = [f"{stamped(tick)}{mark}{KNEE[k]:.13f}" for k, tick in enumerate(TICKS)]
+    text = "\n".join([heads, *rows] if heads else rows)
+    file = here / "log.csv"
+    file.write_text(text.replace(".", ",") if mark == ";" else text, encoding=encoding)
+    law = read_motion(file, {"knee": column}, **options)["knee"]
+    same(law, curve(np.arange(61) * 0.02, np.round(KNEE, 13)), AT)
+    assert " since " in law.description
+    if log == "two":
+        assert list(read_motion(file)) == ["q"]
+
+
 RAMP_ROWS = "\n".join(f"{0.1 * k:g},{1.0 * k * k}" for k in range(8))
 
 
@@ -114,10 +165,10 @@ REFUSED = {
         "t,q,q", RAMP_ROWS.replace("\n", ",0\n") + ",0", {"value": "q"},
         "expected one column 'q', got 2",
     ),
-    "unit": ("t,q", RAMP_ROWS, {"unit": "grad"}, "unknown unit 'grad'.*; valid: rad, deg"),
+    "unit": ("t,q", RAMP_ROWS, {"unit": "grad"}, "unknown unit 'grad'.*; valid: rad, m, counts"),
     "unit of the file": ("t,q [yd]", RAMP_ROWS, {}, "unknown unit 'yd'; valid: .*counts"),
-    "time unit": ("t,q", RAMP_ROWS, {"time_unit": "min"}, "unknown time unit 'min'; valid: s"),
-    "time of the file": ("t [h],q", RAMP_ROWS, {}, "unknown time unit 'h'; valid: s, ms, us"),
+    "time unit": ("t,q", RAMP_ROWS, {"time_unit": "mm"}, "column 't' is in mm, a length"),
+    "time of the file": ("t [N],q", RAMP_ROWS, {}, "is in N, a force; expected a time"),
     "end": (
         "t,q", RAMP_ROWS, {"periodic": True},
         "the last value of a periodic motion must be the first, but it is off by 49",
@@ -135,6 +186,9 @@ REFUSED = {
     "points": ("t,q", RAMP_ROWS, {"points": 3}, "points: expected a whole number of at least 5"),
     "rows": ("t,q", RAMP_ROWS[: RAMP_ROWS.index("0.4")], {}, "expected at least 5 rows"),
     "back": ("t,q", RAMP_ROWS + "\n0.7,1", {}, "line 10: times must increase, but 0.7 follows 0.7"),
+    "stamp": ("t,q", "\n".join(f"{NANO + max(k, 1)},0" for k in range(8)), {},
+              f"line 3: times must increase, but {NANO + 1} follows {NANO + 1}"),
+    "no stamp": ("t,q", "2025-01-31T12:00:00Z,1\nnoon,2", {}, "line 3, column 't': expected"),
     "nan": ("t,q", RAMP_ROWS + "\n0.9,nan", {}, "line 10, column 'q': expected"),
     **{
         f"head {cell}": (f"0,{cell}", RAMP_ROWS, {}, "line 1: expected a finite number, got")

@@ -240,7 +240,7 @@ READS = [
     (lambda s: s.select(l=0.21), r"no design has l = 0\.21; nearest: 0\.25, 0\.13"),
     (lambda s: s.select(l=(0.21, 0.24)), r"no design has l up to 0\.24 and from 0\.21; nearest"),
     (lambda s: s.select(l=(0.3, 0.2)), "the range is reversed"),
-    (lambda s: s.select(l="30 deg"), r"expected numbers \[m\], not angles"),
+    (lambda s: s.select(l="30 deg"), r"l: \'30 deg\' is in rad, an angle; expected a length \[m\]"),
     (lambda s: s.select(l=[0.2, np.nan]), "expected a number, a list of numbers, or a tuple"),
     (lambda s: s["peak:effort:Q"], r"unknown column 'peak:effort:Q' \(did you mean '"),
     (lambda s: s[0], "name: expected a text, got 0"),

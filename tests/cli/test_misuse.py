@@ -355,7 +355,7 @@ SENTENCES = [
     ("sweep CASE --grid r=1,2 --grid r=3", 2, "--grid: parameter 'r' is swept twice"),
     ("tolerances CASE --tolerance r=1 --tolerance r=2", 2, "parameter 'r' is listed twice"),
     ("free CASE --geared 3", 2, "--geared goes with --drive"),
-    ("free CASE --load inf", 2, "--load: expected a finite number, got inf"),
+    ("free CASE --load inf", 2, "load: expected a law of forward, or a number"),
     ("free CASE --cycle -1", 2, "--cycle: expected a positive number of turns, got -1"),
     ("free CASE --drive torque=inf", 2, "--drive torque: expected a finite number, got 'inf'"),
     ("free CASE --fluctuation 0.1 --t 0:1:5", 2, "expected it without --t"),

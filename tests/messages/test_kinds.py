@@ -167,7 +167,7 @@ WRONG = {
     ),
     "damping": (
         lambda s: sprung(damping="much"),
-        "load 'spring' must be a number or an expression",
+        "load 'spring': expected a finite number [N m s/rad], or a text such as",
     ),
     "a place": (
         lambda s: SpatialMechanism("m").at("arm", 0.0, 0.0, 0.0),

@@ -6,20 +6,26 @@ import dataclasses
 import math
 from collections.abc import Mapping
 from decimal import Decimal
+from fractions import Fraction
 
 import casadi as ca
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from mechanisms import four_bar
 
 from lagrange_casadi import (
     Mechanism,
     Scene,
     SpatialMechanism,
+    actuators,
     beams,
     bearings,
+    density,
     elements,
     evaluate,
+    forward,
     prepare,
     sweep,
 )
@@ -35,7 +41,21 @@ WORDS = {
     "s": ("ms", 3),
     "rad": ("rad", 0),
     "m/s": ("mm/s", 3),
-    "rad/s": ("rad/s", 0),
+    "m/s^2": ("cm/s²", 2),
+    "rad/s": ("mrad/s", 3),
+    "1/s": ("kHz", -3),
+    "kg m^2": ("kg cm^2", 4),
+    "kg/m": ("t/m", -3),
+    "kg/m^2": ("g/cm2", -1),
+    "kg/m^3": ("kg/l", -3),
+    "N": ("kN", -3),
+    "N/m": ("N/mm", -3),
+    "N m": ("Nmm", 3),
+    "N m/rad": ("kN m/rad", -3),
+    "N s/m": ("N·s/mm", -3),
+    "N m s/rad": ("N*cm*s/rad", 2),
+    "Pa": ("N/mm^2", -6),
+    "W": ("kW", -3),
 }
 
 
@@ -148,7 +168,46 @@ def evaluated(u):
     return evaluate(crank(u), parameters=values).effort("O").tolist()
 
 
-DECLARED = [wheels, shapes, cams, loaded, notched, evaluated]
+def pressed(u):
+    m = Mechanism("pressed")
+    arm = m.link("arm", length=0.3, mass=1.0, centre=(0.1, 0.0), inertia=u(0.02, "kg m^2"))
+    pin = m.revolute("O", m.ground, arm)
+    rod = m.link("rod", length=0.1, density=density.polynomial(u(2.0, "kg/m"), u(1.0, "kg/m")))
+    way = m.prismatic("S", arm.tip, rod, axis=(1, 0))
+    m.set_gravity(0.0, u(-9.81, "m/s^2"))
+    m.force("press", arm.tip, x=u(-5000.0, "N"))
+    m.torque("motor", arm, u(250.0, "N m"))
+    m.line_load("wind", rod, y=(u(1200.0, "N/m"), u(600.0, "N/m")))
+    m.spring("coil", m.ground, arm.tip, stiffness=u(2e4, "N/m"), length=0.1,
+             damping=u(8.0, "N s/m"))  # fmt: skip
+    m.torsion_spring("bar", pin, stiffness=u(30.0, "N m/rad"), damping=u(0.5, "N m s/rad"))
+    m.friction("pin", pin, viscous=u(0.25, "N m s/rad"))
+    m.friction("way", way, viscous=u(40.0, "N s/m"))
+    elements.plate(m, "plate", ((0, 0), (1, 0), (0, 1)), per_area=u(80.0, "kg/m^2"))
+    elements.wheel(m, "wheel", radius=0.1, width=0.02, density=u(7000.0, "kg/m^3"))
+    elements.cylinder(m, "ram", m.ground.at(0.5, -0.5), arm.tip, closed=0.4, bore=0.05,
+                      back_pressure=u(2e5, "Pa"))  # fmt: skip
+    return [parts_of(m), str(m.gravity), [str(out.expression) for out in m.outputs.values()]]
+
+
+def rated(u):
+    strong = {"elasticity": u(210e9, "Pa"), "yield_strength": u(355e6, "Pa")}
+    turning = ("N m", "N m", "rad/s", "N m", "rad/s", "kg m^2")
+    sizes = (1.0, 0.75, 300.0, 3.0, 400.0, 0.0005)
+    main = [u(size, unit) for size, unit in zip(sizes, turning, strict=True)]
+    return [
+        written(beams.Material("steel", u(7850.0, "kg/m^3"), **strong)),
+        written(actuators.Motor("m", *main, time_constant=u(8.0, "s"))),
+        written(bearings.Rolling(u(14e3, "N"), 8000.0, u(7e3, "N"))),
+        bearings.rated_hours(u(14e3, "N"), u(2e3, "N"), 1500.0),
+        bearings.static_rating(u(0.008, "m"), u(0.04, "m"), 9),
+        str(harmonic(0.0, 1.0, u(50.0, "1/s")).graph(0.03)),
+        forward.power(u(150.0, "W")).graph(0.0, 0.0, 2.0),
+        forward.dc_motor(u(12.0, "N m"), u(300.0, "rad/s")).graph(0.0, 0.0, 2.0),
+    ]
+
+
+DECLARED = [wheels, shapes, cams, loaded, notched, pressed, rated, evaluated]
 
 
 @pytest.mark.parametrize("declared", DECLARED)
@@ -166,7 +225,10 @@ def test_what_is_declared_by_a_text_is_what_its_number_declares(declared):
             other = f"{value} s" if unit.startswith("m") else f"{value} m"
             return other if next(told) == wrong else value
 
-        with pytest.raises(LagrangeCasadiError, match=r"got .*'|the law is in (m|s|rad), but"):
+        with pytest.raises(
+            LagrangeCasadiError,
+            match=r"is an? .*; expected an? |got '.* s'|the law is in (m|s), but",
+        ):
             declared(at)
 
 
@@ -189,13 +251,60 @@ def default(value, unit):
         ("500 g", "kg", 0.5),
         ("20 ms", "s", 0.02),
         ("90 deg/s", "rad/s", math.pi / 2),
+        ("540 deg", "rad", 3 * math.pi),
+        ("90°", "rad", math.pi / 2),
+        ("1500 rpm", "rad/s", 50 * math.pi),
+        ("1500 1/min", "rad/s", 50 * math.pi),
+        ("2 t", "kg", 2000.0),
+        ("1 bar", "N/mm^2", 0.1),
+        ("3 kN/(m s)", "W/m^2", 3000.0),
+        ("4 m s^-1", "m/s", 4.0),
+        ("5 cm", "mm", 50.0),
+        ("2 m*N", "J", 2.0),
+        ("95 %", "1", 0.95),
+        ("7 EUR", "EUR", 7.0),
     ],
 )
 def test_a_text_is_the_number_of_its_unit(text, unit, value):
     assert default(text, unit) == value
 
 
+SIZES = {
+    "g": (Fraction(1, 1000), (1, 0, 0)),
+    "t": (Fraction(1000), (1, 0, 0)),
+    "cm": (Fraction(1, 100), (0, 1, 0)),
+    "l": (Fraction(1, 1000), (0, 3, 0)),
+    "ms": (Fraction(1, 1000), (0, 0, 1)),
+    "h": (Fraction(3600), (0, 0, 1)),
+    "kN": (Fraction(1000), (1, 1, -2)),
+    "MPa": (Fraction(10**6), (1, -1, -2)),
+    "bar": (Fraction(10**5), (1, -1, -2)),
+    "W": (Fraction(1), (1, 2, -3)),
+}
+
+
+@given(
+    st.decimals(-(10**6), 10**6, places=4),
+    st.lists(st.tuples(st.sampled_from(sorted(SIZES)), st.integers(1, 3)), min_size=1, max_size=3),
+    st.lists(st.tuples(st.sampled_from(sorted(SIZES)), st.integers(1, 3)), max_size=2),
+    st.sampled_from([" ", "*", " · "]),
+    st.sampled_from(["^", "", "**"]),
+)
+def test_a_text_is_the_product_that_it_says(digits, above, below, between, power):
+    def product(factors):
+        return between.join(name if n == 1 else f"{name}{power}{n}" for name, n in factors)
+
+    size, powers = Fraction(digits), [0, 0, 0]
+    for name, n in above + [(name, -n) for name, n in below]:
+        size *= SIZES[name][0] ** n
+        powers = [a + n * b for a, b in zip(powers, SIZES[name][1], strict=True)]
+    per = f"/({product(below)})" if len(below) > 1 else f"/{product(below)}" if below else ""
+    unit = "*".join(f"{base}^{n}" for base, n in zip(("kg", "m", "s"), powers, strict=True) if n)
+    assert default(f"{digits} {product(above)}{per}", unit or "1") == float(size)
+
+
 NO_NUMBERS = ["", "deg", "1.2", "90 grad", "90 degrees", "1_0 deg", "nan", "inf deg", "1 2 deg"]
+NO_NUMBERS += ["5 kN", "5 m s", "1/m", "1e999 mm", "3 m3", "5 MM"]
 NO_NUMBERS += [math.inf, math.nan, None, True, np.True_, (1,), 2j, b"3", 10**400, np.ones(1)]
 
 
@@ -236,16 +345,19 @@ def test_angles_are_questioned_where_they_are_none():
         (lambda: evaluate(scene, over=("O", 0, 360, 7)), "two turns; '360 deg' is 360 degrees"),
         (
             lambda: evaluate(scene, parameters={"r": "30 deg"}),
-            r"'r' must be a number \[m\], or a t",
+            "'r': '30 deg' is an angle; expected a length",
         ),
-        (lambda: evaluate(scene, parameters={"lean": "steep"}), r"must be a number \[rad\], or a"),
+        (
+            lambda: evaluate(scene, parameters={"lean": "steep"}),
+            r"'lean': expected a number \[rad\], or a",
+        ),
         (lambda: evaluate(scene, parameters={"lean": "90 deg"}), r"1\.57\d* rad is out of its"),
         (lambda: scene.mechanism.values({"r": 0.30000000001}), r"= 0\.30000000001 m is out of its"),
         (lambda: crank(law=polynomial("10 mm")), "the law is in m, but the coordinate is in rad"),
         (lambda: Mechanism("m").link("a", 0.1, 1.0), "name them: length=, mass="),
         (
             lambda: sweep(scene, {"r": ["10 deg"]}, out="x.h5"),
-            r"expected numbers \[m\], not angles",
+            r"grid of r is in rad, an angle; expected a length",
         ),
         (lambda: sweep(scene, {"lean": ["steep"]}, out="x.h5"), "grid of lean: expected .*numbers"),
         (

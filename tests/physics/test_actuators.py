@@ -139,7 +139,7 @@ def test_where_no_motor_serves_the_nearest_is_named(here):
         (
             ROWS,
             HEADS.replace("inertia", "inertia [lb in^2]"),
-            r"column 'inertia' cannot be in 'lb in\^2'; valid: kg m\^2, kg cm\^2",
+            r"column 'inertia' is in 'lb in\^2'; expected a moment of inertia \[kg m\^2\]",
         ),
         (
             [f"{row},2" for row in ROWS],
@@ -177,7 +177,7 @@ def test_a_bad_line_of_a_catalogue_is_told(here, rows, heads, says):
         (
             lambda s: duty_of(s, "J", inertia=-1.0),
             DeclarationError,
-            "finite number that is not neg",
+            "inertia must not be negative",
         ),
         (lambda s: duty_of(s, "K"), UnknownNameError, "unknown drive 'K'; valid: J"),
         (lambda s: duty_of(s.during(slice(1)), "J"), DeclarationError, "two instants or more"),

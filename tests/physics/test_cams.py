@@ -348,7 +348,7 @@ def test_what_is_no_profile_is_told(kind, points, says):
         (
             "x [in],y\n1,2\n",
             DeclarationError,
-            r"p\.csv, line 1: column 'x' cannot be in 'in'; valid: m, mm, um",
+            r"p\.csv, line 1: column 'x' is in 'in'; expected a length \[m\]",
         ),
         (
             "# cam\nx,y\n1,2\n1,\n",

@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from ...base.arguments import public
+from ...base.arguments import Stress, public
 from ...base.units import quantity
 from ...errors import DeclarationError
 from .beam import Notch
@@ -252,7 +252,7 @@ def keyway(at: float, *, sensitivity: float = 1.0) -> Notch:
 
 
 @public
-def sensitivity(radius: float | str, ultimate: float) -> float:
+def sensitivity(radius: float | str, ultimate: Stress) -> float:
     """Return the notch sensitivity of steel, by Neuber's constant.
 
     Parameters
@@ -273,7 +273,7 @@ def sensitivity(radius: float | str, ultimate: float) -> float:
         For a strength for which it is not known.
     """
     (radius,) = _lengths("sensitivity", radius=radius)
-    strength = ultimate / _KSI
+    strength: float = ultimate / _KSI
     if not _KNOWN[0] <= strength <= _KNOWN[1]:
         ends = " to ".join(f"{end * _KSI / 1e6:.0f}" for end in _KNOWN)
         raise DeclarationError(

@@ -4,13 +4,16 @@ with the printed standards.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
-from ...base.arguments import public
+from ...base.arguments import Measured, public
 from ...base.brief import Brief
+from ...base.units import quantity
 from ...errors import DeclarationError, UnknownNameError
+
+_STRESSES = ("elasticity", "shear_modulus", "yield_strength", "ultimate", "endurance")
+_UNITS = dict.fromkeys((*_STRESSES, "fatigue_strength"), "Pa") | {"density": "kg/m^3"}
 
 
 @public
@@ -31,30 +34,27 @@ class Material(Brief):
     """
 
     name: str
-    density: float
-    elasticity: float | None = None
-    shear_modulus: float | None = None
-    yield_strength: float | None = None
-    ultimate: float | None = None
-    endurance: float | None = None
+    density: Measured
+    elasticity: Measured | None = None
+    shear_modulus: Measured | None = None
+    yield_strength: Measured | None = None
+    ultimate: Measured | None = None
+    endurance: Measured | None = None
     endurance_cycles: float = 1e6
     endless: bool = True
     fatigue_share: float = 0.9
-    fatigue_strength: float | None = None
+    fatigue_strength: Measured | None = None
 
     def __post_init__(self) -> None:
         for entry in fields(self):
             value = getattr(self, entry.name)
             if entry.name in ("name", "endless") or value is None:
                 continue
-            if (
-                isinstance(value, bool)
-                or not isinstance(value, (int, float))
-                or not (0.0 < value < math.inf)
-            ):
-                raise DeclarationError(
-                    f"material '{self.name}': {entry.name} must be a positive number, got {value!r}"
-                )
+            what = f"material '{self.name}': {entry.name}"
+            found = quantity(what, value, _UNITS.get(entry.name, "1"))
+            if not found > 0.0:
+                raise DeclarationError(f"{what} must be a positive number, got {value!r}")
+            object.__setattr__(self, entry.name, found)
         if not self.endurance_cycles > 1e3:
             raise DeclarationError(
                 f"material '{self.name}': endurance_cycles must be above 1000, got"

@@ -11,8 +11,6 @@ from ...base.csv_table import Table
 from ...errors import DeclarationError
 from .shape import Shape, dimensions_of
 
-_UNITS = {"": 1, "m": 1, "cm": 100, "mm": 1000}
-"""Number of each unit in a metre."""
 _TABLES = Path(__file__).parent / "tables"
 STANDARD = tuple(sorted(path.stem for path in _TABLES.glob("*.csv")))
 """Names of the tables of standard profiles."""
@@ -94,25 +92,14 @@ def read_profiles(path: str | os.PathLike[str]) -> tuple[Profile, ...]:
             f"{read.head.where}: expected a column 'name' and one for each dimension, got"
             f" {', '.join(names)}"
         )
-    sizes = {
-        name: _size_of(read.head.where, name, unit)
-        for name, unit in zip(names, read.units, strict=True)
-        if name != "name"
-    }
+    dimensions = [name for name in names if name != "name"]
+    if wrong := [name for name in dimensions if not name.isidentifier()]:
+        raise DeclarationError(f"{read.head.where}: column '{wrong[0]}': expected a name")
+    metres = dict.fromkeys(dimensions, "m")
+    units = read.units_of(metres, usual=metres)
     return tuple(
         Profile(
-            name, {key: row.positive(key, cells[key], size) for key, size in sizes.items()}, table
+            name, {key: row.positive(key, cells[key], unit) for key, unit in units.items()}, table
         )
         for row, name, cells in read.named("profile")
     )
-
-
-def _size_of(place: str, name: str, unit: str) -> int:
-    """Return how many of a column's unit are a metre."""
-    if not name.isidentifier() or unit not in _UNITS:
-        text = f"{name} [{unit}]" if unit else name
-        raise DeclarationError(
-            f"{place}: column '{text}': expected a name, and m, cm or mm as its unit, as in height"
-            " [mm]"
-        )
-    return _UNITS[unit]

@@ -38,7 +38,7 @@ class Shape:
             raise DeclarationError(f"{self.kind!r} is no cross-section with these dimensions")
         if any(isinstance(value, str) for value in self.dimensions.values()):
             read = {
-                name: quantity(f"{self.kind}: {name}", value, "m")
+                name: quantity(f"{self.kind}: {name}", value, _GIVEN.get(name, "m"))
                 if isinstance(value, str)
                 else value
                 for name, value in self.dimensions.items()
@@ -445,6 +445,8 @@ def given(
         "bottom": top if bottom is None else bottom,
         "side": side,
     }
+    if isinstance(area, str):
+        words["area"] = area = quantity("given: area", area, "m^2")
     if (torsion is None) != (torsion_modulus is None):
         raise DeclarationError("given: torsion and torsion_modulus go together")
     if torsion is not None:
@@ -574,6 +576,13 @@ def dimensions_of(kind: str) -> tuple[str, ...] | None:
     """The names of the dimensions of a kind; None where they vary."""
     return _NAMES.get(kind)
 
+
+_GIVEN = dict.fromkeys(("iz", "iy", "iyz", "torsion"), "m^4") | {
+    "torsion_modulus": "m^3",
+    "shear_y": "m^2",
+    "shear_z": "m^2",
+}
+"""Units of what is no length of a cross-section that is given by its properties."""
 
 _ROUND = ("round_bar", "tube")
 _THIN = ("height", "width", "web", "flange")

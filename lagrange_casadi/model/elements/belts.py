@@ -107,7 +107,7 @@ def belt(
         raise DeclarationError(f"{what}: expected 2 radii, got {radii!r}")
     r1, r2 = (ownership.expression(f"{what}: radii", radius, "m") for radius in radii)
     fits = [fit for radius in (r1, r2) for fit in positive(what, "radii", radius)]
-    tension = ownership.expression(f"{what}: preload", preload)
+    tension = ownership.expression(f"{what}: preload", preload, "N")
     fits += at_least(what, "preload [N] must not be negative", tension, 0.0, tension)
     number = ownership.at_defaults
     u, v, away = one.axis, two.axis, minus(two.place, one.place)

@@ -84,7 +84,7 @@ def cylinder(
         )
     bore = ownership.expression(f"{what}: bore", bore, "m")
     rod = ownership.expression(f"{what}: rod", rod, "m")
-    back = ownership.expression(f"{what}: back_pressure", back_pressure)
+    back = ownership.expression(f"{what}: back_pressure", back_pressure, "Pa")
     if not isinstance(bore, ca.SX) and not isinstance(rod, ca.SX) and not 0.0 <= rod < bore:
         raise DeclarationError(
             f"{what}: its rod must be thinner than its bore, got {rod:g} m in {bore:g} m"

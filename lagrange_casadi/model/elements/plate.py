@@ -118,7 +118,7 @@ def plate(
     if per_area is None:
         whole = checked(what, mass, "kg")
     else:
-        whole = ca.fabs(ca.SX(area)) * checked(what, per_area)
+        whole = ca.fabs(ca.SX(area)) * checked(what, per_area, "kg/m^2")
     farthest = ca.SX(0)
     for corner in places:
         farthest = ca.fmax(farthest, ca.sqrt(ca.SX(corner[0]) ** 2 + ca.SX(corner[1]) ** 2))

@@ -26,7 +26,6 @@ from ..joints import Joint
 from ..mechanism import Mechanism
 from .cam import layout_of
 
-_UNITS = {"": 1, "m": 1, "mm": 1000, "um": 1_000_000}
 _LEAST = 16
 
 
@@ -54,7 +53,7 @@ def read_profile(path: str | os.PathLike[str]) -> Array:
     Parameters
     ----------
     path
-        File with columns ``x`` and ``y``, in m or with a unit as ``x [mm]`` (m, mm, um); other
+        File with columns ``x`` and ``y``, in m or with a unit as ``x [mm]``; other
         columns are ignored. :meth:`.CamProfile.save_csv` writes such a file.
 
     Returns
@@ -70,9 +69,10 @@ def read_profile(path: str | os.PathLike[str]) -> Array:
         For missing columns, and for a line without numbers in them.
     """
     table = Table.read(path, "the columns x and y")
-    sizes = table.sizes({"x": _UNITS, "y": _UNITS})
+    places = {"x": "m", "y": "m"}
+    units = table.units_of(places, usual=places)
     points = [
-        [row.finite(name, cells[name], size) for name, size in sizes.items()]
+        [row.finite(name, cells[name], unit) for name, unit in units.items()]
         for row, cells in table.entries("point")
     ]
     return np.array(points)

@@ -69,7 +69,7 @@ def wheel(
         )
     thick = 0.0 if width is None else ownership.expression(f"{what}: width", width, "m")
     weight = ownership.expression(f"{what}: mass", mass, "kg") if mass is not None else None
-    density = ownership.expression(f"{what}: density", density)
+    density = ownership.expression(f"{what}: density", density, "kg/m^3")
     turned = number(turned, "rad")
     whole = (
         density * math.pi * (outer * outer - inner * inner) * thick if weight is None else weight

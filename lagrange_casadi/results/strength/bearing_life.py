@@ -14,17 +14,22 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Annotated, Any, TypeAlias
 
 import numpy as np
 
-from ...base.arguments import NotNegative, Numeric, Positive, public
+from ...base.arguments import Force, Numeric, Positive, public
 from ...base.arrays import Array
 from ...base.quantities import Output
+from ...base.units import Within
 from ...errors import DeclarationError, UnknownNameError
 from ...model.fitted import Fitted, Pin, Plain, Rolling, positive
 from ..histories import Histories
 from ..statistics import counted, shares
 from .safety import Safety, Verdict
+
+Load: TypeAlias = Annotated[Any, Within(0.0, unit="N")]
+Speed: TypeAlias = Annotated[Any, Within(0.0, unit="rpm")]
 
 
 @public
@@ -94,7 +99,10 @@ def equivalent_load(
 
 @public
 def rated_hours(
-    dynamic: Positive, load: NotNegative, rpm: NotNegative, exponent: Positive = 3.0
+    dynamic: Force,
+    load: Load,
+    rpm: Speed,
+    exponent: Positive = 3.0,
 ) -> float:
     """Return the life that nine of ten bearings reach, (C/P)^p million revolutions (ISO 281).
 

@@ -13,17 +13,20 @@ import math
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
-from decimal import Decimal
+from typing import Annotated, Any, TypeAlias
 
 import numpy as np
 
-from ...base.arguments import Count, NotNegative, Positive, public
+from ...base.arguments import Count, Force, Hours, Length, NotNegative, Positive, public
 from ...base.brief import Brief
-from ...base.csv_table import Per, Table
+from ...base.csv_table import Table
+from ...base.units import Within
 from ...errors import DeclarationError, NoDesignError
 from ...model.fitted import Rolling
 from ..histories import Histories
 from .bearing_life import joint_safety
+
+Bore: TypeAlias = Annotated[Any, Within(0.0, unit="m")]
 
 _BORES = (10, 12, 15, 17, 20, 25, 30, 35, 40, 45, 50, 55, 60, 65, 70, 75, 80, 85, 90, 95, 100)
 _OUTER = {
@@ -52,17 +55,8 @@ _F0 = (
 )
 """Factor f0 of ISO 76 for ball over pitch diameters 0, 0.01, ..., 0.3."""
 
-_MM: dict[str, Per] = {"mm": 1000}
-_KN: dict[str, Per] = {"kN": Decimal("0.001")}
-_COLUMNS: dict[str, dict[str, Per]] = {
-    "name": {"": 1},
-    "bore": _MM,
-    "outer": _MM,
-    "width": _MM,
-    "dynamic": _KN,
-    "static": _KN,
-}
-"""Columns of a table, and their units."""
+_COLUMNS = {"name": "1", "bore": "m", "outer": "m", "width": "m", "dynamic": "N", "static": "N"}
+"""Columns of a table, and units of their kinds."""
 
 _LEADING = 0.41 * 98.0665 * 0.95
 """The constant of f_c in ISO/TR 1281-1 [N], with the reduction 0.95 for radial contact grooves."""
@@ -80,14 +74,14 @@ class RollingBearing(Brief):
     """
 
     name: str
-    bore: Positive
-    outer: Positive
-    width: Positive
-    dynamic: Positive
-    static: Positive
+    bore: Length
+    outer: Length
+    width: Length
+    dynamic: Force
+    static: Force
     source: str = ""
 
-    def rolling(self, hours: Positive, axial: NotNegative = _AXIAL) -> Rolling:
+    def rolling(self, hours: Hours, axial: NotNegative = _AXIAL) -> Rolling:
         """Return the demand on this bearing, for :func:`.fit`.
 
         Parameters
@@ -106,7 +100,7 @@ class RollingBearing(Brief):
 
 
 @public
-def dynamic_rating(element: Positive, pitch: Positive, count: Count) -> float:
+def dynamic_rating(element: Length, pitch: Length, count: Count) -> float:
     """Compute C_r of ISO 281 for a deep groove ball bearing.
 
     Parameters
@@ -130,7 +124,7 @@ def dynamic_rating(element: Positive, pitch: Positive, count: Count) -> float:
 
 
 @public
-def static_rating(element: Positive, pitch: Positive, count: Count) -> float:
+def static_rating(element: Length, pitch: Length, count: Count) -> float:
     """Compute C_0r of ISO 76 for a deep groove ball bearing.
 
     Parameters
@@ -210,11 +204,11 @@ def read_bearings(path: str | os.PathLike[str]) -> tuple[RollingBearing, ...]:
         For a column that is missing or a cell that is not valid, with the number of its line.
     """
     table = Table.read(path, "the columns name, bore, outer, width [mm], dynamic, static [kN]")
-    sizes = table.sizes(_COLUMNS)
+    units = table.units_of(_COLUMNS)
     found = []
     for row, cells in table.entries("bearing"):
         bore, outer, width, dynamic, static = (
-            row.positive(name, cells[name], sizes[name])
+            row.positive(name, cells[name], units[name])
             for name in ("bore", "outer", "width", "dynamic", "static")
         )
         source = cells.get("source", str(path))
@@ -228,8 +222,8 @@ def select_bearing(
     joint: str,
     bearings: Sequence[RollingBearing],
     *,
-    hours: Positive,
-    bore: NotNegative = 0.0,
+    hours: Hours,
+    bore: Bore = 0.0,
     static: Positive = 1.0,
 ) -> RollingBearing:
     """Choose for a joint the bearing with the smallest outer diameter that lives long enough.

@@ -9,26 +9,26 @@ from pathlib import Path
 
 from ...base.arguments import public
 from ...base.csv_table import Row, Table
+from ...base.units import Unit
 from ...errors import DeclarationError
 from .classes import CLASSES
 from .motor import Motor
 
-_RPM = math.tau / 60.0
 _ROTARY = ("stall_torque", "rated_torque", "rated_speed", "peak_torque", "max_speed", "inertia")
 _LINEAR = ("stall_force", "rated_force", "rated_speed", "peak_force", "max_speed", "mass")
 _KNEE = ("knee_speed", "end_torque"), ("knee_speed", "end_force")
 _LASTS = "time_constant"
 _UNITS = {
-    "torque": {"N m": 1.0, "N cm": 1e-2, "mN m": 1e-3},
-    "force": {"N": 1.0, "kN": 1e3},
-    "turning": {"1/min": _RPM, "rad/s": 1.0},
-    "sliding": {"m/s": 1.0, "mm/s": 1e-3},
-    "inertia": {"kg m^2": 1.0, "kg cm^2": 1e-4, "g cm^2": 1e-7},
-    "mass": {"kg": 1.0, "g": 1e-3},
-    "constant": {"s": 1.0, "min": 60.0},
+    "torque": ("N m", "N m"),
+    "force": ("N", "N"),
+    "turning": ("rad/s", "rpm"),
+    "sliding": ("m/s", "m/s"),
+    "inertia": ("kg m^2", "kg m^2"),
+    "mass": ("kg", "kg"),
+    "constant": ("s", "s"),
 }
-"""The units that a column may have, by the last word of its name; the first is meant where none is
-said.
+"""Units of the columns' kinds, by the last word of their names, and those that are meant where none
+is said.
 """
 
 
@@ -69,9 +69,11 @@ def read_motors(path: str | os.PathLike[str]) -> list[Motor]:
         raise DeclarationError(
             f"{table.head.where}: expected both columns {' and '.join(knee)}, or none"
         )
-    units = table.sizes(
-        {"name": {"": 1.0}, **{column: _units(column, linear) for column in needed}},
-        {column: _units(column, linear) for column in (*knee, _LASTS)},
+    columns = {name: _units(name, linear) for name in (*needed, *knee, _LASTS)}
+    units = table.units_of(
+        {"name": "1"} | {name: columns[name][0] for name in needed},
+        {name: columns[name][0] for name in (*knee, _LASTS)},
+        {name: usual for name, (_, usual) in columns.items()},
     )
     del units["name"]
     return [
@@ -80,25 +82,24 @@ def read_motors(path: str | os.PathLike[str]) -> list[Motor]:
     ]
 
 
-def _units(column: str, linear: bool) -> dict[str, float]:
-    """Units that a column may have, and their sizes."""
+def _units(column: str, linear: bool) -> tuple[str, str]:
+    """The unit of a column's kind, and that which is meant where none is said."""
     kind = column.rpartition("_")[2]
-    units = _UNITS[("sliding" if linear else "turning") if kind == "speed" else kind]
-    return {"": next(iter(units.values())), **units}
+    return _UNITS[("sliding" if linear else "turning") if kind == "speed" else kind]
 
 
 def _motor(
     row: Row,
     name: str,
     cells: Mapping[str, str],
-    units: dict[str, float],
+    units: dict[str, Unit],
     needed: tuple[str, ...],
     knee: tuple[str, str],
     linear: bool,
 ) -> Motor:
     zeros = (needed[-1], *knee)
     numbers = {
-        column: unit * row.positive(column, cells[column], zero=column in zeros)
+        column: row.positive(column, cells[column], unit, zero=column in zeros)
         for column, unit in units.items()
         if column in needed or cells[column]
     }

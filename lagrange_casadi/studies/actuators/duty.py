@@ -10,9 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...base.arguments import Finite, public
+from ...base.arguments import Finite, Measured, public
 from ...base.arrays import Array
 from ...base.brief import Brief
+from ...base.units import quantity
 from ...engine.instants.beyond_equilibrium import Holding
 from ...errors import DeclarationError, UnknownNameError
 from ...results.solution import Solution
@@ -148,7 +149,7 @@ def duty_of(
     *,
     ratio: Finite = 1.0,
     efficiency: float = 1.0,
-    inertia: Finite = 0.0,
+    inertia: Measured = 0.0,
     linear: bool = False,
     carried: Array | None = None,
     holding: Holding | None = None,
@@ -198,10 +199,9 @@ def duty_of(
         raise DeclarationError(f"ratio must be a finite number other than 0, got {ratio!r}")
     if not 0.0 < efficiency <= 1.0:
         raise DeclarationError(f"efficiency must be above 0 and at most 1, got {efficiency!r}")
-    if not 0.0 <= inertia < math.inf:
-        raise DeclarationError(
-            f"inertia must be a finite number that is not negative, got {inertia!r}"
-        )
+    rotor = quantity("inertia", inertia, "kg" if linear else "kg m^2")
+    if rotor < 0.0:
+        raise DeclarationError(f"inertia must not be negative, got {inertia!r}")
     if linear and not slides(solution, joint):
         raise DeclarationError(
             f"drive '{joint}' turns, and a linear motor slides; expected a rotary one"
@@ -236,12 +236,12 @@ def duty_of(
     # The gearbox takes its losses from whoever gives power; what holds at rest gets no help from
     # it.
     passed = np.where(rests | (effort * motion.rate >= 0.0), 1.0 / efficiency, efficiency)
-    torque = effort * passed / ratio + inertia * ratio * motion.acceleration
+    torque = effort * passed / ratio + rotor * ratio * motion.acceleration
     return Duty(
         joint,
         float(ratio),
         float(efficiency),
-        float(inertia),
+        rotor,
         solution.t,
         ratio * motion.rate,
         torque,

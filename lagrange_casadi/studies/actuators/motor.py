@@ -7,9 +7,27 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...base.arguments import NotNegative, Numeric, Positive, public
+from ...base.arguments import Measured, Numeric, public
 from ...base.arrays import Array
 from ...base.brief import Brief
+from ...base.units import quantity
+from ...errors import DeclarationError
+
+_TORQUE, _SPEED = ("N m", "N"), ("rad/s", "m/s")
+_UNITS = {
+    "stall_torque": _TORQUE,
+    "rated_torque": _TORQUE,
+    "rated_speed": _SPEED,
+    "peak_torque": _TORQUE,
+    "max_speed": _SPEED,
+    "inertia": ("kg m^2", "kg"),
+    "knee_speed": _SPEED,
+    "end_torque": _TORQUE,
+    "time_constant": ("s", "s"),
+}
+"""Units of a motor's numbers, and of a linear motor's."""
+
+_POSITIVE = ("rated_speed", "max_speed", "time_constant")
 
 
 @public
@@ -26,16 +44,27 @@ class Motor(Brief):
     """
 
     name: str
-    stall_torque: NotNegative
-    rated_torque: NotNegative
-    rated_speed: Positive
-    peak_torque: NotNegative
-    max_speed: Positive
-    inertia: NotNegative
-    knee_speed: NotNegative | None = None
-    end_torque: NotNegative | None = None
-    time_constant: float = math.inf
+    stall_torque: Measured
+    rated_torque: Measured
+    rated_speed: Measured
+    peak_torque: Measured
+    max_speed: Measured
+    inertia: Measured
+    knee_speed: Measured | None = None
+    end_torque: Measured | None = None
+    time_constant: Measured = math.inf
     linear: bool = False
+
+    def __post_init__(self) -> None:
+        for name, units in _UNITS.items():
+            value = getattr(self, name)
+            if value is not None and not (name == "time_constant" and value == math.inf):
+                what = f"motor '{self.name}': {name}"
+                found = quantity(what, value, units[self.linear])
+                if found < 0.0 or (found == 0.0 and name in _POSITIVE):
+                    least = "a positive number" if name in _POSITIVE else "a number of at least 0"
+                    raise DeclarationError(f"{what}: expected {least}, got {value!r}")
+                object.__setattr__(self, name, found)
 
     def continuous_torque(self, speed: Numeric) -> Array:
         """Return the continuous torque at a speed.
@@ -74,4 +103,4 @@ class Motor(Brief):
     @property
     def rated_power(self) -> float:
         """Power at the rated speed [W]."""
-        return self.rated_torque * self.rated_speed
+        return float(self.rated_torque * self.rated_speed)

@@ -9,10 +9,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...base import lookups
-from ...base.arguments import Outputs, public
+from ...base.arguments import Measured, Outputs, public
 from ...base.arrays import Array
 from ...base.quantities import Output
 from ...base.symbolic import symbolic
+from ...base.units import quantity
 from ...engine.derive import compile_scene
 from ...errors import CertificateWarning, DeclarationError, LagrangeCasadiError, warn
 from ...model.even_points import EvenPoints, points
@@ -130,17 +131,16 @@ class FreeMotion:
         return np.asarray(self.drive - (self.reflected + self.inertia) * self.acceleration)
 
 
-def begun_at(machine: Machine, start: Sequence[float] | None, t: float) -> Start:
+def begun_at(machine: Machine, start: Sequence[Measured] | None, t: float) -> Start:
     """Return the state at the start: as given, or as the law of the scene has it."""
     if start is None:
         return Start(*machine.law(t))
     try:
-        angle, speed = (float(x) for x in start)
+        angle, speed = start
     except (TypeError, ValueError):
         raise DeclarationError(f"start: expected (coordinate, rate), got {start!r}") from None
-    if not (math.isfinite(angle) and math.isfinite(speed)):
-        raise DeclarationError(f"start: expected finite numbers, got {start!r}")
-    return Start(angle, speed)
+    unit = "m" if machine.equation.slides else "rad"
+    return Start(quantity("start", angle, unit), quantity("start", speed, f"{unit}/s"))
 
 
 def follow(

@@ -6,8 +6,8 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from ...base.arguments import Count, NotNegative, Outputs, Positive, public
-from ...base.units import within
+from ...base.arguments import Angle, Count, Measured, Outputs, Positive, public
+from ...base.units import quantity, within
 from ...engine.free_equation import free_equation
 from ...errors import DeclarationError
 from ...model.scene import Scene
@@ -51,13 +51,13 @@ class Flywheel:
 def free(
     scene: Scene | Case,
     *,
-    drive: Law | float | None = None,
-    load: Law | float | None = None,
-    inertia: NotNegative = 0.0,
-    start: Sequence[float] | None = None,
+    drive: Law | Measured | None = None,
+    load: Law | Measured | None = None,
+    inertia: Measured = 0.0,
+    start: Sequence[Measured] | None = None,
     t: Times | None = None,
     steady: bool = False,
-    cycle: Positive = math.tau,
+    cycle: Angle = math.tau,
     count: Count = 721,
     parameters: Mapping[str, float] | None = None,
     wanted: Outputs | None = None,
@@ -137,10 +137,10 @@ def flywheel(
     scene: Scene | Case,
     *,
     fluctuation: Positive = 0.02,
-    drive: Law | float | None = None,
-    load: Law | float | None = None,
-    start: Sequence[float] | None = None,
-    cycle: Positive = math.tau,
+    drive: Law | Measured | None = None,
+    load: Law | Measured | None = None,
+    start: Sequence[Measured] | None = None,
+    cycle: Angle = math.tau,
     count: Count = 721,
     parameters: Mapping[str, float] | None = None,
     wanted: Outputs | None = None,
@@ -183,9 +183,9 @@ def flywheel(
 
 def _machine(
     scene: Scene,
-    drive: Law | float | None,
-    load: Law | float | None,
-    inertia: float,
+    drive: Law | Measured | None,
+    load: Law | Measured | None,
+    inertia: Measured,
     parameters: Mapping[str, float] | None,
     accuracy: float,
 ) -> Machine:
@@ -193,10 +193,13 @@ def _machine(
     values = scene.values(parameters)
     scene.checked(values)
     equation = free_equation(scene, law_of(drive, "drive"), law_of(load, "load"), values)
-    return Machine.of(equation, inertia, values)
+    added = quantity("inertia", inertia, "kg" if equation.slides else "kg m^2")
+    if added < 0.0:
+        raise DeclarationError(f"inertia: expected a number of at least 0, got {added:g}")
+    return Machine.of(equation, added, values)
 
 
-def _turning(machine: Machine, start: Sequence[float] | None) -> Start:
+def _turning(machine: Machine, start: Sequence[Measured] | None) -> Start:
     """The state at which a steady cycle begins.
 
     Raises :class:`.DeclarationError` for a machine that cannot have one.

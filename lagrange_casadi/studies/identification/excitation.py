@@ -15,7 +15,7 @@ from typing import NamedTuple
 import casadi as ca
 import numpy as np
 
-from ...base.arguments import Count, Positive, public
+from ...base.arguments import Count, Time, public
 from ...base.arrays import Array, Expression
 from ...base.brief import Brief
 from ...base.ipopt import ipopt
@@ -86,7 +86,7 @@ def excite(
     unknown: Sequence[str] | None = None,
     *,
     quantities: Sequence[str] | None = None,
-    period: Positive = 10.0,
+    period: Time = 10.0,
     harmonics: Count = 4,
     steps: Count = 100,
     parameters: Mapping[str, float] | None = None,

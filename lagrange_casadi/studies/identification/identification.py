@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...base.arguments import NotNegative, Positive, public
+from ...base.arguments import Duration, Frequency, Positive, public
 from ...base.arrays import Array
 from ...base.brief import Brief
 from ...base.vocabulary import Backend
@@ -142,7 +142,7 @@ class Identification(Brief):
         """The values with all digits, as ``m=1.2 k=300``."""
         return " ".join(f"{name}={value:.17g}" for name, value in self.values.items())
 
-    def validate(self, measurements: Measurements, trim: NotNegative = 0.0) -> Comparison:
+    def validate(self, measurements: Measurements, trim: Duration = 0.0) -> Comparison:
         """Compare another record with the model.
 
         Parameters
@@ -179,8 +179,8 @@ def identify(
     prior: Mapping[str, Positive] | None = None,
     robust: bool = False,
     consistent: bool = False,
-    cutoff: Positive | None = None,
-    trim: NotNegative = 0.0,
+    cutoff: Frequency | None = None,
+    trim: Duration = 0.0,
     backend: Backend = "auto",
 ) -> Identification:
     """Return the parameters of a mechanism that measured motion and forces determine.

@@ -15,8 +15,8 @@ import numpy.typing as npt
 from ...base.arguments import NotNegative, Positive, public
 from ...base.arrays import Array
 from ...base.brief import Brief
-from ...base.csv_table import MEASURED, SIZES, Table, count_sizes
-from ...base.units import UNITS
+from ...base.csv_table import Table, count_sizes
+from ...base.units import Unit, differs, known
 from ...errors import DeclarationError, UnknownNameError
 from ...model.curves import curve, derivatives
 from .regressor import MOTION, DrivenMotion
@@ -56,6 +56,8 @@ class Measurements(Brief):
     units
         Units in which columns were measured, by name, as ``deg`` or ``N m``. :func:`.identify`
         refuses a column whose unit is not one of its quantity.
+    first
+        The time stamp of the first row, where that is time zero.
 
     Raises
     ------
@@ -69,6 +71,7 @@ class Measurements(Brief):
     noise: Mapping[str, NotNegative] = field(default_factory=dict)
     name: str = "measurements"
     units: Mapping[str, str] = field(default_factory=dict)
+    first: str = ""
 
     def __post_init__(self) -> None:
         t = np.asarray(self.t, float)
@@ -226,12 +229,8 @@ def check_units(measurements: Measurements, expected: Mapping[str, str]) -> None
     ``expected`` SI unit.
     """
     for name, unit in expected.items():
-        word = measurements.units.get(name, unit)
-        if (SIZES[word][0] if word in SIZES else word) != unit:
-            some = ", ".join(MEASURED.get(unit, [unit]))
-            raise DeclarationError(
-                f"{measurements.name}: column '{name}' is in {word}; expected {some}"
-            )
+        if wrong := differs(measurements.units.get(name, unit), unit):
+            raise DeclarationError(f"{measurements.name}: column '{name}' is in {wrong}")
 
 
 @public
@@ -241,7 +240,7 @@ def read_measurements(
     names: Mapping[str, str] | None = None,
     noise: Mapping[str, NotNegative] | None = None,
     counts_per_turn: Positive | Mapping[str, float] | None = None,
-    time: str = "t",
+    time: str | Sequence[str] = "t",
 ) -> Measurements:
     """Read measurements from a CSV file.
 
@@ -251,7 +250,8 @@ def read_measurements(
         The file. Its first line has the names of the columns and their units, as ``J1 [deg]``,
         ``effort:J1 [N m]``, ``strain:rod:side +y@0.5 [ustrain]``, ``J1 [counts]``; units may
         also stand in a line of their own below the names. Empty cells and ``nan`` are missing
-        values. An angle that begins again after each turn is made to go on.
+        values. An angle that begins again after each turn is made to go on. Columns of texts are
+        passed over.
     names
         Read a drive's coordinate, or a force as effort:O, from the column of this head.
 
@@ -264,7 +264,8 @@ def read_measurements(
     counts_per_turn
         Set the counts in one turn of all encoders, or of a column's.
     time
-        The head of the times.
+        The head of the times, or two heads, of seconds and of nanoseconds. Stamps since 1970 (in s,
+        ms, us or ns) and those of ISO 8601 count from the first row.
 
     Returns
     -------
@@ -288,34 +289,33 @@ def read_measurements(
         raise DeclarationError(
             f"{path.name}: expected names of columns in the first line, as 't [s]', got numbers"
         )
-    places = {
-        name: table.place(head, "column of times" if name == "t" else "column")
-        for name, head in {"t": time, **(names or {})}.items()
-    }
-    others = [table.place(head) for head in table.names if head and head not in places]
-    places |= {table.names[k]: k for k in others if k not in places.values()}
-    at = places.pop("t")
+    places = {name: table.place(head) for name, head in (names or {}).items() if name != "t"}
+    at = table.times((names or {}).get("t", time))
+    left = {*places.values(), *at, *table.texts}
+    others = [head for k, head in enumerate(table.names) if head and k not in left]
+    places |= {head: table.place(head) for head in others if head not in places}
     places = dict(sorted(places.items(), key=itemgetter(1)))
 
     units = {name: table.units[k] for name, k in places.items()}
     heads = {name: table.names[k] for name, k in places.items()}
     counts = count_sizes(path.name, heads, units, counts_per_turn)
-    sizes = {name: SIZES[unit][1] if unit in SIZES else 1.0 for name, unit in units.items()}
+    sizes = {name: (known(unit) or Unit()).factor for name, unit in units.items()}
     sizes |= counts
     units |= dict.fromkeys(counts, "rad")
-    t, *series = table.columns(at, list(places.values()), gaps=True)
+    (t, *series), clock = table.columns(at, list(places.values()), table.units[at[0]], gaps=True)
     columns = {name: sizes[name] * values for name, values in zip(places, series, strict=True)}
-    columns |= {name: _going_on(columns[name]) for name in places if units[name] in UNITS["rad"]}
+    columns |= {
+        name: _going_on(columns[name]) for name in places if not differs(units[name], "rad")
+    }
     deviations = dict.fromkeys(counts, _QUANTUM) | dict(noise or {})
-    found = Measurements(
-        t * SIZES.get(table.units[at], ("s", 1.0))[1],
+    return Measurements(
+        t,
         columns,
         {name: sizes.get(name, 1.0) * deviation for name, deviation in deviations.items()},
         path.name,
-        {name: unit for name, unit in {"t": table.units[at], **units}.items() if unit},
+        {name: unit for name, unit in {"t": table.units[at[0]], **units}.items() if unit},
+        clock.first,
     )
-    check_units(found, {"t": "s"})
-    return found
 
 
 def _going_on(angle: Array) -> Array:

@@ -13,6 +13,7 @@ import numpy as np
 
 from ...base.arrays import Array, Json, Operand
 from ...base.numerals import real
+from ...base.units import check_unit
 from ...base.vocabulary import Compiled
 from ...engine.identity import sources
 from ...engine.instants.evaluation_method import EvaluationMethod
@@ -222,6 +223,9 @@ class Question:
             there = engine.quantities if term.pointed else engine.efforts
             if term.output is not None and term.name not in there:
                 raise UnknownNameError(f"quantity with a {term.kind}", term.name, there)
+        for limit in self.constraints:
+            unit = limit.term.unit(engine.program.data)
+            check_unit(f"limit of {limit.term}: its number", limit.unit, unit)
         return engine
 
     def words(self, engine: DesignEngine) -> dict[str, Json]:

@@ -15,6 +15,7 @@ import casadi as ca
 from ...base.arguments import public
 from ...base.numerals import real
 from ...base.quantities import AVERAGED, Output
+from ...base.units import typed
 from ...engine.model_data import ModelData
 from ...errors import DeclarationError
 
@@ -135,23 +136,30 @@ class Term:
 @public
 @dataclass(frozen=True)
 class Constraint:
-    """A term that is at most, or with ``least`` at least, a ``limit``."""
+    """A term that is at most, or with ``least`` at least, a ``limit``; ``unit`` is its text's."""
 
     term: Term
     limit: float
     least: bool = False
+    unit: str = ""
 
     @classmethod
     def parse(cls, text: str, parameters: Mapping[str, object]) -> Constraint:
-        """Read ``TERM <= NUMBER`` or ``TERM >= NUMBER``. Raises :class:`DeclarationError`."""
+        """Read ``TERM <= NUMBER`` or ``TERM >= NUMBER``; the number may have a unit, as 5 kN.
+
+        Raises :class:`DeclarationError`.
+        """
         found = _CONSTRAINT.fullmatch(text) if isinstance(text, str) else None
+        limit, unit = typed(found[3] if found else "")
         try:
-            if found is None or not math.isfinite(limit := real(found[3])):
+            limit = limit if unit else real(limit)
+            if not math.isfinite(limit):
                 raise ValueError
         except ValueError:
             raise DeclarationError(
                 f"expected a constraint such as '{_EXAMPLE}', got {text!r}"
             ) from None
+        assert found is not None
         term, least = Term.parse(found[1], parameters), found[2].startswith(">")
         if least and term.kind in _UPPER:
             advice = (
@@ -168,7 +176,7 @@ class Constraint:
             raise DeclarationError(
                 f"'{text}': a peak is a magnitude, so it cannot be {limit:g} or less"
             )
-        return cls(term, limit, least)
+        return cls(term, limit, least, unit)
 
     def excess(self, value: float) -> float:
         """Excess of a value over the limit; below zero if it is within."""

@@ -19,7 +19,7 @@ import numpy.typing as npt
 from ...base.arguments import LATER, public
 from ...base.arrays import Array
 from ...base.brief import Brief
-from ...base.units import Number, number, typed
+from ...base.units import Number, check_unit, number, typed
 from ...errors import (
     DeclarationError,
     NumberError,
@@ -361,12 +361,8 @@ def check_designs(
         if name in fixed:
             raise DeclarationError(f"parameter '{name}' is swept and set to {fixed[name]} as well")
     for name, given_unit in designs.units.items():
-        if (unit := parameters[name].unit) != given_unit:
-            where = f"{designs.source}, column '{name}'" if designs.source else f"grid of {name}"
-            raise DeclarationError(
-                f"{where}: expected numbers [{unit}], not"
-                f" {'angles' if given_unit == 'rad' else f'numbers [{given_unit}]'}"
-            )
+        where = f"{designs.source}, column '{name}'" if designs.source else f"grid of {name}"
+        check_unit(where, given_unit, parameters[name].unit)
     wrong = []
     for name in designs.names:
         parameter = parameters[name]

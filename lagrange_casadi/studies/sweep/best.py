@@ -17,7 +17,7 @@ import numpy.typing as npt
 from ...base.arguments import Count, public
 from ...base.arrays import Array, Operand
 from ...base.numerals import real
-from ...base.units import typed
+from ...base.units import check_unit, typed
 from ...errors import DeclarationError, check_kind
 from .meanings import ERROR, STATUS
 from .reading import Sweep, Values, names_in
@@ -194,8 +194,9 @@ def chosen(
     names, conditions = names_in(names), conditions_in(where)
     asked = list(dict.fromkeys([*names, *(condition.name for condition in conditions)]))
     for condition in conditions:
-        if condition.unit and (unit := sweep.unit(condition.name)) != condition.unit:
-            raise DeclarationError(f"condition on {condition.name}: it is in {unit}, got an angle")
+        if condition.unit:
+            what = f"condition on {condition.name}: its number"
+            check_unit(what, condition.unit, sweep.unit(condition.name))
 
     def satisfied(
         numbers: npt.NDArray[np.int64], values: dict[str, Operand]

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from ...base.arguments import LATER
 from ...base.arrays import Array
-from ...base.units import Number
+from ...base.units import Number, check_unit
 from ...errors import DeclarationError, NumberError, shown
 from .axes import numbers_in
 
@@ -44,11 +44,7 @@ def matches(name: str, there: Array, wanted: Selected, unit: str) -> npt.NDArray
         found, in_unit = numbers_in(each)
     except NumberError:
         found, in_unit = (math.nan,), ""
-    if in_unit not in ("", unit):
-        other = "angles" if in_unit == "rad" else f"numbers [{in_unit}]"
-        raise DeclarationError(
-            f"select: {name}: expected numbers [{unit}], not {other}, got {shown(wanted)}"
-        )
+    check_unit(f"select: {name}: {shown(wanted)}", in_unit, unit)
     numbers = np.array(found)
     pair = isinstance(wanted, tuple)
     if not numbers.size or np.isnan(numbers).any() or (pair and numbers.size != 2):

@@ -1,0 +1,73 @@
+"""Times as logs have them: numbers, stamps of UNIX, ISO 8601, and seconds beside nanoseconds.
+
+A double has no room for the nanoseconds since 1970: the first stamp is taken from the others as
+decimals.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from datetime import datetime
+from decimal import Decimal
+from typing import NamedTuple
+
+from .numerals import plain
+from .units import EXACT, Unit
+
+_ISO = re.compile(
+    r"(\d{4}-\d\d-\d\d)[T ](\d\d:\d\d:\d\d)(\.\d+)?\s*(?:Z|([+-])(\d\d):?(\d\d))?", re.ASCII
+)
+_EPOCH = datetime(1970, 1, 1)
+_UNIX = Decimal(10**8), Decimal(10**10)
+"""Seconds since 1970 that are those of a log, of the years 1973 to 2286; what is less is a time."""
+
+_POWERS = {"s": 0, "ms": -3, "us": -6, "ns": -9}
+
+
+def stamp(cells: Sequence[str]) -> Decimal:
+    """The time that a cell has, in its unit; of ISO 8601, and of seconds and nanoseconds in two
+    cells, in s.
+
+    Raises ``ValueError`` or ``ArithmeticError`` for what is no finite time.
+    """
+    if found := _ISO.fullmatch(cells[0]):
+        day, time, part, sign, hours, minutes = found.groups()
+        since = datetime.fromisoformat(f"{day} {time}") - _EPOCH
+        ahead = (int(hours) * 60 + int(minutes)) * 60 if sign else 0
+        whole = since.days * 86400 + since.seconds - (ahead if sign == "+" else -ahead)
+        return EXACT.add(Decimal(whole), Decimal(f"0{part or ''}"))
+    total = Decimal(0)
+    for power, cell in zip((0, -9), cells, strict=False):
+        total = EXACT.add(total, EXACT.create_decimal(plain(cell)).scaleb(power, EXACT))
+    if not total.is_finite():
+        raise ValueError(cells)
+    return total
+
+
+class Clock(NamedTuple):
+    """Conversion of stamps to times [s]: their ``unit``, the ``origin`` that is time zero, and its
+    cells as they stand in the file, where time zero is not the file's own.
+    """
+
+    unit: Unit
+    origin: Decimal = Decimal(0)
+    first: str = ""
+
+    @classmethod
+    def of(cls, cells: Sequence[str], word: str) -> Clock:
+        """Judge by the first row: ``word`` is the unit that is stated, if any. Errors are those of
+        :func:`stamp`.
+        """
+        found, first = stamp(cells), " and ".join(cells)
+        if len(cells) == 2 or _ISO.fullmatch(cells[0]):
+            return cls(Unit(), found, first)
+        powers = {word: _POWERS[word]} if word in _POWERS else {} if word else _POWERS
+        for unit, power in powers.items():
+            if _UNIX[0] <= found.scaleb(power) < _UNIX[1]:
+                return cls(Unit.of(unit), found, first)
+        return cls(Unit.of(word or "s"))
+
+    def read(self, cells: Sequence[str]) -> float:
+        """The time [s] of a row. Errors are those of :func:`stamp`."""
+        return self.unit.number(EXACT.subtract(stamp(cells), self.origin))
