@@ -153,6 +153,10 @@ def _hint(name: str, names: Sequence[str], many: bool) -> str:
     return f" (did you mean '{close[0]}'?)" if close else ""
 
 
+class NoAttributeError(UnknownNameError, AttributeError):
+    """An attribute that an object of this package does not have."""
+
+
 class ParameterError(LagrangeCasadiError):
     """A parameter's value is not a number, is out of its range, or makes a part impossible."""
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import fields
+from typing import TYPE_CHECKING, NoReturn
 
 import casadi as ca
 import numpy as np
 
-from ..errors import shown
+from ..errors import NoAttributeError, shown
 
 LONGEST = 200
 """Characters of a line at most."""
@@ -26,11 +27,22 @@ _WORDS = ("name", "link", "joint", "case")
 """Fields by which an object is known, the first that it has."""
 
 
+def no_attribute(owner: object, name: str) -> NoReturn:
+    """Raise :class:`.NoAttributeError`, which lists the attributes that an object has."""
+    if name.startswith("_"):  # what Python, NumPy and notebooks look for
+        raise AttributeError(f"'{type(owner).__name__}' object has no attribute '{name}'")
+    valid = [word for word in dir(owner) if not word.startswith("_")]
+    raise NoAttributeError(f"attribute of {type(owner).__name__}", name, valid)
+
+
 class Brief:
     """A dataclass that Python writes in a line, as ``Name(field=value, ...)``: of an array its
     shape, and from where to where its numbers are; of another object its kind and name; of a large
     collection the number of its entries.
     """
+
+    if not TYPE_CHECKING:
+        __getattr__ = no_attribute
 
     def __repr__(self) -> str:
         entries = [entry.name for entry in fields(self) if entry.repr]  # type: ignore[arg-type]

@@ -14,6 +14,8 @@ from collections import deque
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar, cast, overload
 
+from .brief import no_attribute
+
 if TYPE_CHECKING:
     from typing_extensions import Self
 
@@ -89,6 +91,9 @@ class symbolic_property(functools.cached_property[Value]):  # noqa: N801 - like 
 
 class Graphs:
     """Holder of expressions that any thread may drop: they are freed when a thread makes others."""
+
+    if not TYPE_CHECKING:
+        __getattr__ = no_attribute
 
     def __del__(self, later: Callable[[dict[str, object]], None] = _dropped.append) -> None:
         later(vars(self))

@@ -67,8 +67,9 @@ def scalar(
     except NumberError as error:
         if isinstance(value, str) and unit != "1":
             raise DeclarationError(f"{what}: {error}") from None
+        hint = "; call the function, as with the time of the mechanism" if callable(value) else ""
         raise DeclarationError(
-            f"{what} must be a number or an expression in parameters, got {shown(value)}"
+            f"{what} must be a number or an expression in parameters, got {shown(value)}{hint}"
         ) from None
     if not math.isfinite(found):
         nan = (

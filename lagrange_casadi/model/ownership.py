@@ -39,6 +39,12 @@ _WORDS: dict[type[object], str] = dict.fromkeys(get_args(Load), "a load") | {
     Row: "a non-holonomic constraint",
 }
 
+
+def _by_name(parts: str, name: object, known: Mapping[str, object]) -> str:
+    """Say where the part of a name stands, if that is what was given."""
+    return f"; m.{parts}['{name}'] is the part" if isinstance(name, str) and name in known else ""
+
+
 Part = Parameter | Body | Joint | Load | Constraint | Row | UserOutput | Path
 
 
@@ -59,8 +65,8 @@ class Ownership:
             point = place
         if not isinstance(point, Point):
             raise DeclarationError(
-                f"{what}: expected a link, a point mass, the ground or a point of one, got"
-                f" {place!r}"
+                f"{what}: expected a link, a point mass, the ground or a point of one, as"
+                f" LINK.at(0.1, 0), got {place!r}{_by_name('bodies', place, self.declared.bodies)}"
             )
         if self.declared.bodies.get(point.body.name) is not point.body:
             raise DeclarationError(
@@ -98,7 +104,7 @@ class Ownership:
         if not isinstance(joint, Joint) or joints.get(joint.name) is not joint:
             raise DeclarationError(
                 f"expected a joint of mechanism '{self.declared.name}', got {joint!r}; joints:"
-                f" {', '.join(joints)}"
+                f" {', '.join(joints)}{_by_name('joints', joint, joints)}"
             )
         return joint
 

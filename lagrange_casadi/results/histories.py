@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from ..base.arguments import public
 from ..base.arrays import Array, during
+from ..base.brief import no_attribute
 from ..base.quantities import Kinds, Output, motions_of
 from ..base.tables import Table, table_of
 from ..engine.instants.evaluation_method import Provenance
@@ -65,6 +66,9 @@ class Histories:
     Methods that take a name raise :class:`.UnknownNameError` for one that there is not, and list
     those there are; :class:`.DeclarationError` for a section that was not evaluated.
     """
+
+    if not TYPE_CHECKING:
+        __getattr__ = no_attribute
 
     case: str
     t: Array

@@ -32,7 +32,11 @@ from lagrange_casadi import (
     tool_deflection,
     vibration,
 )
-from lagrange_casadi.errors import DeclarationError, LagrangeCasadiError, UnknownNameError
+from lagrange_casadi.errors import (
+    DeclarationError,
+    LagrangeCasadiError,
+    UnknownNameError,
+)
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
@@ -195,6 +199,24 @@ WRONG = {
         "beam: expected two effective lengths, positive, got 1.0",
     ),
 }
+
+
+SLIPS = {
+    "link": (lambda m: m.links["a"].end, "unknown attribute of Link 'end'; valid: at, base, beam"),
+    "mechanism": (lambda m: m.revolut, r"'revolut' \(did you mean 'revolute'\?\)"),
+    "joint": (lambda m: m.coordinate("O"), r"got 'O'; joints: O; m\.joints\['O'\] is the part"),
+    "body": (lambda m: m.place("a"), r"got 'a'; m\.bodies\['a'\] is the part"),
+    "point": (lambda m: m.place((0.1, 0.0)), r"as LINK\.at\(0\.1, 0\), got \(0\.1, 0\.0\)"),
+    "function": (lambda m: m.torque("t", m.links["a"], lambda t: t), "call the function"),
+}
+
+
+@pytest.mark.parametrize(("slip", "says"), SLIPS.values(), ids=SLIPS)
+def test_a_slip_is_told_with_what_was_meant(slip, says):
+    m = Mechanism("m")
+    m.revolute("O", m.ground, m.link("a", length=0.3, mass=1.0))
+    with pytest.raises(LagrangeCasadiError, match=says):
+        slip(m)
 
 
 @pytest.mark.parametrize(("call", "says"), WRONG.values(), ids=WRONG)
