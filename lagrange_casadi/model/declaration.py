@@ -21,8 +21,10 @@ from .declared_parts import (
     Outline,
     Parameter,
     Path,
+    PitchCircles,
     PointMass,
     Roller,
+    Track,
     UserOutput,
     Vector,
 )
@@ -63,6 +65,8 @@ class Declaration(Graphs):
     rounding: float = field(default=0.0, init=False)
     outlines: dict[str, list[Outline]] = field(default_factory=dict, init=False)
     rollers: dict[str, Roller] = field(default_factory=dict, init=False)
+    pitch_circles: dict[str, PitchCircles] = field(default_factory=dict, init=False)
+    tracks: dict[str, Track] = field(default_factory=dict, init=False)
     gravity: Vector = field(default=(0.0, -9.81, 0.0), init=False)
     frozen: bool = field(default=False, init=False)
     time: Any = field(default_factory=lambda: ca.SX.sym("t"), init=False)

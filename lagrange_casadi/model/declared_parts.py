@@ -96,12 +96,56 @@ class Point(Brief):
         """All three numbers."""
         return self.x, self.y, self.z
 
+    @property
+    def on_body(self) -> Place:
+        """The place by the name of the body."""
+        return Place(self.body.name, self.place)
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Roller(Brief):
     """A roller that pictures show: its centre, and its radius [m]."""
 
     centre: Point
+    radius: Expression
+
+
+@dataclass(frozen=True)
+class Place:
+    """A place on a body by its name, in the body's axes [m]."""
+
+    body: str
+    at: Vector
+
+
+@dataclass(frozen=True)
+class PitchCircles:
+    """The pitch circles that pictures show, of two gears or of a ``belt``: their centres and axes
+    in the axes of the ``carrier``, and their radii [m].
+
+    A ``rack`` has no second circle, but a place on its pitch line, which is along the second axis.
+    """
+
+    carrier: str
+    centres: tuple[Vector, Vector]
+    axes: tuple[Vector, Vector]
+    radii: tuple[Expression, Expression]
+    belt: bool = False
+    crossed: bool = False
+    rack: Place | None = None
+
+
+@dataclass(frozen=True)
+class Track:
+    """The groove of a drum that pictures show: the way of its roller's centre, a closed polygon in
+    the drum's axes, and the drum's ``axis`` through its ``centre``; the roller is ``held`` on its
+    follower, and has a ``radius`` [m].
+    """
+
+    centre: Place
+    axis: Vector
+    way: tuple[Vector, ...]
+    held: Place
     radius: Expression
 
 

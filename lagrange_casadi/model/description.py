@@ -23,12 +23,13 @@ from ..base.vectors import ZERO
 from .beams.beam import Beam, Notch
 from .beams.material import Material
 from .beams.shape import Course, Shape
-from .declared_parts import Link, Point, PointMass, RigidMass
+from .declared_parts import Link, PitchCircles, Point, PointMass, RigidMass, Track
+from .declared_parts import Place as Place
 from .fitted import Fittings, Pin, Plain, Rolling
 from .guiding import kind_of
 from .joints import Joint, JointKind
 from .link_density import Density, NumericDensity
-from .loads import Friction, Load
+from .loads import Friction, Load, Spring, Torque
 from .mass_properties import mass_of
 from .mechanism import Mechanism
 
@@ -51,14 +52,6 @@ class ParameterNumbers:
     unit: str
     low: float
     high: float
-
-
-@dataclass(frozen=True)
-class Place:
-    """A place on a body, in the body's axes [m]."""
-
-    body: str
-    at: Triple
 
 
 @dataclass(frozen=True)
@@ -177,6 +170,9 @@ class JointNumbers(Brief):
 class LoadNumbers:
     """The places of a load, the second one bearing the opposite; of a friction its coordinate and
     its numbers by their words.
+
+    Pictures show a load of two places by its ``symbols``, "spring" and "damper"; that of a torque
+    is a coil.
     """
 
     kind: str
@@ -184,6 +180,7 @@ class LoadNumbers:
     turning: bool = False
     coordinate: str = ""
     friction: Mapping[str, float] | None = None
+    symbols: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -215,6 +212,8 @@ class Description(Brief):
     paths: Mapping[str, Place] = field(default_factory=dict)
     outlines: Mapping[str, tuple[tuple[Pair, ...], ...]] = field(default_factory=dict)
     rollers: Mapping[str, RollerNumbers] = field(default_factory=dict)
+    pitch_circles: Mapping[str, PitchCircles] = field(default_factory=dict)
+    tracks: Mapping[str, Track] = field(default_factory=dict)
     losses: tuple[str, ...] = ()
     beside: Mapping[str, Triple] = field(default_factory=dict)
     unturned: tuple[str, ...] = ()
@@ -266,6 +265,8 @@ class Description(Brief):
                 name: RollerNumbers(_place(roller.centre), _number(roller.radius))
                 for name, roller in mechanism.rollers.items()
             },
+            pitch_circles=dict(mechanism.pitch_circles),
+            tracks=dict(mechanism.tracks),
             losses=tuple(
                 name
                 for name, one in mechanism.constraints.items()
@@ -421,7 +422,7 @@ class Description(Brief):
 
 DESCRIBED = (
     *(AxisNumbers, BodyNumbers, Description, JointNumbers, LoadNumbers, NumericDensity),
-    *(ParameterNumbers, Place, RollerNumbers),
+    *(ParameterNumbers, PitchCircles, Place, RollerNumbers, Track),
     *(Beam, Course, Shape, Material, Notch, Fittings, Pin, Plain, Rolling),
 )
 """Kinds of what a description is made of."""
@@ -484,7 +485,13 @@ def _load(load: Load) -> LoadNumbers:
     if isinstance(load, Friction):
         numbers = {word: _number(value) for word, value in load.numbers.items()}
         return LoadNumbers(*found, coordinate=load.axis.coordinate, friction=numbers)
-    return LoadNumbers(*found, getattr(load, "turning", False))
+    symbols: tuple[str, ...] = ()
+    if isinstance(load, Spring):
+        parts = {"spring": load.stiffness, "damper": load.damping}
+        symbols = tuple(name for name, x in parts.items() if not ca.SX(x).is_zero())
+    elif isinstance(load, Torque) and load.coiled:
+        symbols = ("spring",)
+    return LoadNumbers(*found, getattr(load, "turning", False), symbols=symbols)
 
 
 def _lies_by_default(joint: Joint) -> bool:

@@ -34,7 +34,7 @@ class Torque(Brief):
     """A torque with three components [N m] on a body at a point, and the opposite on another one,
     or on the ground; in ground axes, or where ``turning`` in the body's own.
 
-    In a plane the first two are zero.
+    In a plane the first two are zero. ``coiled`` says that a torsion spring makes it.
     """
 
     name: str
@@ -42,6 +42,7 @@ class Torque(Brief):
     components: Vector
     against: Point
     turning: bool
+    coiled: bool = False
 
     @property
     def points(self) -> tuple[Point, ...]:

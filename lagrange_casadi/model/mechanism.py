@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import casadi as ca
 
@@ -695,9 +695,9 @@ class Mechanism(Declaration):
             )
         k, free = self._load(name, stiffness, "N m/rad"), self._load(name, angle, "rad")
         c = self._load(name, damping, "N m s/rad")
-        return self._turn_back(
-            name, joint, -(k * (self.coordinate(joint) - free)) - c * self.rate(joint)
-        )
+        torque = -(k * (self.coordinate(joint) - free)) - c * self.rate(joint)
+        self.loads[name] = load = replace(self._turn_back(name, joint, torque), coiled=True)
+        return load
 
     def _turn_back(self, name: str, joint: Joint, value: Expression) -> Torque:
         return self.torque(name, joint.child, value, against=joint.parent)

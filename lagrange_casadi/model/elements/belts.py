@@ -28,7 +28,7 @@ from ...base.brief import Brief
 from ...base.vectors import cross, dot, minus, norm, times
 from ...errors import DeclarationError
 from ..constraints import Constraint
-from ..declared_parts import Body, Expression, Point
+from ..declared_parts import Body, Expression, PitchCircles, Point
 from ..mechanism import Mechanism
 from ..meshes import FITTING, Fit, Loss, Mesh, Transmission, Wrench
 from .courses import along, courses_on, fits_of, size
@@ -144,6 +144,9 @@ def belt(
         sideways = times((r1 - r2 if crossed else r1 + r2) / distance, cross(u, e))
         mesh = replace(mesh, braking=Wrench(sideways, times(r1, u)))
         loss = Loss(f"{name}:loss", (1 - value) / (1 + value), 0.0, one.rotations)
+    mechanism.pitch_circles[name] = PitchCircles(
+        one.carrier.name, (one.place, two.place), (u, v), (r1, r2), belt=True, crossed=crossed
+    )
     phi = r1 * one.displacement(mechanism) + other * two.displacement(mechanism) - ahead
     fits += [fit for course in (one, two) for fit in fits_of("its centre", course)]
     transmission = Transmission(name, (mesh,), 2 * tension, tuple(fits), loss)

@@ -12,7 +12,7 @@ import casadi as ca
 from ...base.arguments import public
 from ...base.brief import Brief
 from ...errors import DeclarationError
-from ..declared_parts import Body, Expression, Link, Point
+from ..declared_parts import Body, Expression, Link, Outline, Point
 from ..joints import Joint
 from ..mechanism import Mechanism
 
@@ -93,6 +93,10 @@ def cylinder(
     rod_area = cap_area - math.pi / 4.0 * rod * rod
     barrel = mechanism.link(f"{name}_barrel", length=closed, mass=barrel_mass)
     piston = mechanism.link(f"{name}_rod", length=closed, mass=rod_mass)
+    mechanism.outlines[barrel.name] = [_box(0.1 * closed, 0.95 * closed, bore)]
+    thick = 0.4 * bore if isinstance(rod, float) and rod == 0.0 else rod
+    head, shaft = _box(0.0, 0.06 * closed, 0.9 * bore), _box(0.06 * closed, closed, thick)
+    mechanism.outlines[piston.name] = [head, shaft]
     mechanism.revolute(f"{name}_rear", rear, barrel)
     slide = mechanism.prismatic(name, barrel, piston.base, axis=(1.0, 0.0))
     mechanism.revolute(f"{name}_front", piston.tip, front)
@@ -106,3 +110,8 @@ def cylinder(
     mechanism.output(f"{name}_flow", cap_area * rate, unit="m^3/s")
     mechanism.output(f"{name}_power", push * rate, unit="W")
     return Cylinder(barrel, piston, slide, cap_area, rod_area)
+
+
+def _box(start: Expression, stop: Expression, high: Expression) -> Outline:
+    """The outline of a part of a cylinder, between two places on its axis [m]."""
+    return [(start, -high / 2), (stop, -high / 2), (stop, high / 2), (start, high / 2)]

@@ -31,7 +31,7 @@ from ...base.rotation import Rotation, direction
 from ...base.vectors import ZERO, Vector, cross, dot, minus, norm, plus, times
 from ...errors import DeclarationError
 from ..constraints import Constraint
-from ..declared_parts import Expression, Link, Point
+from ..declared_parts import Expression, Link, Point, Track
 from ..joints import Joint
 from ..mechanism import Mechanism
 from .cam_profile import turn_in
@@ -40,7 +40,7 @@ from .follower import STEEL, held_by, largest_pressure, rise_of, stiffness_of
 _SAME = 1e-9
 """A cosine, or a share of a size, that is smaller is zero."""
 
-_SAMPLED = 721
+_SAMPLED, _CORNERS = 721, 120
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -105,15 +105,9 @@ class CylindricalCam(Brief):
             For another count.
         """
         angles = turn_in(self.name, count)[:-1]
-        x, values = self.design.angle, self.mechanism.values(parameters)
-        turned = _carried(self.cam, x)
-        here = plus(
-            turned.resolve(minus(self.design.place, self.design.centre)), self.cam.child.place
-        )
-        function = ca.Function(
-            "groove", [x, self.mechanism.symbols], [ca.densify(ca.vertcat(*map(ca.SX, here)))]
-        )
-        return np.asarray(function(angles[None], list(values.values())).full().T)
+        values = self.mechanism.values(parameters)
+        way = _way(self.mechanism, self.design, self.cam)
+        return np.asarray(way(angles[None], list(values.values())).full().T)
 
 
 @public
@@ -186,6 +180,16 @@ def cylindrical_cam(
     _check(what, mechanism, design, rise, follower)
     constraint = _contact(mechanism, name, cam, held, design, rise)
     made = CylindricalCam(name, mechanism, constraint, design, cam)
+    size = 0.0 if roller is None else ownership.expression(f"{what}: roller", roller, "m")
+    way, drawn = _way(mechanism, design, cam), np.linspace(0.0, math.tau, _CORNERS + 1)[:-1]
+    corners = [ca.vertsplit(way(ca.SX(turn), mechanism.symbols)) for turn in drawn.tolist()]
+    mechanism.tracks[name] = Track(
+        cam.child.on_body,
+        _carried(cam, 0.0).resolve(design.axis),
+        tuple((x, y, z) for x, y, z in corners),
+        held.on_body,
+        size,
+    )
     turn = mechanism.coordinate(cam)
     beside = cross(design.normal, design.travel)
     lean = dot(design.normal, design.travel), norm(beside)
@@ -195,9 +199,7 @@ def cylindrical_cam(
     if width is not None:
         if roller is None:
             raise DeclarationError(f"{what}: width needs roller, the roller's radius [m]")
-        round_ = _round(
-            what, mechanism, design, ownership.expression(f"{what}: roller", roller, "m")
-        )
+        round_ = _round(what, mechanism, design, size)
         force = mechanism.results.multiplier(constraint)
         # The flank is as far beside the path as the roller's radius, on the side from which it
         # pushes.
@@ -206,6 +208,15 @@ def cylindrical_cam(
         pressure = largest_pressure(what, mechanism, ca.fabs(force), curvature, width, stiffness)
         mechanism.output(f"{name}_hertz", pressure, unit="Pa")
     return made
+
+
+def _way(mechanism: Mechanism, design: Groove, cam: Joint) -> ca.Function:
+    """The place of the roller's centre in the drum's axes, by the angle and the parameters."""
+    turned = _carried(cam, design.angle)
+    here = plus(turned.resolve(minus(design.place, design.centre)), cam.child.place)
+    x, y, z = map(ca.SX, here)
+    column = ca.densify(ca.vertcat(x, y, z))
+    return ca.Function("groove", [design.angle, mechanism.symbols], [column])
 
 
 def _carried(joint: Joint, angle: Expression) -> Rotation:

@@ -31,7 +31,7 @@ from ...base.brief import Brief
 from ...base.vectors import cross, dot, minus, norm, plus
 from ...errors import DeclarationError
 from ..constraints import Constraint
-from ..declared_parts import Body, Expression, Point
+from ..declared_parts import Body, Expression, PitchCircles, Point
 from ..mechanism import Mechanism
 from ..meshes import Fit, Loss, Mesh, Transmission, Wrench
 from .courses import Course, along, courses_on, fits_of
@@ -143,7 +143,7 @@ def gears(
     fits += more
     pitches = [pitch_of(what, ownership.at_defaults, *pair, toothing) for pair in found]
     meshes = []
-    for pair, pitch, point in zip(found, pitches, many, strict=True):
+    for k, (pair, pitch, point) in enumerate(zip(found, pitches, many, strict=True), 1):
         if pitch.kind == "crossed" and (teeth is None or radii is None):
             raise DeclarationError(
                 f"{what}: gears with crossed axes need teeth= and radii= of both gears"
@@ -151,6 +151,13 @@ def gears(
         mesh = _mesh(mechanism, centre, point, *pair, pitch)
         meshes.append(replace(mesh, braking=braking_of(pitch)) if lossy else mesh)
         fits += [*pitch.fits, *(fit for one in pair for fit in fits_of("its centre", one))]
+        mechanism.pitch_circles[f"{name}_{k}" if len(many) > 1 else name] = PitchCircles(
+            pair[0].carrier.name,
+            (pair[0].place, pair[1].place),
+            (pair[0].axis, pair[1].axis),
+            (toothing.radii[0], 0.0 if pair[1].slides else toothing.radii[1]),
+            rack=point.on_body if pair[1].slides else None,
+        )
     directions = [course.displacement(mechanism) for course in found[0]]
     ahead = ownership.expression(f"{what}: offset", offset, "m")
     phi = toothing.radii[0] * directions[0] + pitches[0].other * directions[1] - ahead

@@ -19,7 +19,7 @@ from ...base.space import require
 from ...errors import LagrangeCasadiError, StoreError, one_line
 from ..shapes.picture_sheet import LETTER, Picture, Words, filling, outline
 from ..shapes.primitives import Line, edge, frame
-from ..shapes.symbols import INK, PAPER, SYMBOLS
+from ..shapes.symbols import PAPER, SYMBOLS
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -66,7 +66,7 @@ def frames(picture: Picture, chosen: Iterable[int] | None = None) -> Iterator[Im
                 place = _FINE * frame(thing.points, k)
                 anchor, halo = "rs" if thing.before else "ls", round(1.5 * unit)
                 style: dict[str, Any] = {"stroke_width": halo, "stroke_fill": PAPER}
-                brush.text((place[0], place[1]), thing.text, INK, font, anchor, **style)
+                brush.text((place[0], place[1]), thing.text, thing.colour, font, anchor, **style)
             else:
                 for one in SYMBOLS[thing.kind]:
                     points = _FINE * outline(thing, one, picture.unit, k)
@@ -85,11 +85,12 @@ def _stroke(brush: ImageDraw, points: Array, colour: str, width: float) -> None:
 
 
 def _dashes(points: Array, length: float) -> Iterator[Array]:
-    """Dashes of a straight line (2, 2)."""
-    start, way = points[0], points[1] - points[0]
-    total = float(np.hypot(*way))
-    for at in np.arange(0.0, total, 2.0 * length):
-        yield start + np.outer([at, min(at + length, total)], way / total)
+    """Dashes of a polyline (n, 2)."""
+    gone = np.r_[0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T))]
+    for at in np.arange(0.0, gone[-1], 2.0 * length):
+        between = gone[(gone > at) & (gone < at + length)]
+        along = np.r_[at, between, min(at + length, gone[-1])]
+        yield np.column_stack([np.interp(along, gone, xs) for xs in points.T])
 
 
 def gif(picture: Picture, seconds: float) -> bytes:

@@ -14,6 +14,7 @@ import numpy as np
 from ...base.arrays import Array, every
 from ...results.solution import Solution
 from ...results.store.specs import MechanismDrawing
+from ..shapes.labels import apart, label_bodies, placed
 from ..shapes.orthographic import View, page, views
 from ..shapes.picture_sheet import filling, together, view_of
 from ..shapes.poses import Poses
@@ -29,12 +30,12 @@ from ..shapes.primitives import (
     edge,
     seen,
     size_of,
+    spread,
     turn,
 )
 from ..shapes.readable import Scale, instant, scale_for
 from ..shapes.shapes import named_spots
 from ..shapes.symbols import SYMBOLS
-from .labels import apart, label_bodies, placed
 from .stills import stills
 
 if TYPE_CHECKING:
@@ -350,10 +351,10 @@ def _name(axes: Axes, things: Sequence[Line | Symbol | Name], taken: Array) -> N
     hidden = [points * taken]
     for thing in things:
         if isinstance(thing, Line) and thing.level > GROUND:
-            hidden.append(points * display.transform(_along(thing.points[0], thing.closed)))
+            hidden.append(points * display.transform(spread(thing.points[0], thing.closed)))
         elif isinstance(thing, Symbol):
             about = _stands_at(axes, thing)
-            lines_of = (_along(one.points, one.closed) for one in SYMBOLS[thing.kind])
+            lines_of = (spread(one.points, one.closed) for one in SYMBOLS[thing.kind])
             hidden += [points * about.transform(line) for line in lines_of]
     border = points * axes.bbox.get_points().ravel() + [2.0, 2.0, -2.0, -2.0]
     corners = placed(anchors, sizes, np.concatenate(hidden), border.tolist())
@@ -376,10 +377,3 @@ def _name(axes: Axes, things: Sequence[Line | Symbol | Name], taken: Array) -> N
             path_effects=[withStroke(linewidth=2.0, foreground="white")],
         )
         name.set_in_layout(False)
-
-
-def _along(points: Array, closed: bool) -> Array:
-    """Points along a polyline (n, 2), as things that a name may hide."""
-    ends = edge(points, closed)
-    shares = np.linspace(0.0, 1.0, max(2, 80 // len(ends)))[:, None, None]
-    return np.asarray(ends[:-1] + shares * np.diff(ends, axis=0)).reshape(-1, 2)

@@ -19,11 +19,11 @@ from ...model.scene import Scene
 from ...model.scene_arguments import posture_entry
 from ...results.solution import Solution
 from ...studies.evaluate import evaluate
+from ..shapes.labels import NAMES_IN_ROW
 from ..shapes.picture_files import one_at_a_time, save
 from ..shapes.poses import Poses
 from ..shapes.primitives import cloud, drawing
 from ..shapes.shapes import named_spots
-from .labels import NAMES_IN_ROW
 from .mechanism_figure import draw_into
 
 _ALL, _SOME, _LARGE = 16, 8, 40

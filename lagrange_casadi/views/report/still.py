@@ -19,4 +19,4 @@ def still(solution: Solution) -> str:
     things = drawing(whole.during([0]), whole)
     one = view_of(solution.description)
     title = f"{solution.case} at its first instant"
-    return svg(picture(title, things, one, 460, tallest=0.65, unit=0.85))
+    return svg(picture(title, things, one, 460, tallest=0.65, unit=0.85), paper=False)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -61,9 +61,13 @@ class Poses:
 
     def place(self, spot: Place) -> Array:
         """A place on a body or on the ground, (t, 3) in ground axes [m]."""
-        if spot.body == "ground":
-            return np.tile(np.array(spot.at, float), (self.count, 1))
-        return self.bases[spot.body] + self.direction(spot.body, spot.at)
+        return np.asarray(self.along(spot.body, [spot.at])[:, 0])
+
+    def along(self, body: str, places: Sequence[Triple]) -> Array:
+        """Places on a body or on the ground, (t, n, 3) in ground axes [m]."""
+        if body == "ground":
+            return np.tile(np.array(places, float), (self.count, 1, 1))
+        return np.asarray(self.bases[body][:, None] + np.array(places, float) @ self.axes[body])
 
     def direction(self, body: str, local: Triple) -> Array:
         """A direction that a body carries, (t, 3) in ground axes."""

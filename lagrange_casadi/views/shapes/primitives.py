@@ -9,18 +9,21 @@ moves.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TypeAlias
 
 import numpy as np
 
 from ...base.arrays import Array
-from ...model.description import JointNumbers, Place, Triple
+from ...model.declared_parts import PitchCircles, Track
+from ...model.description import JointNumbers, LoadNumbers, Place
+from .curves import belt, between, circle, rack, spiral
 from .orthographic import View
-from .poses import Poses, frame_along
+from .poses import Poses
 from .shapes import Shape, named_spots, shapes
-from .symbols import PATH
+from .symbols import INK, PATH
 
 COLOURS = (
     *("#1f4e79", "#b3541e", "#2e7d4f", "#7a3b8f", "#8a6d1a", "#3c6e71", "#9c2f4a", "#555555"),
@@ -34,13 +37,14 @@ _SLIDES = ("prismatic", "cylindrical", "screw", "slot")
 _UNSUPPORTED = ("free", "prismatic", "slot", "cylindrical", "screw", "planar")
 """Joints below which the ground has no symbol."""
 
-_PAD, _AXIS, _COIL = 0.06, 0.045, 0.018
-"""Over the mechanism's size: a guide beyond its use, half a joint's axis, the radius of a spring.
+_SQUARE = ((-1, -1), (1, -1), (1, 1), (-1, 1))
+
+_PAD, _AXIS, _COIL, _PLANE = 0.06, 0.045, 0.018, 0.12
+"""Over the mechanism's size: a guide beyond its use, half a joint's axis, the radius of a spring,
+half a side of a plane.
 """
 
-_ROUND = np.exp(2j * np.pi * np.arange(40) / 40)
-_TURN = np.exp(0.5j * np.pi * np.arange(33))
-"""The eight coils of a spring."""
+_PITCH, _METAL = "#777777", "#666666"
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,15 +90,17 @@ class Arrow:
     colour: str
     head: float
     level: int = FORCES
+    width: float = 2.6
 
 
 @dataclass(frozen=True, eq=False)
 class Name:
-    """A name beside ``points`` (frames, 1, 3) [m]."""
+    """A name beside ``points`` (frames, 1, 3) [m]; ``colour`` is by default that of all letters."""
 
     points: Array
     text: str
     level: int = FORCES
+    colour: str = INK
 
 
 Primitive: TypeAlias = Line | Symbol | Arrow | Name
@@ -125,8 +131,12 @@ def drawing(
     for spot in description.paths.values():
         found.append(Line(whole.place(spot)[None], PATH, 1.4, level=WAYS))
         found.append(symbol("point", spot, POINTS))
-    for start, stop in description.springs.values():
-        found.append(_spring(poses.place(start), poses.place(stop), _COIL * size))
+    found += [line for load in description.loads.values() for line in _held(poses, load, size)]
+    for circles in description.pitch_circles.values():
+        found += _meshing(poses, whole, circles, colours)
+    found += [
+        line for track in description.tracks.values() for line in _drum(poses, track, colours)
+    ]
     masses = {shape.name for shape in parts if shape.kind == "point"}
     for joint in joints:
         ground = [end for end in joint.ends if end.body == "ground"]
@@ -138,6 +148,11 @@ def drawing(
             found.append(symbol(joint.kind, joint.child, PINS))
             if description.space:
                 found += _axes(poses, joint, size)
+            if description.space and joint.kind == "planar":
+                sides = _PLANE * size * np.array([(0, x, y) for x, y in _SQUARE])
+                corners = np.array(joint.parent.at) + sides @ np.array(joint.triad)
+                plane = poses.along(joint.parent.body, corners.tolist())
+                found.append(Line(plane, _PITCH, 0.8, closed=True, opacity=0.12, level=GROUND))
     named = named_spots(description) if named is None else named
     found += [Name(poses.place(spot)[:, None], name) for name, spot in named.items()]
     return tuple(found)
@@ -150,7 +165,8 @@ def colours_of(bodies: Iterable[str]) -> dict[str, str]:
 
 def cloud(primitives: Iterable[Primitive]) -> Array:
     """All points (n, 3) of primitives over all frames: their extent is that of the picture."""
-    return np.concatenate([one.points.reshape(-1, one.points.shape[-1]) for one in primitives])
+    found = [one.points.reshape(-1, one.points.shape[-1]) for one in primitives]
+    return np.concatenate(found) if found else np.zeros((1, 3))
 
 
 def size_of(primitives: Iterable[Primitive]) -> float:
@@ -193,6 +209,13 @@ def edge(points: Array, closed: bool) -> Array:
     return np.vstack([points, points[:1]]) if closed else points
 
 
+def spread(points: Array, closed: bool) -> Array:
+    """Points along a polyline (n, 2), as things that a name may hide."""
+    ends = edge(points, closed)
+    shares = np.linspace(0.0, 1.0, max(2, 80 // len(ends)))[:, None, None]
+    return np.asarray(ends[:-1] + shares * np.diff(ends, axis=0)).reshape(-1, 2)
+
+
 def frame(values: Array, k: int) -> Array:
     """The values at a frame; the only ones of what stands still."""
     found: Array = values[min(k, len(values) - 1)]
@@ -203,13 +226,13 @@ def _body(poses: Poses, shape: Shape, colours: Mapping[str, str]) -> Iterator[Pr
     """A body: its plates, disc with a spoke by which one sees it turn, axis and arms."""
     colour, name = colours[shape.name], shape.name
 
-    def along(points: Sequence[Triple]) -> Array:
-        return np.stack([poses.place(Place(name, at)) for at in points], axis=1)
-
+    along = partial(poses.along, name)
     for plate in shape.plates:
         yield Line(along(plate), colour, 2.0, closed=True, opacity=0.25, body=name)
-    rim = _rim(poses, shape)
-    if rim is not None:
+    middle, axis, rim = Place(name, shape.centre or (0.0, 0.0, 0.0)), disc_axis(poses, shape), None
+    if axis is not None:
+        way = poses.direction(name, (axis[0], axis[1], axis[2]))
+        rim = circle(poses.place(middle), way, shape.disc)
         yield Line(rim, colour, 2.4, closed=True, opacity=0.2, body=name)
         yield Line(np.stack([np.mean(rim, axis=1), rim[:, 0]], axis=1), colour, 2.4, body=name)
     if shape.axis:
@@ -221,8 +244,7 @@ def _body(poses: Poses, shape: Shape, colours: Mapping[str, str]) -> Iterator[Pr
         joint.kind in _SLIDES and name in (joint.parent.body, joint.child.body) for joint in joints
     )
     if not slides and rim is None and not (shape.plates or shape.axis or shape.arms):
-        middle = poses.place(Place(name, shape.centre or (0.0, 0.0, 0.0)))[:, None]
-        yield Symbol("mass", middle, None, colour, BODIES)
+        yield Symbol("mass", poses.place(middle)[:, None], None, colour, BODIES)
 
 
 def disc_axis(poses: Poses, shape: Shape) -> Array | None:
@@ -242,19 +264,6 @@ def disc_axis(poses: Poses, shape: Shape) -> Array | None:
     if not ways or any(np.abs(np.cross(ways[0], way)).max() > 1e-6 for way in ways):
         return None
     return np.asarray(poses.axes[shape.name][0] @ ways[0])
-
-
-def _rim(poses: Poses, shape: Shape) -> Array | None:
-    """The edge of a body that is a disc (frames, n, 3) [m], about the joint by which the body
-    turns; None of any other body.
-    """
-    axis = disc_axis(poses, shape)
-    if axis is None:
-        return None
-    _, first, second = frame_along(axis)
-    around = shape.disc * (_ROUND.real[:, None] * second - _ROUND.imag[:, None] * first)
-    middle = poses.place(Place(shape.name, shape.centre or (0.0, 0.0, 0.0)))
-    return np.asarray(middle[:, None] + around @ poses.axes[shape.name])
 
 
 def _guide(poses: Poses, whole: Poses, joint: JointNumbers, size: float) -> Line:
@@ -290,14 +299,68 @@ def _axes(poses: Poses, joint: JointNumbers, size: float) -> Iterator[Line]:
         yield Line(np.stack([middle - half, middle + half], axis=1), "#222222", 2.0, level=AXES)
 
 
-def _spring(start: Array, stop: Array, radius: float) -> Line:
-    """A coil between two places (frames, 3), straight at its ends."""
-    way = stop - start
-    axes = frame_along(np.where(way.any(axis=1, keepdims=True), way, np.eye(3)[0]))
-    shares = np.concatenate([[0.0], np.linspace(0.15, 0.85, _TURN.size), [1.0]])
-    sides = radius * np.pad(np.stack([_TURN.imag, _TURN.real], axis=1), ((1, 1), (0, 0)))
-    points = start[:, None] + shares[:, None] * way[:, None] + sides @ axes[:, 1:]
-    return Line(points, "#666666", 1.5, level=SPRINGS)
+def _held(poses: Poses, load: LoadNumbers, size: float) -> Iterator[Line]:
+    """The springs and dampers of a load between two places, or the coil of a torsion spring."""
+    places = [poses.place(point) for point in load.points]
+    if load.kind == "spring":
+        for line in between(places[0], places[1], _COIL * size, load.symbols or ("spring",)):
+            yield Line(line, _METAL, 1.5, level=SPRINGS)
+    elif load.symbols:
+        joints = poses.description.joints.values()
+        turned = next(joint for joint in joints if joint.ends == load.points[::-1])
+        axis = poses.direction(turned.parent.body, turned.axes[0].direction)
+        yield Line(spiral(places[0], axis, 2.5 * _COIL * size), _METAL, 1.5, level=SPRINGS)
+
+
+def _meshing(
+    poses: Poses, whole: Poses, pitch: PitchCircles, colours: Mapping[str, str]
+) -> Iterator[Line]:
+    """The pitch circles of gears, a belt around them, or a rack as long as its gear ever needs."""
+    carrier, radius = pitch.carrier, pitch.radii[0]
+    middles = [poses.place(Place(carrier, at)) for at in pitch.centres]
+    ways = [poses.direction(carrier, axis) for axis in pitch.axes]
+    count = 2 if pitch.rack is None else 1
+    for middle, way, size in list(zip(middles, ways, pitch.radii, strict=True))[:count]:
+        ring = circle(middle, way, size)
+        yield Line(ring, _PITCH, 1.2, closed=True, dashed=not pitch.belt, level=AXES)
+    if pitch.belt:
+        around = belt(middles[0], middles[1], ways[0], pitch.radii, crossed=pitch.crossed)
+        yield Line(around, _METAL, 2.4, closed=True, level=AXES)
+    if pitch.rack is not None:
+        spot, gone = poses.place(pitch.rack), Place(carrier, pitch.centres[0])
+        away = whole.place(gone) - whole.place(pitch.rack)
+        reach = np.sum(away * whole.direction(carrier, pitch.axes[1]), axis=1)
+        ends = float(reach.min()) - 1.2 * radius, float(reach.max()) + 1.2 * radius
+        points = rack(spot, ways[1], middles[0], radius, ends)
+        colour, body = colours.get(pitch.rack.body, _METAL), pitch.rack.body
+        yield Line(points, colour, 2.0, closed=True, opacity=0.25, body=body)
+
+
+def _drum(poses: Poses, track: Track, colours: Mapping[str, str]) -> Iterator[Line]:
+    """A drum with the flanks of its groove, and the roller in that."""
+    body, radius = track.centre.body, track.radius
+    way: Array = np.array(track.way)
+    axis, centre = np.array(track.axis), np.array(track.centre.at)
+    high = (way - centre) @ axis
+    outward = way - centre - high[:, None] * axis
+    size = np.linalg.norm(outward, axis=1)
+    across = np.cross(outward, np.roll(way, -1, axis=0) - np.roll(way, 1, axis=0))
+    across *= radius / np.linalg.norm(across, axis=1, keepdims=True)
+    colour, edge_of = colours[body], 2.0 * radius or 0.2 * size.max()
+    for end in (high.min() - edge_of, high.max() + edge_of):
+        ring = circle((centre + end * axis)[None], axis[None], float(size.max()))[0]
+        yield Line(
+            poses.along(body, ring.tolist()), colour, 2.0, closed=True, opacity=0.15, body=body
+        )
+    for side in (-1.0, 1.0) if radius else (0.0,):
+        flank = poses.along(body, (way + side * across).tolist())
+        yield Line(flank, colour, 1.6, closed=True, body=body)
+    middle, about = poses.place(track.held), poses.direction(body, track.axis)
+    seat = middle - poses.place(track.centre)
+    seat = seat - np.sum(seat * about, axis=1, keepdims=True) * about
+    held = track.held.body
+    ring = circle(middle, seat, radius)
+    yield Line(ring, colours[held], 2.0, closed=True, opacity=0.25, level=POINTS, body=held)
 
 
 def _arrow(arrow: Arrow, points: Array) -> Iterator[Line]:
@@ -312,6 +375,6 @@ def _arrow(arrow: Arrow, points: Array) -> Iterator[Line]:
     shaft, back = points.copy(), tip - head * ahead
     if points.shape[1] == 2:
         shaft[:, -1] = tip - 0.8 * head * ahead
-    yield Line(shaft, arrow.colour, 2.6, level=FORCES)
+    yield Line(shaft, arrow.colour, arrow.width, level=arrow.level)
     corners = np.stack([tip, back + side, back - side], axis=1)
-    yield Line(corners, arrow.colour, 0.8, closed=True, opacity=1.0, level=FORCES)
+    yield Line(corners, arrow.colour, 0.8, closed=True, opacity=1.0, level=arrow.level)

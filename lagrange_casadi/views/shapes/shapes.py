@@ -85,8 +85,10 @@ def shapes(description: Description) -> Iterator[Shape]:
                 if plates
                 else tuple(((min(max(at[0], 0.0), length), 0.0, 0.0), at) for at in beside)
             )
-            drawn = outlines + plates + rollers
-            yield Shape(name, "link", length, mass, axis, arms, drawn, None, 0.0)
+            if outlines:
+                yield Shape(name, "link", length, mass, (), (), outlines + rollers, None, 0.0)
+            else:
+                yield Shape(name, "link", length, mass, axis, arms, plates + rollers, None, 0.0)
 
 
 def named_spots(description: Description) -> dict[str, Place]:

@@ -19,9 +19,9 @@ _UNFIT = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 """Letters that XML cannot hold."""
 
 
-def svg(picture: Picture, seconds: float = 0.0) -> str:
-    """The text of the file; if a cycle takes no ``seconds``, a still without a background, whose
-    words have the colour of the page that shows it.
+def svg(picture: Picture, seconds: float = 0.0, *, paper: bool = True) -> str:
+    """The text of the file, a still if a cycle takes no ``seconds``; without ``paper`` there is no
+    background, and words have the colour of the page that shows it.
     """
     wide, high = picture.width, picture.height
     style = (
@@ -33,14 +33,16 @@ def svg(picture: Picture, seconds: float = 0.0) -> str:
         f' {wide} {high}" {style}>'
     )
     lines = [head, f"<title>{_text(picture.title)}</title>"]
-    if seconds:
+    if paper:
         lines.append(f'<rect width="{wide}" height="{high}" fill="{PAPER}"/>')
     for thing in picture.things:
-        lines += _element(thing, picture, seconds)
+        lines += _element(thing, picture, seconds, paper)
     return "\n".join([*lines, "</svg>", ""])
 
 
-def _element(thing: Line | Symbol | Words, picture: Picture, seconds: float) -> Iterator[str]:
+def _element(
+    thing: Line | Symbol | Words, picture: Picture, seconds: float, paper: bool
+) -> Iterator[str]:
     if isinstance(thing, Line):
         name = "polygon" if thing.closed else "polyline"
         width = thing.width * picture.unit
@@ -59,8 +61,9 @@ def _element(thing: Line | Symbol | Words, picture: Picture, seconds: float) -> 
     places = [f"{x:.1f} {y:.1f}" for x, y in points]
     moved = _animated("translate", places, picture, seconds)
     if isinstance(thing, Words):
-        ink = f'fill="{INK}" stroke="{PAPER}" stroke-width="{3.0 * picture.unit:.4g}"'
-        ink = f'{ink} paint-order="stroke"' if seconds else 'fill="currentColor"'
+        fill = thing.colour if paper or thing.colour != INK else "currentColor"
+        halo = f' stroke="{PAPER}" stroke-width="{3.0 * picture.unit:.4g}" paint-order="stroke"'
+        ink = f'fill="{fill}"{halo if paper else ""}'
         anchor = ' text-anchor="end"' if thing.before else ""
         start = f'<text transform="translate({places[0]})" {ink}{anchor}>'
         yield f"{start}{_text(thing.text)}{moved}</text>"

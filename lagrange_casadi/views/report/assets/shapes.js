@@ -17,11 +17,12 @@ function shapeOf(kind, length, centre, spots, outlines) {
     const arms = plates.length ? [] : ends;
     return { length, axis: [], arms, plates: [...plates, ...rollers], centre, disc: arms.length || plates.length ? 0 : Math.max(length, 0) };
   }
+  if (outlines.length) return { length, axis: [], arms: [], plates: [...outlines, ...rollers], centre: null, disc: 0 };
   const axis = [[0, 0, 0], [length, 0, 0]];
   const beside = places.filter((at) => Math.hypot(at[1], at[2]) > FLAT * (Math.abs(length) || 1) || !(at[0] >= 0 && at[0] <= length));
   const plates = beside.length ? platesOf([...axis, ...beside]) : [];
   const arms = plates.length ? [] : beside.map((at) => [[Math.min(Math.max(at[0], 0), length), 0, 0], at]);
-  return { length, axis, arms, plates: [...outlines, ...plates, ...rollers], centre: null, disc: 0 };
+  return { length, axis, arms, plates: [...plates, ...rollers], centre: null, disc: 0 };
 }
 
 /** The convex polygon of three places or more that lie in one plane and not in a line; else nothing. */

@@ -44,54 +44,56 @@ def placed(anchors: Array, sizes: Array, things: Array, box: Sequence[float]) ->
     )
     for k in np.lexsort((np.arange(len(anchors)), -sizes[:, 0], -near)):
         corners = _around(anchors[k], sizes[k])
-        costs = np.array([_cost(at, k, anchors, sizes, things, found, box) for at in corners])
+        close = np.all(np.abs(things - anchors[k]) < _REACHES[-1] + sizes[k] + 1.0, axis=1)
+        costs = _costs(corners, k, anchors, sizes, things[close], found, box)
         found[k] = corners[int(np.argmin(costs))]
     return found
 
 
 def apart(corner: Array, size: Array, anchor: Array) -> float:
     """Distance of a name from its point [pt]."""
-    nearest = np.clip(anchor, corner, corner + size)
-    return float(np.hypot(*(nearest - anchor)))
+    return float(_apart(corner, size, anchor))
 
 
-def _around(anchor: Array, size: Array) -> list[Array]:
-    """Lower left corners of a name all around its point, near ones first, and of these to the upper
-    right.
+def _apart(corners: Array, size: Array, anchor: Array) -> Array:
+    nearest = np.clip(anchor, corners, corners + size)
+    return np.asarray(np.hypot(*np.moveaxis(nearest - anchor, -1, 0)))
+
+
+def _around(anchor: Array, size: Array) -> Array:
+    """Lower left corners (n, 2) of a name all around its point, near ones first, and of these to
+    the upper right.
     """
     angles = math.pi / 4 + np.linspace(0.0, math.tau, _DIRECTIONS, endpoint=False)
-    return [
-        anchor + reach * np.array([c, s]) + (np.array([c, s]) - 1.0) * size / 2
-        for reach in _REACHES
-        for c, s in zip(np.cos(angles), np.sin(angles), strict=True)
-    ]
+    ways = np.column_stack([np.cos(angles), np.sin(angles)])
+    reaches = np.array(_REACHES)[:, None, None]
+    return np.asarray(anchor + reaches * ways + (ways - 1.0) * size / 2).reshape(-1, 2)
 
 
-def _cost(
-    at: Array,
+def _costs(
+    corners: Array,
     k: int,
     anchors: Array,
     sizes: Array,
     things: Array,
     found: Array,
     box: Sequence[float],
-) -> float:
-    low, high = at - 1.0, at + sizes[k] + 1.0
+) -> Array:
+    """Costs (n,) of places of a name by its corners (n, 2)."""
+    low, high = corners[:, None] - 1.0, corners[:, None] + sizes[k] + 1.0
     over = np.minimum(high, found + sizes) - np.maximum(low, found)
-    there = ~np.isnan(found[:, 0])
-    overlaps = np.sum(np.prod(np.maximum(over[there], 0.0), axis=1) > 0.0)
-    hidden = np.sum(np.all((things > low) & (things < high), axis=1)) + 4 * np.sum(
-        np.all((anchors > low) & (anchors < high), axis=1)
-    )
-    outside = np.sum(
-        np.maximum([box[0] - low[0], box[1] - low[1], high[0] - box[2], high[1] - box[3]], 0.0)
-    )
-    return float(
-        _OVERLAP * overlaps
-        + _HIDDEN * hidden
-        + _OUTSIDE * outside
-        + _FAR * apart(at, sizes[k], anchors[k])
-    )
+    # Names without a place so far overlap nothing.
+    overlaps = np.sum(np.all(over > 0.0, axis=2), axis=1)
+    hidden = _within(things, low, high) + 4 * _within(anchors, low, high)
+    beyond = np.concatenate([np.array(box[:2]) - low[:, 0], high[:, 0] - np.array(box[2:])], axis=1)
+    outside = np.sum(np.maximum(beyond, 0.0), axis=1)
+    far = _apart(corners, sizes[k], anchors[k])
+    return np.asarray(_OVERLAP * overlaps + _HIDDEN * hidden + _OUTSIDE * outside + _FAR * far)
+
+
+def _within(points: Array, low: Array, high: Array) -> Array:
+    """Numbers (n,) of points (m, 2) between corners (n, 1, 2)."""
+    return np.asarray(np.sum(np.all((points > low) & (points < high), axis=2), axis=1))
 
 
 def label_bodies(
