@@ -101,6 +101,11 @@ class LagrangeCasadiError(Exception):
     exit_status = 2
     placement: object = None
 
+    def __reduce__(self) -> tuple[object, ...]:
+        """Sent to another process, it goes without its placement, whose mechanism lives here."""
+        left = {name: value for name, value in vars(self).items() if name != "placement"}
+        return type(self), self.args, left
+
     def __str__(self) -> str:
         return _line(super().__str__())
 

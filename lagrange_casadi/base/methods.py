@@ -12,8 +12,12 @@ from collections.abc import Callable
 from typing import Any
 
 METHODS: dict[str, str] = {
+    "LagrangeCasadiError.drawn": "views.drawing:draw_error",
+    "Mechanism._repr_html_": "views.drawing:face",
+    "Mechanism.draw": "views.drawing:draw_mechanism",
     "PostureError.drawn": "views.figures.posture_figures:draw_postures",
     "Scene._repr_html_": "views.report:scene_summary",
+    "Scene.draw": "views.drawing:draw_scene",
     "Scene.report": "views.report:scene_report",
     "Solution._repr_html_": "views.report:summary",
     "Solution.animate": "views.animation.film:write_animation",

@@ -128,7 +128,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
                 _say(line)
             return status
         except LagrangeCasadiError as error:
-            return _fail(str(error), error.exit_status)
+            from .drawing import drawn
+
+            return _fail(f"{error}{drawn(error, asked)}", error.exit_status)
         except click.exceptions.NoArgsIsHelpError as error:
             for line in error.format_message().splitlines():
                 _say(line)

@@ -56,7 +56,7 @@ def drawn_ways(error: PostureError, asked: Mapping[str, object]) -> tuple[str, l
     if not isinstance(scene, Scene) or error.lacking:
         return "", []
     picture = io.BytesIO()
-    path = Path(str(asked.get("out") or ".")).parent / f"{_name_of(scene, asked)}_postures.png"
+    path = _beside("postures.png", asked)
     with suppress(LagrangeCasadiError):
         postures, complete = method("PostureError.drawn")(scene, picture)
         if postures:
@@ -74,12 +74,24 @@ def drawn_ways(error: PostureError, asked: Mapping[str, object]) -> tuple[str, l
     return "", []
 
 
-def _name_of(scene: Scene, asked: Mapping[str, object]) -> str:
-    """The name of the case that a command was asked for, else that of its mechanism."""
+def drawn(error: LagrangeCasadiError, asked: Mapping[str, object]) -> str:
+    """Draw the placement of an error, beside what the command was ``asked`` to write.
+
+    Returns what goes behind the error, nothing where nothing can be drawn.
+    """
+    if error.placement is None:
+        return ""
+    path = _beside("open.svg", asked)
+    with suppress(LagrangeCasadiError):
+        method("LagrangeCasadiError.drawn")(error, path)
+        return f"; {path} draws it"
+    return ""
+
+
+def _beside(ending: str, asked: Mapping[str, object]) -> Path:
+    """A file named after the case that a command was asked for, beside what it was to write."""
     targets = asked.get("targets")
     first = targets[0] if isinstance(targets, tuple) and targets else None
-    target = first or asked.get("case") or asked.get("target")
-    if target is None:
-        return scene.name
-    place = Path(str(target)).resolve()
-    return place.parent.name if place.name == "case.py" else place.stem
+    place = Path(str(first or asked.get("case") or asked.get("target") or "case.py")).resolve()
+    name = place.parent.name if place.name == "case.py" else place.stem
+    return Path(str(asked.get("out") or ".")).parent / f"{name}_{ending}"

@@ -55,13 +55,14 @@ _BESIDE = 0.25
 
 @dataclass(frozen=True, eq=False)
 class Placement:
-    """The bodies of a mechanism at an instant ``t`` [s].
+    """The bodies of a mechanism at an instant ``t`` [s], as it was ``declared``.
 
     ``description`` has the numbers of the mechanism. ``bases`` are the places of the bodies'
     origins (3,) [m] and ``axes`` their x, y and z, rows (3, 3), both in ground axes and by body.
     ``driven`` are the coordinates whose motion is given, and ``gaps`` the loops that do not close.
     """
 
+    declared: Mechanism
     t: float
     description: Description
     bases: Mapping[str, Array]
@@ -169,9 +170,9 @@ def place(
     description = described(mechanism, tree, laws, drives).at(list(given.values()))
     bases = {name: poses[name][0] for name in description.bodies}
     axes = {name: poses[name][1:] for name in description.bodies}
-    declared = getattr(mechanism, "references", {})
-    _set_beside(bases, axes, description, [name for name in floating if name not in declared])
-    return Placement(float(state[2]), description, bases, axes, tuple(driven), gaps)
+    seated = getattr(mechanism, "references", {})
+    _set_beside(bases, axes, description, [name for name in floating if name not in seated])
+    return Placement(mechanism, float(state[2]), description, bases, axes, tuple(driven), gaps)
 
 
 def _measured(mechanism: Mechanism, values: Mapping[str, float]) -> Mechanism:

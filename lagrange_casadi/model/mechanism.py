@@ -9,13 +9,16 @@ depends on the parameters' values by :meth:`Mechanism.values`.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+import os
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import casadi as ca
 
 from ..base.arguments import public
 from ..base.brief import listed
+from ..base.drawn import Drawing
+from ..base.methods import method
 from ..base.symbolic import symbolic
 from ..base.tables import FORCE, MOMENT
 from ..base.units import Number, quantity
@@ -68,6 +71,47 @@ class Mechanism(Declaration):
         bodies = listed((body.name for body in self.moving), "no body yet")
         joints = listed(self.joints, "none yet")
         return f"<{type(self).__name__} {self.name}: {bodies}; joints: {joints}>"
+
+    def _repr_html_(self) -> str:
+        """Show a drawing in a notebook, or where there is none the parts."""
+        return str(method("Mechanism._repr_html_")(self))
+
+    def draw(
+        self,
+        path: str | os.PathLike[str] | None = None,
+        *,
+        parameters: Mapping[str, float] | None = None,
+        posture: Mapping[str, float | str] | None = None,
+    ) -> Drawing:
+        """Draw what is declared so far, whether its loops close or not.
+
+        Parameters
+        ----------
+        path : path, optional
+            The file, which ends in .svg or .png; by default none is written.
+        parameters : mapping, optional
+            Values by name; by default the parameters' defaults.
+        posture : mapping, optional
+            Rough directions of links and coordinates of joints, as of a :class:`.Scene`; by
+            default they are zero.
+
+        Returns
+        -------
+        Drawing
+            The drawing, which a notebook shows. Its ``gaps`` say which loops do not close, and how
+            wide they are open.
+
+        Raises
+        ------
+        DeclarationError
+            For another ending, and what the posture cannot be.
+        UnknownNameError
+            For names that the mechanism does not have.
+        ParameterError
+            For values that are not finite, or out of their range.
+        """
+        draw: Callable[..., Drawing] = method("Mechanism.draw")
+        return draw(self, path, parameters=parameters, posture=posture)
 
     @property
     def ownership(self) -> Ownership:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache, partial
 from types import MappingProxyType
@@ -11,9 +11,10 @@ from typing import Any, NoReturn
 
 from ..base.arguments import Outputs, fitting, public, texts
 from ..base.brief import listed
+from ..base.drawn import Drawing
 from ..base.methods import method
 from ..base.symbolic import Graphs, symbolic, symbolic_property
-from ..base.units import within
+from ..base.units import Number, quantity, within
 from ..base.vocabulary import PRECISIONS, Precision
 from ..errors import DeclarationError, ParameterError, PickleError, UnknownNameError, shown
 from .declared_parts import Expression, Parameter
@@ -343,10 +344,45 @@ class Scene(Graphs):
         )
 
     def _repr_html_(self) -> str:
-        """Show a drawing at the first instant, if the mechanism can be assembled, and the parts, in
-        a notebook.
-        """
+        """Show a drawing at the first instant and the parts, in a notebook."""
         return str(method("Scene._repr_html_")(self))
+
+    @public
+    def draw(
+        self,
+        path: str | os.PathLike[str] | None = None,
+        *,
+        t: Number | None = None,
+        parameters: Mapping[str, float] | None = None,
+    ) -> Drawing:
+        """Draw the scene at an instant, whether its loops close or not.
+
+        Parameters
+        ----------
+        path : path, optional
+            The file, which ends in .svg or .png; by default none is written.
+        t : float or str, optional
+            The instant [s, or a text such as ``"20 ms"``]; by default the first one.
+        parameters : mapping, optional
+            Values by name; by default the parameters' defaults.
+
+        Returns
+        -------
+        Drawing
+            As of :meth:`.Mechanism.draw`.
+
+        Raises
+        ------
+        DeclarationError
+            For another ending, and for what is no instant.
+        UnknownNameError
+            For names that the mechanism does not have.
+        ParameterError
+            For values that are not finite, or out of their range.
+        """
+        at = None if t is None else quantity("t", t, "s")
+        draw: Callable[..., Drawing] = method("Scene.draw")
+        return draw(self, path, t=at, parameters=parameters)
 
     @public
     def report(

@@ -191,6 +191,8 @@ def uses(of: SimpleNamespace) -> Iterator[tuple[str, Call]]:
         },
     )
     yield from {
+        "Mechanism.draw": (scene.mechanism.draw, {"path": "mechanism.svg"}),
+        "Scene.draw": (scene.draw, {"path": "scene.svg"}),
         "Scene.report": (scene.report, {"path": "scene.html"}),
         "Scene.checked": (scene.checked, {"values": {"l": 0.5}}),
         "Scene.timing": (scene.timing, {"t": SPAN}),

@@ -64,9 +64,8 @@ def frames(picture: Picture, chosen: Iterable[int] | None = None) -> Iterator[Im
                     _stroke(brush, part, thing.colour, thing.width * unit)
             elif isinstance(thing, Words):
                 place = _FINE * frame(thing.points, k)
-                anchor, halo = "rs" if thing.before else "ls", round(1.5 * unit)
-                style: dict[str, Any] = {"stroke_width": halo, "stroke_fill": PAPER}
-                brush.text((place[0], place[1]), thing.text, thing.colour, font, anchor, **style)
+                style: dict[str, Any] = {"stroke_width": round(1.5 * unit), "stroke_fill": PAPER}
+                brush.text((place[0], place[1]), thing.text, thing.colour, font, "ls", **style)
             else:
                 for one in SYMBOLS[thing.kind]:
                     points = _FINE * outline(thing, one, picture.unit, k)

@@ -5,7 +5,7 @@ or into axes of a figure that shows other things too.
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -14,6 +14,7 @@ import numpy as np
 from ...base.arrays import Array, every
 from ...results.solution import Solution
 from ...results.store.specs import MechanismDrawing
+from ..shapes.declared import ground_axes
 from ..shapes.labels import apart, label_bodies, placed
 from ..shapes.orthographic import View, page, views
 from ..shapes.picture_sheet import filling, together, view_of
@@ -34,7 +35,6 @@ from ..shapes.primitives import (
     turn,
 )
 from ..shapes.readable import Scale, instant, scale_for
-from ..shapes.shapes import named_spots
 from ..shapes.symbols import SYMBOLS
 from .stills import stills
 
@@ -56,8 +56,8 @@ _FAINT, _MARGIN = 0.2, 0.12
 _THINNED = 2000
 """Largest number of instants at which everything must have room."""
 
-_ROW, _ARROW = 0.21, 26.0
-"""The height of a row of the legend [inch], and the length of the ground's axes [pt]."""
+_ROW = 0.21
+"""The height of a row of the legend [inch]."""
 
 
 class _Panel(NamedTuple):
@@ -112,9 +112,11 @@ def draw_mechanism(solution: Solution, spec: MechanismDrawing, si: bool = False)
         first, *others = (seen(drawing(poses.during([k]), thin), view) for k in panel.instants)
         for other in reversed(others):
             paint(axes, other, strong=False)
+        if panel.named and space:
+            first += seen(ground_axes(view, cloud(seen(everything, view)), size), view)
         paint(axes, first)
         if panel.named:
-            _name(axes, first, _triad(axes, view, cloud(seen(everything, view))))
+            _name(axes, first)
     names, handles = zip(*entries, strict=True)
     figure.legend(
         handles,
@@ -130,18 +132,16 @@ def draw_mechanism(solution: Solution, spec: MechanismDrawing, si: bool = False)
     return figure
 
 
-def draw_into(axes: Axes, solution: Solution, names: Collection[str] | None = None) -> None:
+def draw_into(axes: Axes, solution: Solution) -> None:
     """The mechanism at its first instant, into axes of a figure; in space as it is seen from one
     side.
-
-    ``names`` are the joints and declared points whose names are written, by default all.
     """
     description = solution.description
-    named = named_spots(description)
-    chosen = {name: spot for name, spot in named.items() if names is None or name in names}
     whole, one = Poses.of(solution), view_of(description)
-    everything, things = drawing(whole), seen(drawing(whole.during([0]), whole, chosen), one)
+    everything, things = drawing(whole), seen(drawing(whole.during([0]), whole), one)
     size = size_of(everything)
+    if description.space:
+        things += seen(ground_axes(one, cloud(seen(everything, one)), size), one)
     low, high = _ends(everything, one, size)
     _frame(axes, one, (low[0], high[0], low[1], high[1]), (4.6, 3.4), scale_for("m", size))
     axes.set_aspect("equal")
@@ -156,7 +156,7 @@ def draw_into(axes: Axes, solution: Solution, names: Collection[str] | None = No
         figure.draw_without_rendering()
     else:
         axes.apply_aspect()
-    _name(axes, things, _triad(axes, one, cloud(seen(everything, one))))
+    _name(axes, things)
 
 
 def paint(axes: Axes, things: Sequence[Line | Symbol | Name], strong: bool = True) -> None:
@@ -296,36 +296,9 @@ def _entries(solution: Solution) -> list[tuple[str, Any]]:
     return found
 
 
-def _triad(axes: Axes, one: View, around: Array) -> Array:
-    """Draw the directions of the ground's axes in the corner of a picture of space with least
-    ``around``; return what a name there would hide (n, 2) [display].
-    """
-    if one.coordinates == ("x", "y"):
-        return np.zeros((0, 2))
-
-    length = _ARROW * axes.figure.dpi / 72.0
-    inside, points = 1.5 * length, axes.transData.transform(around)
-    corners = np.array([(x, y) for y in axes.bbox.intervaly for x in axes.bbox.intervalx])
-    corners = corners + inside * np.sign(axes.bbox.get_points().mean(axis=0) - corners)
-    crowds = [np.sum(np.abs(points - at).max(axis=1) < 1.7 * length) for at in corners]
-    at = corners[int(np.argmin(crowds))]
-    back = axes.transAxes.inverted()
-    style = {"arrowstyle": "<-", "color": "0.3", "linewidth": 1.0, "shrinkA": 0, "shrinkB": 0}
-    for name, way in zip("xyz", length * one.on_page(np.eye(3)), strict=True):
-        start, stop = back.transform([at, at + way])
-        axes.annotate("", start, stop, "axes fraction", "axes fraction", arrowprops=style)
-        place = tuple(back.transform(at + 1.28 * way))
-        axes.annotate(
-            name, place, xycoords="axes fraction", fontsize=8, color="0.3", ha="center", va="center"
-        )
-    return np.asarray(at + length * np.array([[-1, -1], [0, 0], [1, 1]]))
-
-
-def _name(axes: Axes, things: Sequence[Line | Symbol | Name], taken: Array) -> None:
+def _name(axes: Axes, things: Sequence[Line | Symbol | Name]) -> None:
     """Write names beside their places, where they hide neither each other nor more of the picture
     than they must, with a line to the place if the name may be taken for another's.
-
-    ``taken`` are points that are hidden too (n, 2) [display].
     """
     from matplotlib.patheffects import withStroke
     from matplotlib.textpath import TextPath
@@ -348,7 +321,7 @@ def _name(axes: Axes, things: Sequence[Line | Symbol | Name], taken: Array) -> N
         ]
     )
     anchors = points * display.transform(np.array([one.points[0, 0] for one in names]))
-    hidden = [points * taken]
+    hidden = [np.zeros((0, 2))]
     for thing in things:
         if isinstance(thing, Line) and thing.level > GROUND:
             hidden.append(points * display.transform(spread(thing.points[0], thing.closed)))
@@ -357,7 +330,7 @@ def _name(axes: Axes, things: Sequence[Line | Symbol | Name], taken: Array) -> N
             lines_of = (spread(one.points, one.closed) for one in SYMBOLS[thing.kind])
             hidden += [points * about.transform(line) for line in lines_of]
     border = points * axes.bbox.get_points().ravel() + [2.0, 2.0, -2.0, -2.0]
-    corners = placed(anchors, sizes, np.concatenate(hidden), border.tolist())
+    corners = placed(anchors, sizes, np.concatenate(hidden), [border] * len(names))
     for text, anchor, low, size in zip(texts, anchors, corners, sizes, strict=True):
         distance = apart(low, size, anchor)
         far = (

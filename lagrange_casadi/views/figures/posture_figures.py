@@ -8,9 +8,9 @@ import itertools
 import math
 import re
 import textwrap
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import Any, BinaryIO
+from typing import BinaryIO
 
 import numpy as np
 
@@ -19,20 +19,20 @@ from ...model.scene import Scene
 from ...model.scene_arguments import posture_entry
 from ...results.solution import Solution
 from ...studies.evaluate import evaluate
-from ..shapes.labels import NAMES_IN_ROW
-from ..shapes.picture_files import one_at_a_time, save
+from ..animation.pixels import frames
+from ..shapes.declared import body_names
+from ..shapes.picture_sheet import Picture, picture, sheet, view_of
 from ..shapes.poses import Poses
 from ..shapes.primitives import cloud, drawing
 from ..shapes.shapes import named_spots
-from .mechanism_figure import draw_into
 
 _ALL, _SOME, _LARGE = 16, 8, 40
 """Largest numbers of ways that are all drawn, of those drawn of more, and of bodies of a mechanism:
 each way is derived.
 """
 
-_WIDE, _LINE, _ROW, _MARGIN = 46, 0.16, 0.06, 0.3
-"""Letters in a line of the table; its height, the room between rows, and that at edges [inch]."""
+_WIDE, _SIDES = 50, (440, 320)
+"""Letters in a line of the table; the width of pictures, and that of small ones [pixels]."""
 
 _ROUNDING = 1e-9
 """Coordinates above the negative of this are not negative [m]."""
@@ -42,11 +42,7 @@ _NAMED = 8
 
 _ENTRY = re.compile("'([^']+)':")
 
-_LETTER = 0.078
-"""Width of a letter of the table [inch]."""
 
-
-@one_at_a_time()
 def draw_postures(scene: Scene, file: BinaryIO) -> tuple[list[str], bool]:
     """Draw the ways in which a scene that leaves them open can be assembled at its start, as PNG.
 
@@ -67,16 +63,13 @@ def draw_postures(scene: Scene, file: BinaryIO) -> tuple[list[str], bool]:
     complete : bool
         True if no other way is left.
     """
-    from matplotlib.figure import Figure
-
     found, possible = assemblies(scene)
     if not found:
         return [], True
     postures = [f"posture={{{entries}}}" for entries, _ in found]
-    rows = [list(_lines(posture)) for posture in postures]
-    pictures = _apart([solution for _, solution in found])
+    groups = _apart([solution for _, solution in found])
     words, notes = f"{len(found)} ways to assemble it", []
-    if len(pictures) < len(found):
+    if len(groups) < len(found):
         notes.append("Postures with one picture differ by rotations that it does not show.")
     if possible > _ALL:
         words = f"{len(found)} of at most {possible} ways to assemble it"
@@ -84,43 +77,35 @@ def draw_postures(scene: Scene, file: BinaryIO) -> tuple[list[str], bool]:
             "To see the others, put the first entry of a row into the scene's posture, and run"
             " again: the picture then has the postures with this entry."
         )
-    note = [line for sentence in notes for line in textwrap.wrap(sentence, _WIDE + 4)]
-    columns = min(math.ceil(math.sqrt(len(pictures))), 4)
-    spots = named_spots(found[0][1].description)
-    entries = {entry.partition(":")[0] for row in postures for entry in _ENTRY.findall(row)}
-    # In small pictures names hide each other, and bodies have their colours: those that choose.
-    named = spots if len(spots) <= _NAMED else entries
-    side = 4.2 if columns <= 2 else 3.0
-    level = 0.8 * side
-    table = _LINE * (sum(map(len, rows)) + len(note) + 2) + _ROW * len(rows)
-    legend = 0.24 * -(-len(found[0][1].description.bodies) // NAMES_IN_ROW)
-    high = max(level * -(-len(pictures) // columns), table) + 2.5 * _MARGIN + legend
-    left = columns * side + _MARGIN
-    wide = left + max(len(line) for row in (*rows, note) for line in row) * _LETTER + 0.9
-    figure = Figure(figsize=(wide, high))
-
-    def write(x: float, y: float, words: str, **style: Any) -> None:
-        """Write words below a place from the upper left corner [inch]."""
-        figure.text(x / wide, 1.0 - y / high, words, va="top", **style)
-
+    rows = [
+        line
+        for number, posture in enumerate(postures, 1)
+        for line in (*_lines(f"{number}   {posture}"), "")
+    ]
+    rows += [line for sentence in notes for line in textwrap.wrap(sentence, _WIDE + 4)]
+    entries = {entry.partition(":")[0] for posture in postures for entry in _ENTRY.findall(posture)}
+    columns = min(math.ceil(math.sqrt(len(groups))), 4)
+    pictures = [
+        _picture(found[numbers[0]][1], numbers, entries, _SIDES[columns > 2]) for numbers in groups
+    ]
     title = f"{found[0][1].case} at t = {scene.t[0]:g} s: {words}"
-    write(_MARGIN, 0.7 * _MARGIN, title, fontsize=12)
-    for k, numbers in enumerate(pictures):
-        across, down = _MARGIN + k % columns * side, 2.0 * _MARGIN + (k // columns + 1) * level
-        place = across / wide, 1.0 - down / high, 0.94 * side / wide, (level - 0.22) / high
-        axes = figure.add_axes(place, anchor="NW")
-        draw_into(axes, found[numbers[0]][1], named)
-        axes.set(title="", xticks=[], yticks=[], xlabel="", ylabel="")
-        title = ", ".join(str(number + 1) for number in numbers)
-        axes.set_title(title, fontsize=11, fontweight="bold", loc="left", pad=3.0)
-    y = 2.0 * _MARGIN
-    for number, row in enumerate(rows, 1):
-        write(left + 0.1, y, str(number), fontsize=9, fontweight="bold")
-        write(left + 0.4, y, "\n".join(row), fontsize=9, family="monospace", linespacing=1.28)
-        y += _LINE * len(row) + _ROW
-    write(left + 0.1, y + _LINE, "\n".join(note), fontsize=9)
-    save(figure, file, dpi=110)
+    next(frames(sheet(title, pictures, columns, rows))).save(file, "PNG")
     return postures, possible <= _ALL
+
+
+def _picture(
+    solution: Solution, numbers: Sequence[int], entries: Collection[str], side: int
+) -> Picture:
+    """One way to assemble a mechanism, with the numbers of its postures. In a small picture names
+    hide each other: of many those that choose are written.
+    """
+    description, poses = solution.description, Poses.of(solution)
+    spots, bodies = named_spots(description), [*body_names(poses)]
+    chosen = {name: spot for name, spot in spots.items() if len(spots) <= _NAMED or name in entries}
+    names = [one for one in bodies if len(bodies) <= _NAMED or one.text in entries]
+    words = ", ".join(str(number + 1) for number in numbers)
+    things = (*drawing(poses, named=chosen), *names)
+    return picture("", things, view_of(description), side, tallest=0.8, words=words)
 
 
 def assemblies(scene: Scene) -> tuple[list[tuple[str, Solution]], int]:
@@ -160,9 +145,9 @@ def _apart(found: Sequence[Solution]) -> list[list[int]]:
     near = 1e-6 * float(np.ptp(clouds[0], axis=0).max())
     pictures: list[list[int]] = []
     for number, points in enumerate(clouds):
-        for picture in pictures:
-            if np.abs(points - clouds[picture[0]]).max() <= near:
-                picture.append(number)
+        for group in pictures:
+            if np.abs(points - clouds[group[0]]).max() <= near:
+                group.append(number)
                 break
         else:
             pictures.append([number])
@@ -175,7 +160,7 @@ def _lines(posture: str) -> Iterator[str]:
     for entry in posture.split(", "):
         if line and len(line) + len(entry) > _WIDE:
             yield f"{line},"
-            line = " " * len("posture={") + entry
+            line = " " * 6 + entry
         else:
             line = f"{line}, {entry}" if line else entry
     yield line

@@ -13,7 +13,6 @@ from ...model.scene import Scene
 from ...results.ordering import ordered
 from ...results.pictures import View
 from ...results.solution import Solution
-from ...studies.evaluate import evaluate
 from ..shapes.index import html_table
 from ..shapes.poses import require_poses
 from .page import page
@@ -37,16 +36,10 @@ def view(solution: Solution, height: int = 760) -> View:
 
 
 def scene_summary(scene: Scene) -> str:
-    """A drawing of a scene at its first instant, where it can be assembled,
-    and its parts: as HTML.
-    """
+    """A drawing of a scene at its first instant, and its parts: as HTML."""
     drawing = ""
     with suppress(LagrangeCasadiError):
-        start, _ = scene.span
-        first = evaluate(
-            scene, t=(start, start, 1), wanted=["motion"], backend="vm", certificate=False
-        )
-        drawing = still(first)
+        drawing = scene.draw().svg
     asked, content = scene.timing(), template(scene).at([*scene.values().values()])
     over = f"over {escape(asked.joint)}" if asked.joint else "over time"
     lines = [f"<b>{escape(content.name)}</b>: {asked.count} instants {over}"]

@@ -16,25 +16,26 @@ _TURN = np.exp(0.5j * np.pi * np.arange(33))
 _COIL = np.column_stack(
     [np.r_[0.0, np.linspace(0.15, 0.85, 33), 1.0], np.pad(_TURN.imag, 1), np.pad(_TURN.real, 1)]
 )
-_ROD, _PISTON, _CUP, _TAIL = (
+_DASHPOT = tuple(
     np.array([(*point, 0.0) for point in points])
     for points in (
-        [(0.0, 0.0), (0.5, 0.0)],
+        [(0.0, 0.0), (0.15, 0.0), (0.5, 0.0)],
         [(0.5, -0.7), (0.5, 0.7)],
         [(0.38, 1.0), (0.64, 1.0), (0.64, -1.0), (0.38, -1.0)],
-        [(0.64, 0.0), (1.0, 0.0)],
+        [(0.64, 0.0), (0.85, 0.0), (1.0, 0.0)],
     )
 )
-_BETWEEN = {"spring": (_COIL,), "damper": (_ROD, _PISTON, _CUP, _TAIL)}
+_BETWEEN = {"spring": (_COIL,), "damper": _DASHPOT}
 """Polylines between two places: the share of the way, and two sides over the radius."""
 
-_ASIDE, _ENDS = {"spring": 1.3, "damper": -1.3}, 0.1
+_ASIDE = {"spring": 1.3, "damper": -1.3}
 """Distance of a spring and a damper, side by side, from the line between their places, over the
-radius; and the share of the way at which they begin.
+radius.
 """
 
-_ROUND = np.exp(2j * np.pi * np.arange(60) / 60)
-_SPIRAL = np.linspace(0.2, 1.0, 61) * np.exp(2.5j * np.pi * np.linspace(0.0, 2.0, 61))
+ROUND = np.exp(2j * np.pi * np.arange(60) / 60)
+SPIRAL = np.linspace(0.2, 1.0, 61) * np.exp(2.5j * np.pi * np.linspace(0.0, 2.0, 61))
+"""A circle and a coil of radius 1, as complex numbers."""
 
 _TOOTH = np.pi / 12
 """The pitch of a rack's teeth over the radius of the gear."""
@@ -42,15 +43,11 @@ _TOOTH = np.pi / 12
 
 def between(start: Array, stop: Array, radius: float, symbols: tuple[str, ...]) -> list[Array]:
     """The polylines of a spring, of a damper, or of both side by side, between two places."""
-    patterns = [one for symbol in symbols for one in _BETWEEN[symbol]]
-    if len(symbols) > 1:
-        patterns = [np.array([(x, _ASIDE[s], 0.0) for s in symbols]) for x in (_ENDS, 1 - _ENDS)]
-        patterns += [
-            np.array([(x, 0.0, 0.0), (y, 0.0, 0.0)]) for x, y in ((0, _ENDS), (1 - _ENDS, 1))
-        ]
-        for symbol in symbols:
-            shift, share = np.array([_ENDS, _ASIDE[symbol], 0.0]), [1.0 - 2.0 * _ENDS, 1.0, 1.0]
-            patterns += [shift + share * one for one in _BETWEEN[symbol]]
+    patterns = []
+    for symbol in symbols:
+        for one in _BETWEEN[symbol]:
+            aside = _ASIDE[symbol] * (len(symbols) > 1) * ((one[:, 0] > 0.0) & (one[:, 0] < 1.0))
+            patterns.append(one + aside[:, None] * np.array([0.0, 1.0, 0.0]))
     way = stop - start
     axes = frame_along(np.where(way.any(axis=1, keepdims=True), way, np.eye(3)[0]))
     return [
@@ -59,19 +56,11 @@ def between(start: Array, stop: Array, radius: float, symbols: tuple[str, ...]) 
     ]
 
 
-def circle(middle: Array, axis: Array, radius: float) -> Array:
-    """A circle about an axis, as a polygon."""
-    return middle[:, None] + _across(axis, radius * _ROUND)
-
-
-def spiral(middle: Array, axis: Array, radius: float) -> Array:
-    """The coil of a torsion spring."""
-    return middle[:, None] + _across(axis, radius * _SPIRAL)
-
-
-def arc(middle: Array, axis: Array, radius: float, start: float, stop: float) -> Array:
-    """A part of a circle from an angle to another one [rad]."""
-    return middle[:, None] + _across(axis, radius * np.exp(1j * np.linspace(start, stop, 31)))
+def around(middle: Array, axis: Array, points: Array) -> Array:
+    """Points at right angles to an axis, given as complex numbers: in the plane x and y."""
+    # Of the axes beside the axis, in the plane the first is -y, and the second x.
+    sides = np.column_stack([-points.imag, points.real])
+    return np.asarray(middle[:, None] + sides @ frame_along(axis)[:, 1:])
 
 
 def belt(
@@ -86,9 +75,8 @@ def belt(
     # Where the strands leave the circles, from the line of the centres.
     lean = np.arccos(np.clip((one + two if crossed else one - two) / distance, -1.0, 1.0))
     share = np.linspace(-1.0, 1.0, 31)
-    here, there = np.pi + (np.pi - lean) * share, lean * share
-    if crossed:
-        there = (np.pi - lean) * -share
+    here = np.pi + (np.pi - lean) * share
+    there = (lean - np.pi) * share if crossed else lean * share
     angles = [(first, one, here), (second, two, there)]
     return np.concatenate(
         [
@@ -113,10 +101,3 @@ def rack(spot: Array, along: Array, gear: Array, radius: float, ends: tuple[floa
     high = 0.35 * _TOOTH * radius * np.array([1.0, -1.0, -1.0, 1.0])[(np.arange(at.size) + 3) % 4]
     at, high = np.r_[at, ends[1], ends[0]], np.r_[high, np.full(2, _TOOTH * radius)]
     return np.asarray(spot[:, None] + at[:, None] * along[:, None] + high[:, None] * away[:, None])
-
-
-def _across(axis: Array, points: Array) -> Array:
-    """Points at right angles to an axis, given as complex numbers."""
-    # From x in the plane, counter-clockwise.
-    _, back, first = np.moveaxis(frame_along(axis), 1, 0)
-    return np.asarray(points.real[:, None] * first[:, None] - points.imag[:, None] * back[:, None])

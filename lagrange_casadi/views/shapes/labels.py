@@ -28,12 +28,14 @@ NAMES_IN_ROW = 6
 """Bodies in a row of the legend."""
 
 
-def placed(anchors: Array, sizes: Array, things: Array, box: Sequence[float]) -> Array:
+def placed(
+    anchors: Array, sizes: Array, things: Array, boxes: Sequence[Sequence[float] | Array]
+) -> Array:
     """Lower left corners (n, 2) of names of ``sizes`` (n, 2) beside their ``anchors`` (n, 2), all
     in one unit [pt].
 
-    ``things`` (m, 2) are points of what is drawn, ``box`` is left, bottom, right and top of the
-    picture. Names are placed one after the other, those first that have least room.
+    ``things`` (m, 2) are points of what is drawn, ``boxes`` are left, bottom, right and top of the
+    picture for each name. Names are placed one after the other, those first that have least room.
     """
     anchors, sizes, things = (
         np.asarray(values, float).reshape(-1, 2) for values in (anchors, sizes, things)
@@ -45,17 +47,13 @@ def placed(anchors: Array, sizes: Array, things: Array, box: Sequence[float]) ->
     for k in np.lexsort((np.arange(len(anchors)), -sizes[:, 0], -near)):
         corners = _around(anchors[k], sizes[k])
         close = np.all(np.abs(things - anchors[k]) < _REACHES[-1] + sizes[k] + 1.0, axis=1)
-        costs = _costs(corners, k, anchors, sizes, things[close], found, box)
+        costs = _costs(corners, k, anchors, sizes, things[close], found, boxes[k])
         found[k] = corners[int(np.argmin(costs))]
     return found
 
 
-def apart(corner: Array, size: Array, anchor: Array) -> float:
-    """Distance of a name from its point [pt]."""
-    return float(_apart(corner, size, anchor))
-
-
-def _apart(corners: Array, size: Array, anchor: Array) -> Array:
+def apart(corners: Array, size: Array, anchor: Array) -> Array:
+    """Distances (...) of places of a name, by the corners (..., 2), from its point [pt]."""
     nearest = np.clip(anchor, corners, corners + size)
     return np.asarray(np.hypot(*np.moveaxis(nearest - anchor, -1, 0)))
 
@@ -77,7 +75,7 @@ def _costs(
     sizes: Array,
     things: Array,
     found: Array,
-    box: Sequence[float],
+    box: Sequence[float] | Array,
 ) -> Array:
     """Costs (n,) of places of a name by its corners (n, 2)."""
     low, high = corners[:, None] - 1.0, corners[:, None] + sizes[k] + 1.0
@@ -87,7 +85,7 @@ def _costs(
     hidden = _within(things, low, high) + 4 * _within(anchors, low, high)
     beyond = np.concatenate([np.array(box[:2]) - low[:, 0], high[:, 0] - np.array(box[2:])], axis=1)
     outside = np.sum(np.maximum(beyond, 0.0), axis=1)
-    far = _apart(corners, sizes[k], anchors[k])
+    far = apart(corners, sizes[k], anchors[k])
     return np.asarray(_OVERLAP * overlaps + _HIDDEN * hidden + _OUTSIDE * outside + _FAR * far)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import threading
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
@@ -30,13 +30,13 @@ def ending_of(svg: bool) -> str:
     return ".svg" if svg else ".png"
 
 
-def check_picture(path: str | os.PathLike[str]) -> None:
-    """Raise :class:`.DeclarationError` for a name that ends in none of .png, .pdf and .svg, and
+def check_picture(path: str | os.PathLike[str], endings: Collection[str] = tuple(PICTURES)) -> None:
+    """Raise :class:`.DeclarationError` for a name with none of some endings, and
     :class:`.PathError`.
     """
     target = Path(path)
-    if target.suffix not in PICTURES:
-        raise DeclarationError(f"{target}: expected a name that ends in {', '.join(PICTURES)}")
+    if target.suffix not in endings:
+        raise DeclarationError(f"{target}: expected a name that ends in {', '.join(endings)}")
     check_writable(target)
 
 

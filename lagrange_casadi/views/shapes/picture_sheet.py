@@ -35,18 +35,18 @@ _WIDE, _LINE, _LONG, _FAR, _LEADER = 0.6, 18.0, 60, 16.0, "#999999"
 that are written together, and the distance from which a name has a line to its place [points].
 """
 
+_HEAD = 36
+"""The height of a title [points]."""
+
 _SIDES = np.array([(1.0, 1.0), (-1.0, -1.0)])
 
 
 @dataclass(frozen=True, eq=False)
 class Words:
-    """A text whose left end is at ``points`` (frames, 2) [pixels], or the right end if it is
-    ``before`` them.
-    """
+    """A text whose left end is at ``points`` (frames, 2) [pixels]."""
 
     points: Array
     text: str
-    before: bool = False
     colour: str = INK
 
 
@@ -94,7 +94,7 @@ def picture(
     things, lines = seen(primitives, one), words.split("\n") if words else []
     points = cloud(things)
     low, high = points.min(axis=0), points.max(axis=0)
-    span = np.maximum(high - low, 1e-9 * max(float(np.max(high - low)), 1e-12))
+    span = np.maximum(high - low, 1e-9 * (float(np.max(high - low)) or 1.0))
     margin = _MARGIN * unit
     below = (_FOOT + _LINE * (len(lines) - 1)) * unit if words else 0.0
     scale = min((width - 2 * margin) / span[0], (tallest * width - 2 * margin - below) / span[1])
@@ -104,15 +104,32 @@ def picture(
     placed = [replace(thing, points=corner + scale * flip * thing.points) for thing in things]
     painted: list[Line | Symbol | Words] = [one for one in placed if not isinstance(one, Name)]
     names = together((one for one in placed if isinstance(one, Name)), _CLOSE * unit)
-    frames = max((len(thing.points) for thing in placed), default=1)
-    if frames > 1:
-        painted += _names(names, width, unit)
-    else:
-        painted += _placed(names, painted, (width, height - below), unit)
+    painted += _named(names, painted, (width, height - below), unit)
     for k, line in enumerate(reversed(lines)):
         foot = height - (12.0 + _LINE * k) * unit
         painted.append(Words(np.array([[12.0 * unit, foot]]), line))
+    frames = max(len(thing.points) for thing in painted)
     return Picture(title, width, height, unit, frames, closed, tuple(painted))
+
+
+def sheet(title: str, pictures: Sequence[Picture], across: int, lines: Sequence[str]) -> Picture:
+    """Stills of one width in rows, so many ``across``, below a title, with lines of words on the
+    right.
+    """
+    wide, top, things = pictures[0].width, _HEAD, list[Line | Symbol | Words]()
+    for start in range(0, len(pictures), across):
+        row = pictures[start : start + across]
+        for k, one in enumerate(row):
+            shift = np.array([k * wide, top])
+            things += [replace(thing, points=thing.points + shift) for thing in one.things]
+        top += max(one.height for one in row)
+    left, step = across * wide + 12.0, 1.4 * LETTER
+    written = [(12.0, 0.7 * _HEAD, title)]
+    written += [(left, _HEAD + step * k, line) for k, line in enumerate(lines, 1)]
+    things += [Words(np.array([[x, y]]), line) for x, y, line in written]
+    width = left + _WIDE * LETTER * max(map(len, lines))
+    height = max(top, _HEAD + step * (len(lines) + 1))
+    return Picture(title, round(width), round(height), 1.0, 1, False, tuple(things))
 
 
 def outline(symbol: Symbol, one: Outline, unit: float, k: int) -> Array:
@@ -141,31 +158,18 @@ def together(names: Iterable[Name], close: float) -> list[Name]:
     return found
 
 
-def _names(names: Iterable[Name], width: int, unit: float) -> list[Words]:
-    """Names above and to the right of their places, or to the left where the sheet ends."""
-    found = []
-    for name in names:
-        points = name.points[:, 0]
-        room = width - (9.0 + 0.6 * LETTER * len(name.text)) * unit
-        before = bool(np.max(points[:, 0]) > room and np.min(points[:, 0]) > width - room)
-        offset = unit * np.array([-9.0 if before else 9.0, -13.0])
-        found.append(Words(points + offset, name.text, before, name.colour))
-    return found
-
-
-def _placed(
+def _named(
     names: Sequence[Name],
     things: Iterable[Line | Symbol | Words],
     room: tuple[float, float],
     unit: float,
 ) -> Iterator[Line | Words]:
-    """Names of a still, where they hide neither each other nor more of it than they must, with a
-    line to a place that is far.
+    """Names where they hide neither each other nor more of the first frame than they must, and are
+    on the sheet at all frames; with a line to a place that is far.
     """
     if not names:
         return
-    flip = np.array([1.0, -1.0]) / unit
-    hidden = []
+    flip, hidden = np.array([1.0, -1.0]) / unit, [np.zeros((0, 2))]
     for thing in things:
         if isinstance(thing, Line):
             along = flip * spread(thing.points[0], thing.closed)
@@ -174,12 +178,14 @@ def _placed(
             hidden += [flip * outline(thing, one, unit, 0) for one in SYMBOLS[thing.kind]]
     anchors = np.array([flip * one.points[0, 0] for one in names])
     sizes = np.array([(_WIDE * LETTER * len(one.text), 1.1 * LETTER) for one in names])
-    box = [4.0, 4.0 - room[1] / unit, room[0] / unit - 4.0, -4.0]
-    corners = placed(anchors, sizes, np.concatenate([np.zeros((0, 2)), *hidden]), box)
-    for one, anchor, low, size in zip(names, anchors, corners, sizes, strict=True):
-        if apart(low, size, anchor) > _FAR:
-            nearest = np.clip(anchor, low, low + size)
-            yield Line(np.array([[anchor / flip, nearest / flip]]), _LEADER, 0.7)
-        yield Words(
-            (low + np.array([0.0, 0.25 * LETTER]))[None] / flip, one.text, colour=one.colour
-        )
+    ways = [flip * one.points[:, 0] - anchor for one, anchor in zip(names, anchors, strict=True)]
+    low, high = np.array([4.0, 4.0 - room[1] / unit]), np.array([room[0] / unit - 4.0, -4.0])
+    boxes = [np.concatenate([low - way.min(axis=0), high - way.max(axis=0)]) for way in ways]
+    corners = placed(anchors, sizes, np.concatenate(hidden), boxes)
+    for one, way, anchor, corner, size in zip(names, ways, anchors, corners, sizes, strict=True):
+        if apart(corner, size, anchor) > _FAR:
+            nearest = np.clip(anchor, corner, corner + size)
+            yield Line(
+                one.points + np.array([[anchor - anchor, nearest - anchor]]) / flip, _LEADER, 0.7
+            )
+        yield Words((way + corner + np.array([0.0, 0.25 * LETTER])) / flip, one.text, one.colour)

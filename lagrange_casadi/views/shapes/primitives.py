@@ -19,7 +19,7 @@ import numpy as np
 from ...base.arrays import Array
 from ...model.declared_parts import PitchCircles, Track
 from ...model.description import JointNumbers, LoadNumbers, Place
-from .curves import belt, between, circle, rack, spiral
+from .curves import ROUND, SPIRAL, around, belt, between, rack
 from .orthographic import View
 from .poses import Poses
 from .shapes import Shape, named_spots, shapes
@@ -155,7 +155,8 @@ def drawing(
                 found.append(Line(plane, _PITCH, 0.8, closed=True, opacity=0.12, level=GROUND))
     named = named_spots(description) if named is None else named
     found += [Name(poses.place(spot)[:, None], name) for name, spot in named.items()]
-    return tuple(found)
+    # Of a mechanism without bodies, the origin of the ground.
+    return tuple(found) or (Symbol("stand", np.zeros((1, 1, 3)), level=GROUND),)
 
 
 def colours_of(bodies: Iterable[str]) -> dict[str, str]:
@@ -232,7 +233,7 @@ def _body(poses: Poses, shape: Shape, colours: Mapping[str, str]) -> Iterator[Pr
     middle, axis, rim = Place(name, shape.centre or (0.0, 0.0, 0.0)), disc_axis(poses, shape), None
     if axis is not None:
         way = poses.direction(name, (axis[0], axis[1], axis[2]))
-        rim = circle(poses.place(middle), way, shape.disc)
+        rim = around(poses.place(middle), way, shape.disc * ROUND)
         yield Line(rim, colour, 2.4, closed=True, opacity=0.2, body=name)
         yield Line(np.stack([np.mean(rim, axis=1), rim[:, 0]], axis=1), colour, 2.4, body=name)
     if shape.axis:
@@ -309,7 +310,7 @@ def _held(poses: Poses, load: LoadNumbers, size: float) -> Iterator[Line]:
         joints = poses.description.joints.values()
         turned = next(joint for joint in joints if joint.ends == load.points[::-1])
         axis = poses.direction(turned.parent.body, turned.axes[0].direction)
-        yield Line(spiral(places[0], axis, 2.5 * _COIL * size), _METAL, 1.5, level=SPRINGS)
+        yield Line(around(places[0], axis, 2.5 * _COIL * size * SPIRAL), _METAL, 1.5, level=SPRINGS)
 
 
 def _meshing(
@@ -321,11 +322,11 @@ def _meshing(
     ways = [poses.direction(carrier, axis) for axis in pitch.axes]
     count = 2 if pitch.rack is None else 1
     for middle, way, size in list(zip(middles, ways, pitch.radii, strict=True))[:count]:
-        ring = circle(middle, way, size)
+        ring = around(middle, way, size * ROUND)
         yield Line(ring, _PITCH, 1.2, closed=True, dashed=not pitch.belt, level=AXES)
     if pitch.belt:
-        around = belt(middles[0], middles[1], ways[0], pitch.radii, crossed=pitch.crossed)
-        yield Line(around, _METAL, 2.4, closed=True, level=AXES)
+        strands = belt(middles[0], middles[1], ways[0], pitch.radii, crossed=pitch.crossed)
+        yield Line(strands, _METAL, 2.4, closed=True, level=AXES)
     if pitch.rack is not None:
         spot, gone = poses.place(pitch.rack), Place(carrier, pitch.centres[0])
         away = whole.place(gone) - whole.place(pitch.rack)
@@ -348,7 +349,7 @@ def _drum(poses: Poses, track: Track, colours: Mapping[str, str]) -> Iterator[Li
     across *= radius / np.linalg.norm(across, axis=1, keepdims=True)
     colour, edge_of = colours[body], 2.0 * radius or 0.2 * size.max()
     for end in (high.min() - edge_of, high.max() + edge_of):
-        ring = circle((centre + end * axis)[None], axis[None], float(size.max()))[0]
+        ring = around((centre + end * axis)[None], axis[None], size.max() * ROUND)[0]
         yield Line(
             poses.along(body, ring.tolist()), colour, 2.0, closed=True, opacity=0.15, body=body
         )
@@ -359,7 +360,7 @@ def _drum(poses: Poses, track: Track, colours: Mapping[str, str]) -> Iterator[Li
     seat = middle - poses.place(track.centre)
     seat = seat - np.sum(seat * about, axis=1, keepdims=True) * about
     held = track.held.body
-    ring = circle(middle, seat, radius)
+    ring = around(middle, seat, radius * ROUND)
     yield Line(ring, colours[held], 2.0, closed=True, opacity=0.25, level=POINTS, body=held)
 
 

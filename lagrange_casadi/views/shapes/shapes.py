@@ -7,6 +7,7 @@ is not said here.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -49,7 +50,7 @@ def shapes(description: Description) -> Iterator[Shape]:
         length, mass = body.length, body.mass
         if length is None:
             yield Shape(name, "point", None, mass, (), (), (), (0.0, 0.0, 0.0), 0.0)
-        elif body.centre is not None:
+        elif body.centre is not None and not math.isnan(mass):
             centre = body.centre
             plates = outlines or _plates(spots)
             # Two joints hold a bar between them; arms from the centre hold any others that lie in
@@ -72,7 +73,7 @@ def shapes(description: Description) -> Iterator[Shape]:
                 0.0 if arms or plates else max(length, 0.0),
             )
         else:
-            axis = ((0.0, 0.0, 0.0), (length, 0.0, 0.0))
+            axis: tuple[Triple, ...] = ((0.0, 0.0, 0.0), (length, 0.0, 0.0))
             beside = [
                 at
                 for at in spots
@@ -85,10 +86,11 @@ def shapes(description: Description) -> Iterator[Shape]:
                 if plates
                 else tuple(((min(max(at[0], 0.0), length), 0.0, 0.0), at) for at in beside)
             )
-            if outlines:
-                yield Shape(name, "link", length, mass, (), (), outlines + rollers, None, 0.0)
-            else:
-                yield Shape(name, "link", length, mass, axis, arms, plates + rollers, None, 0.0)
+            # A true outline stands for the axis and what is beside it.
+            axis, arms = (axis, arms) if not outlines else ((), ())
+            yield Shape(
+                name, "link", length, mass, axis, arms, (outlines or plates) + rollers, None, 0.0
+            )
 
 
 def named_spots(description: Description) -> dict[str, Place]:

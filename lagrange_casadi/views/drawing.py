@@ -1,0 +1,123 @@
+"""Drawings of what is declared: of a mechanism at a posture, of a scene at an instant, whether its
+loops close or not.
+"""
+
+from __future__ import annotations
+
+import os
+import textwrap
+from collections.abc import Mapping
+from contextlib import suppress
+from html import escape
+from pathlib import Path
+from typing import Any
+
+from ..base.drawn import Drawing
+from ..base.files import writing
+from ..engine.placement import Placement, place, place_scene
+from ..errors import LagrangeCasadiError
+from ..model.mechanism import Mechanism
+from ..model.scene import Scene
+from .animation.pixels import frames
+from .shapes.declared import (
+    body_names,
+    driven_marks,
+    gap_marks,
+    ground_axes,
+    load_marks,
+)
+from .shapes.picture_files import check_picture
+from .shapes.picture_sheet import Picture, picture, view_of
+from .shapes.poses import Poses
+from .shapes.primitives import Primitive, cloud, drawing, seen, size_of
+from .shapes.vector import svg
+
+_ENDINGS = (".svg", ".png")
+
+_WIDE, _TALLEST, _FINE = 720, 0.85, 2
+"""The width of a picture [points], its largest height over the width, and pixels of a PNG for a
+point.
+"""
+
+_LETTERS = 88
+"""Letters in a line of words below a picture."""
+
+
+def draw_mechanism(
+    mechanism: Mechanism,
+    path: str | os.PathLike[str] | None = None,
+    *,
+    parameters: Mapping[str, float] | None = None,
+    posture: Mapping[str, Any] | None = None,
+) -> Drawing:
+    """Draw a mechanism, see :meth:`.Mechanism.draw`."""
+    return _drawn(place(mechanism, values=parameters, posture=posture), path)
+
+
+def draw_scene(
+    scene: Scene,
+    path: str | os.PathLike[str] | None = None,
+    *,
+    t: float | None = None,
+    parameters: Mapping[str, float] | None = None,
+) -> Drawing:
+    """Draw a scene, see :meth:`.Scene.draw`."""
+    return _drawn(place_scene(scene, t=t, values=parameters), path)
+
+
+def draw_error(error: LagrangeCasadiError, path: Path) -> None:
+    """Draw the placement of an error, with its message, into a file."""
+    assert isinstance(error.placement, Placement)
+    _drawn(error.placement, path, str(error))
+
+
+def face(mechanism: Mechanism) -> str:
+    """A drawing of a mechanism for a notebook, or its parts where it cannot be drawn."""
+    with suppress(LagrangeCasadiError):
+        return draw_mechanism(mechanism).svg
+    return f"<p>{escape(repr(mechanism))}</p>"
+
+
+def _drawn(
+    placement: Placement,
+    path: str | os.PathLike[str] | None,
+    words: str = "",
+) -> Drawing:
+    """A drawing of a placed mechanism with some words, by default on its gaps; in a file too."""
+    gaps = tuple(gap.sentence for gap in placement.gaps)
+    things, view = _things(placement), view_of(placement.description)
+    lines = [line for one in ([words] if words else gaps) for line in textwrap.wrap(one, _LETTERS)]
+
+    def shown(unit: int) -> Picture:
+        """The picture, with so many pixels for a point."""
+        size: dict[str, Any] = {"tallest": _TALLEST, "unit": unit, "words": "\n".join(lines)}
+        return picture(placement.declared.name, things, view, _WIDE * unit, **size)
+
+    still = shown(1)
+    if path is not None:
+        check_picture(path, _ENDINGS)
+        with writing(Path(path)) as file:
+            if Path(path).suffix == ".svg":
+                file.write(svg(still).encode())
+            else:
+                next(frames(shown(_FINE))).save(file, "PNG")
+    return Drawing(placement.declared.name, svg(still, paper=False), gaps)
+
+
+def _things(placement: Placement) -> list[Primitive]:
+    """All that a drawing of a placed mechanism shows."""
+    poses = Poses(
+        placement.description,
+        {body: base[None] for body, base in placement.bases.items()},
+        {body: axes[None] for body, axes in placement.axes.items()},
+    )
+    found = [*drawing(poses)]
+    size, p = size_of(found), [*placement.description.values.values()]
+    found += driven_marks(poses, placement.driven, size)
+    found += load_marks(placement.declared, poses, placement.t, p, size)
+    found += body_names(poses)
+    found += gap_marks(placement.gaps)
+    if placement.description.space:
+        view = view_of(placement.description)
+        found += ground_axes(view, cloud(seen(found, view)), size)
+    return found
