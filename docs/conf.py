@@ -46,6 +46,7 @@ UNLISTED = [
         "Compiled",
         "Deflection",
         "Derivatives",
+        "Drawing",
         "Design",
         "Executor",
         "Expression",

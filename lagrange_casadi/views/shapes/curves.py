@@ -33,7 +33,7 @@ _ASIDE = {"spring": 1.3, "damper": -1.3}
 radius.
 """
 
-ROUND = np.exp(2j * np.pi * np.arange(60) / 60)
+ROUND = np.exp(2j * np.pi * np.arange(48) / 48)
 SPIRAL = np.linspace(0.2, 1.0, 61) * np.exp(2.5j * np.pi * np.linspace(0.0, 2.0, 61))
 """A circle and a coil of radius 1, as complex numbers."""
 

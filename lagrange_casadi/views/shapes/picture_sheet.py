@@ -105,8 +105,8 @@ def picture(
     painted: list[Line | Symbol | Words] = [one for one in placed if not isinstance(one, Name)]
     names = together((one for one in placed if isinstance(one, Name)), _CLOSE * unit)
     painted += _named(names, painted, (width, height - below), unit)
-    for k, line in enumerate(reversed(lines)):
-        foot = height - (12.0 + _LINE * k) * unit
+    for k, line in enumerate(lines, 1 - len(lines)):
+        foot = height + (_LINE * k - 12.0) * unit
         painted.append(Words(np.array([[12.0 * unit, foot]]), line))
     frames = max(len(thing.points) for thing in painted)
     return Picture(title, width, height, unit, frames, closed, tuple(painted))
