@@ -91,7 +91,8 @@ def _costs(
 
 def _within(points: Array, low: Array, high: Array) -> Array:
     """Numbers (n,) of points (m, 2) between corners (n, 1, 2)."""
-    return np.asarray(np.sum(np.all((points > low) & (points < high), axis=2), axis=1))
+    (x, y), (left, bottom), (right, top) = (np.moveaxis(one, -1, 0) for one in (points, low, high))
+    return np.asarray(np.sum((x > left) & (x < right) & (y > bottom) & (y < top), axis=1))
 
 
 def label_bodies(

@@ -38,6 +38,9 @@ that are written together, and the distance from which a name has a line to its 
 _HEAD = 36
 """The height of a title [points]."""
 
+_GRID = 2.0
+"""Distance of points that names may hide, where lines have more [points]."""
+
 _SIDES = np.array([(1.0, 1.0), (-1.0, -1.0)])
 
 
@@ -181,7 +184,8 @@ def _named(
     ways = [flip * one.points[:, 0] - anchor for one, anchor in zip(names, anchors, strict=True)]
     low, high = np.array([4.0, 4.0 - room[1] / unit]), np.array([room[0] / unit - 4.0, -4.0])
     boxes = [np.concatenate([low - way.min(axis=0), high - way.max(axis=0)]) for way in ways]
-    corners = placed(anchors, sizes, np.concatenate(hidden), boxes)
+    things_there = _GRID * np.unique(np.round(np.concatenate(hidden) / _GRID), axis=0)
+    corners = placed(anchors, sizes, things_there, boxes)
     for one, way, anchor, corner, size in zip(names, ways, anchors, corners, sizes, strict=True):
         if apart(corner, size, anchor) > _FAR:
             nearest = np.clip(anchor, corner, corner + size)

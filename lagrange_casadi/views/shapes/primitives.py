@@ -17,6 +17,7 @@ from typing import TypeAlias
 import numpy as np
 
 from ...base.arrays import Array
+from ...base.vectors import Vector
 from ...model.declared_parts import PitchCircles, Track
 from ...model.description import JointNumbers, LoadNumbers, Place
 from .curves import ROUND, SPIRAL, around, belt, between, rack
@@ -132,8 +133,12 @@ def drawing(
         found.append(Line(whole.place(spot)[None], PATH, 1.4, level=WAYS))
         found.append(symbol("point", spot, POINTS))
     found += [line for load in description.loads.values() for line in _held(poses, load, size)]
-    for circles in description.pitch_circles.values():
-        found += _meshing(poses, whole, circles, colours)
+    pitches = description.pitch_circles.values()
+    for (carrier, at, axis, radius), belted in _circles(pitches).items():
+        way = poses.direction(carrier, axis)
+        ring = around(poses.place(Place(carrier, at)), way, radius * ROUND)
+        found.append(Line(ring, _PITCH, 1.2, closed=True, dashed=not belted, level=AXES))
+    found += [line for one in pitches for line in _meshing(poses, whole, one, colours)]
     found += [
         line for track in description.tracks.values() for line in _drum(poses, track, colours)
     ]
@@ -313,17 +318,23 @@ def _held(poses: Poses, load: LoadNumbers, size: float) -> Iterator[Line]:
         yield Line(around(places[0], axis, 2.5 * _COIL * size * SPIRAL), _METAL, 1.5, level=SPRINGS)
 
 
+def _circles(pitches: Iterable[PitchCircles]) -> dict[tuple[str, Vector, Vector, float], bool]:
+    """The pitch circles of all gears and belts, each once, and whether the circle is a belt's."""
+    return {
+        (one.carrier, at, axis, radius): one.belt
+        for one in pitches
+        for at, axis, radius in zip(one.centres, one.axes, one.radii, strict=True)
+        if radius
+    }
+
+
 def _meshing(
     poses: Poses, whole: Poses, pitch: PitchCircles, colours: Mapping[str, str]
 ) -> Iterator[Line]:
-    """The pitch circles of gears, a belt around them, or a rack as long as its gear ever needs."""
+    """The belt around two pitch circles, or a rack as long as its gear ever needs."""
     carrier, radius = pitch.carrier, pitch.radii[0]
     middles = [poses.place(Place(carrier, at)) for at in pitch.centres]
     ways = [poses.direction(carrier, axis) for axis in pitch.axes]
-    count = 2 if pitch.rack is None else 1
-    for middle, way, size in list(zip(middles, ways, pitch.radii, strict=True))[:count]:
-        ring = around(middle, way, size * ROUND)
-        yield Line(ring, _PITCH, 1.2, closed=True, dashed=not pitch.belt, level=AXES)
     if pitch.belt:
         strands = belt(middles[0], middles[1], ways[0], pitch.radii, crossed=pitch.crossed)
         yield Line(strands, _METAL, 2.4, closed=True, level=AXES)
