@@ -18,7 +18,6 @@ from ..engine.placement import Placement, place, place_scene
 from ..errors import LagrangeCasadiError
 from ..model.mechanism import Mechanism
 from ..model.scene import Scene
-from .animation.pixels import frames
 from .shapes.declared import (
     body_names,
     driven_marks,
@@ -28,6 +27,7 @@ from .shapes.declared import (
 )
 from .shapes.picture_files import check_picture
 from .shapes.picture_sheet import Picture, picture, view_of
+from .shapes.pixels import frames
 from .shapes.poses import Poses
 from .shapes.primitives import Primitive, cloud, drawing, seen, size_of
 from .shapes.vector import svg

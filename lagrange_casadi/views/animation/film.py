@@ -17,7 +17,7 @@ from ..shapes.vector import svg
 from .film_frames import frames_of
 from .forces import drawn_forces
 from .gltf import glb
-from .pixels import find_ffmpeg, gif, mp4
+from .moving_pixels import find_ffmpeg, gif, mp4
 
 ENDINGS = (".gif", ".mp4", ".svg", ".glb")
 """Kinds of animations, by the name's ending."""
