@@ -63,13 +63,9 @@ DOUBLE = Double()
 class Digits(_Arrays):
     """Numbers of a context of their own, with guard digits beyond the ``digits`` that a result
     should have.
-
-    ``least`` is a bound for pivots of its own, where no equation repeats another and a small one
-    counts.
     """
 
     digits: int
-    least: float | None = None
 
     dtype = object
 
@@ -111,7 +107,7 @@ class Digits(_Arrays):
         while columns and len(pivots) < len(rows):
             k = len(pivots)
             size, i, j = max((abs(rows[i][j]), i, j) for i in range(k, len(rows)) for j in columns)
-            if size <= (self.least or least) * (abs(rows[0][pivots[0]]) if pivots else 0):
+            if size <= least * (abs(rows[0][pivots[0]]) if pivots else 0):
                 break
             rows[k], rows[i] = rows[i], rows[k]
             columns.remove(j)

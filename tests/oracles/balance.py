@@ -11,7 +11,6 @@ import casadi as ca
 import numpy as np
 import oracle
 import rubbing
-from arithmetic import DOUBLE
 from jets import Jet
 from mechanisms import INSTANT
 
@@ -88,7 +87,7 @@ def columns_at(program, t, values):
     }
 
 
-def apart(m, drives, values, arithmetic=DOUBLE):
+def apart(m, drives, values):
     """The motions of joints, and as the oracle's extras those of points and poses: the laws hold
     them, and bear nothing.
     """
@@ -96,11 +95,8 @@ def apart(m, drives, values, arithmetic=DOUBLE):
     def guide(name, drive):
         part, _, along = name.rpartition(".")
         point = m.paths[part].point if part in m.paths else m.bodies[part].base
-        at = (
-            point.body.name,
-            *(arithmetic.number(m.number(x, values)) for x in (point.x, point.y)),
-        )
-        law, k = Jet(*map(arithmetic.number, drive)), ("x", "y", "angle").index(along)
+        at = (point.body.name, *(m.number(x, values) for x in (point.x, point.y)))
+        law, k = Jet(*drive), ("x", "y", "angle").index(along)
         return oracle.Extra(name, lambda place: place(at)[k] - law, None)
 
     own = {joint: drive for joint, drive in drives.items() if joint in m.joints}
@@ -148,11 +144,11 @@ def settle(program, t, p, start):
     return z
 
 
-def oracle_of(m, values, arithmetic=DOUBLE, **beside):
+def oracle_of(m, values, **beside):
     """The oracle of a mechanism: its numbers, and nothing else of the package."""
 
     def number(expression):
-        return arithmetic.number(m.number(expression, values))
+        return m.number(expression, values)
 
     def point(p):
         return p.body.name, number(p.x), number(p.y)
@@ -175,7 +171,7 @@ def oracle_of(m, values, arithmetic=DOUBLE, **beside):
             i = min(max(bisect.bisect_right(breaks, u) - 1, 0), len(cells) - 1)
             return sum(c * u**j for j, c in enumerate(cells[i]))
 
-        return oracle.from_density(b.name, length, density, breaks, arithmetic)
+        return oracle.from_density(b.name, length, density, breaks)
 
     joints = [
         oracle.Joint(
@@ -189,9 +185,7 @@ def oracle_of(m, values, arithmetic=DOUBLE, **beside):
         for j in m.joints.values()
     ]
     gravity = (number(m.gravity[0]), number(m.gravity[1]))
-    return oracle.Oracle(
-        [body(b) for b in m.moving], joints, gravity, arithmetic=arithmetic, **beside
-    )
+    return oracle.Oracle([body(b) for b in m.moving], joints, gravity, **beside)
 
 
 def assert_balanced(scene, **keywords):

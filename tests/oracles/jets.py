@@ -1,10 +1,9 @@
-"""Numbers with their first and second derivative by time: truncated power series, of any
-arithmetic's numbers.
-"""
+"""Numbers with their first and second derivative by time: truncated power series."""
 
 from __future__ import annotations
 
 import bisect
+import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -82,30 +81,34 @@ class Jet:
         return Jet(value, self.d * slope, self.a * slope + self.d * self.d * bend)
 
 
-def functions(arithmetic):
-    """Functions of jets, by name; of a table only the value and the slope between its points."""
+def sin(x):
+    s, c = math.sin(x.v), math.cos(x.v)
+    return x.through(s, c, -s)
 
-    def sin(x):
-        s, c = arithmetic.sin(x.v), arithmetic.cos(x.v)
-        return x.through(s, c, -s)
 
-    def cos(x):
-        s, c = arithmetic.sin(x.v), arithmetic.cos(x.v)
-        return x.through(c, -s, -c)
+def cos(x):
+    s, c = math.sin(x.v), math.cos(x.v)
+    return x.through(c, -s, -c)
 
-    def sqrt(x):
-        root = arithmetic.sqrt(x.v)
-        return x.through(root, 1 / (2 * root), -1 / (4 * root**3))
 
-    def table(x, places, values, beyond):
-        if beyond == "hold" and not places[0] <= x.v <= places[-1]:
-            return x * 0.0 + values[0 if x.v < places[0] else -1]
-        k = min(max(bisect.bisect_right(places, x.v), 1), len(places) - 1)
-        slope = (values[k] - values[k - 1]) / (places[k] - places[k - 1])
-        return (x - places[k - 1]) * slope + values[k - 1]
+def sqrt(x):
+    root = math.sqrt(x.v)
+    return x.through(root, 1 / (2 * root), -1 / (4 * root**3))
 
-    def curve(x, y, periodic):
-        found = by_hand(np.array(x), np.array(y), periodic)
-        return lambda place: place.through(*found(place.v))
 
-    return {"curve": curve, "sin": sin, "cos": cos, "sqrt": sqrt, "table": table}
+def table(x, places, values, beyond):
+    """A table by straight lines: only value and slope between its points."""
+    if beyond == "hold" and not places[0] <= x.v <= places[-1]:
+        return x * 0.0 + values[0 if x.v < places[0] else -1]
+    k = min(max(bisect.bisect_right(places, x.v), 1), len(places) - 1)
+    slope = (values[k] - values[k - 1]) / (places[k] - places[k - 1])
+    return (x - places[k - 1]) * slope + values[k - 1]
+
+
+def curve(x, y, periodic):
+    found = by_hand(np.array(x), np.array(y), periodic)
+    return lambda place: place.through(*found(place.v))
+
+
+FUNCTIONS = {one.__name__: one for one in (curve, sin, cos, sqrt, table)}
+"""Functions of jets, by name."""

@@ -4,8 +4,7 @@ It imports nothing of the package. Every body has a place (x, y) and a direction
 written as gaps between bodies; Newton's method finds the postures, and truncated power series in
 time (:mod:`jets`) give rates and accelerations. The forces are the unknowns of the balance of force
 and moment of every body, all solved at once; a section's forces are the balance of the piece
-towards the tip. It shares no formula with an energy method. The numbers are those of an
-:mod:`arithmetic`.
+towards the tip. It shares no formula with an energy method.
 
 It also tells where there is no one answer: how far the slope of the gaps is from singular, and, by
 the null space of the balance, which forces equilibrium leaves open.
@@ -19,7 +18,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from arithmetic import DOUBLE, Digits, Double
+from arithmetic import DOUBLE
 from jets import Jet
 from spread import forces
 
@@ -59,26 +58,25 @@ def from_density(
     length: float,
     density: Callable[[float], float],
     breaks=(0.0, 1.0),
-    arithmetic=DOUBLE,
 ) -> Body:
     """A straight body, its mass, centre and inertia by quadrature."""
-    mass, first, second = _moments(arithmetic, density, breaks, 0.0)
+    mass, first, second = _moments(density, breaks, 0.0)
     centre = first / mass if mass else 0.0
     inertia = (second - first * centre) * length**2
     return Body(name, mass, length, (centre * length, 0.0), inertia, True, density, tuple(breaks))
 
 
-def _moments(arithmetic, density, breaks, start):
+def _moments(density, breaks, start):
     """Integrals of density, density u and density u^2 from ``start`` to 1, by Gauss' rule on each
     smooth piece.
     """
-    nodes, weights = arithmetic.gauss
-    total = arithmetic.zeros(3)
+    nodes, weights = DOUBLE.gauss
+    total = np.zeros(3)
     for a, b in itertools.pairwise(breaks):
         a = max(a, start)
         if b > a:
             u = a + (nodes + 1) / 2 * (b - a)
-            w = weights * (b - a) / 2 * arithmetic.array([density(x) for x in u])
+            w = weights * (b - a) / 2 * [density(x) for x in u]
             total += [np.sum(w), np.sum(w * u), np.sum(w * u * u)]
     return total
 
@@ -156,7 +154,6 @@ class Oracle:
     loads: Sequence[Callable] = ()
     extras: Sequence[Extra] = ()
     unaided: Sequence[str] = ()
-    arithmetic: Double | Digits = DOUBLE
     pushed: Sequence[str] | None = None
     spreads: Sequence[Callable] = ()
     weights: Mapping[str, float] = field(default_factory=dict)
@@ -169,7 +166,6 @@ class Oracle:
         """The instant at which the driven joints have the given (coordinate, rate, acceleration),
         from a rough posture.
         """
-        drives = self._numbers(drives)
         result = self.move(drives, guess)
         self.balance(result, drives)
         return result
@@ -184,37 +180,34 @@ class Oracle:
 
         Raises :class:`OpenLoopError` where Newton's method closes nothing in so many steps.
         """
-        names, a, drives = [b.name for b in self.bodies], self.arithmetic, self._numbers(drives)
-        q = a.array([a.number(x) for n in names for x in guess[n]])
+        names = [b.name for b in self.bodies]
+        q = np.array([x for n in names for x in guess[n]], float)
         rest, left = np.zeros_like(q), None
         for _ in range(steps):
             # Near the end the slope is as good as before.
             if left is None or left > _SAME_SLOPE:
                 slope = self.slope(q, drives)
-            step = a.solve(slope, -self.gaps(q, rest, drives)[0], _LEAST)
+            step = DOUBLE.solve(slope, -self.gaps(q, rest, drives)[0], _LEAST)
             q, before = q + step, left
             left, size = np.max(np.abs(step)), 1 + np.max(np.abs(q))
-            if left < a.tolerance * size or (
-                before is not None and before / 2 < left < 1000 * a.tolerance * size
+            if left < DOUBLE.tolerance * size or (
+                before is not None and before / 2 < left < 1000 * DOUBLE.tolerance * size
             ):
                 break
         left = max(left, np.max(np.abs(self.gaps(q, rest, drives)[0]), initial=0.0))
-        if not left < 1000 * a.tolerance * size:
+        if not left < 1000 * DOUBLE.tolerance * size:
             raise OpenLoopError("the oracle does not close its loops")
         slope = self.slope(q, drives)
-        rate = a.solve(slope, -self.gaps(q, rest, drives)[1], _LEAST)
-        acceleration = a.solve(slope, -self.gaps(q, rate, drives)[2], _LEAST)
+        rate = DOUBLE.solve(slope, -self.gaps(q, rest, drives)[1], _LEAST)
+        acceleration = DOUBLE.solve(slope, -self.gaps(q, rate, drives)[2], _LEAST)
         jets = [Jet(*x) for x in zip(q, rate, acceleration, strict=True)]
         result = Result({n: tuple(jets[3 * i : 3 * i + 3]) for i, n in enumerate(names)})
-        if a is DOUBLE:
-            scaled = self.scaled(slope)
-            left, values, right = np.linalg.svd(scaled, full_matrices=False)
-            if scaled.shape[0] >= scaled.shape[1]:
-                result.steadiness, result.vague = (
-                    float(values[-1]),
-                    bool(np.any((values > _VAGUE[0]) & (values < _VAGUE[1]))),
-                )
-                result.softest = (scaled, left[:, -1], right[-1])
+        scaled = self.scaled(slope)
+        left, values, right = np.linalg.svd(scaled, full_matrices=False)
+        if scaled.shape[0] >= scaled.shape[1]:
+            result.steadiness = float(values[-1])
+            result.vague = bool(np.any((values > _VAGUE[0]) & (values < _VAGUE[1])))
+            result.softest = (scaled, left[:, -1], right[-1])
         return result
 
     def scaled(self, slope):
@@ -236,17 +229,13 @@ class Oracle:
         """
         return max((float(b.length) for b in self.bodies), default=0.0) or 1.0
 
-    def _numbers(self, drives):
-        return {joint: tuple(map(self.arithmetic.number, drive)) for joint, drive in drives.items()}
-
     def frames(self, q):
         """Of every body, and the ground, the place of its base, its direction, and the direction's
         cosine and sine.
         """
-        zero, one = self.arithmetic.number(0), self.arithmetic.number(1)
-        frames = {"ground": (Jet(zero), Jet(zero), Jet(zero), Jet(one), Jet(zero))}
+        frames = {"ground": (Jet(0.0), Jet(0.0), Jet(0.0), Jet(1.0), Jet(0.0))}
         for name, (x, y, phi) in q.items():
-            c, s = self.arithmetic.cos(phi.v), self.arithmetic.sin(phi.v)
+            c, s = math.cos(phi.v), math.sin(phi.v)
             frames[name] = (x, y, phi, phi.through(c, -s, -c), phi.through(s, c, -s))
         return frames
 
@@ -277,7 +266,7 @@ class Oracle:
         found = self._gap_jets(
             [Jet(*x) for x in zip(q, rate, np.zeros_like(q), strict=True)], drives
         )
-        return self.arithmetic.array([(g.v, g.d, g.a) for g in found]).reshape(-1, 3).T
+        return np.array([(g.v, g.d, g.a) for g in found]).reshape(-1, 3).T
 
     def slope(self, q, drives):
         """Slope of the gaps by q."""
@@ -347,27 +336,23 @@ class Oracle:
                 b.mass * (cy.a - self.gravity[1]),
                 b.inertia * phi.a,
             ]
-        right = self.arithmetic.array(inertia) - self._on_bodies(
-            frames, given + forces(spread, self.arithmetic)
-        )
+        right = np.array(inertia) - self._on_bodies(frames, given + forces(spread, DOUBLE))
         keep = np.array([b.oriented or k < 2 for b in self.bodies for k in range(3)])
         matrix, right = matrix[keep], right[keep]
-        null = None
-        if self.arithmetic is DOUBLE:
-            scales = np.array([1.0, 1.0, self.size] * len(self.bodies))[keep, None]
-            null = self._null(result, matrix / scales)
+        scales = np.array([1.0, 1.0, self.size] * len(self.bodies))[keep, None]
+        null = self._null(result, matrix / scales)
         least, null = self._least(labels, null) if self.weights else (None, null)
 
         def solved(parts):
             left = right - self._on_bodies(frames, parts)[keep]
-            found = self.arithmetic.solve(matrix, left, 1e-11)
+            found = DOUBLE.solve(matrix, left, 1e-11)
             return found if least is None else found + least @ found
 
         found, pressed = self._pressed(solved, labels, place)
         right, given = right - self._on_bodies(frames, pressed)[keep], given + pressed
         left = np.max(np.abs(matrix @ found - right))
         size = np.max(np.abs(right)) + np.max(np.abs(found))
-        assert left <= 1000 * self.arithmetic.tolerance * size, (
+        assert left <= 1000 * DOUBLE.tolerance * size, (
             "the oracle's forces do not balance its bodies"
         )
         for (name, label, (fx, fy, mz)), x in zip(labels, found, strict=True):
@@ -384,8 +369,7 @@ class Oracle:
         for b in self.bodies:
             if b.density is not None:
                 result.sections[b.name] = self._section(frames, b, acting + given, spread)
-        if null is not None:
-            self._find_open(result, frames, labels, unknowns, null)
+        self._find_open(result, frames, labels, unknowns, null)
 
     def _pressed(self, solved, labels, place):
         """Unknowns that balance all bodies, by what acts besides them, and what presses on them for
@@ -397,7 +381,7 @@ class Oracle:
             sizes = {name: x for (name, *_), x in zip(labels, found, strict=True)}
             pressed = [p for extra in pressing for p in extra.presses(place, sizes[extra.name])]
             found, last = solved(pressed), found
-            near = 100 * self.arithmetic.tolerance * np.max(np.abs(found))
+            near = 100 * DOUBLE.tolerance * np.max(np.abs(found))
             if np.max(np.abs(found - last)) <= near:
                 return found, pressed
         assert not pressing, "what presses on the oracle's bodies does not converge"
@@ -457,7 +441,7 @@ class Oracle:
     def _on_bodies(self, frames, parts):
         """Force and moment about each body's centre, stacked."""
         row = {b.name: 3 * i for i, b in enumerate(self.bodies)}
-        stacked = self.arithmetic.zeros(3 * len(self.bodies))
+        stacked = np.zeros(3 * len(self.bodies))
         for (name, px, py), fx, fy, mz in parts:
             if name == "ground":
                 continue
@@ -475,9 +459,8 @@ class Oracle:
         """
 
         def at(ratio: float) -> tuple[float, float, float]:
-            ratio = self.arithmetic.number(ratio)
             l = body.length
-            near = 100 * self.arithmetic.tolerance * body.length
+            near = 100 * DOUBLE.tolerance * body.length
             phi, c, s = frames[body.name][2], frames[body.name][3].v, frames[body.name][4].v
             cut = place_in(frames, (body.name, ratio * l, 0.0))
             fx = fy = mz = 0.0  # what acts on the piece towards the tip
@@ -488,13 +471,11 @@ class Oracle:
                 for p in own
                 if p[0][1] > ratio * l + near or (ratio == 1 and abs(p[0][1] - l) < near)
             ]
-            for place, gx, gy, couple in seen + forces(
-                spread, self.arithmetic, body.name, ratio * l
-            ):
+            for place, gx, gy, couple in seen + forces(spread, DOUBLE, body.name, ratio * l):
                 point = place_in(frames, place)
                 arm = (point[0].v - cut[0].v, point[1].v - cut[1].v)
                 fx, fy, mz = fx + gx, fy + gy, mz + arm[0] * gy - arm[1] * gx + couple
-            mass, first, second = _moments(self.arithmetic, body.density, body.breaks, ratio)
+            mass, first, second = _moments(body.density, body.breaks, ratio)
             if mass and weight:
                 middle = first / mass
                 centre = place_in(frames, (body.name, middle * l, 0.0))

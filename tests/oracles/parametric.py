@@ -5,16 +5,11 @@ constant of its graphs.
 from __future__ import annotations
 
 import itertools
-import math
 from dataclasses import replace
-from fractions import Fraction
 
 import pytest
 
 from lagrange_casadi import Mechanism, load_case
-
-_DENOMINATOR = 60
-_RELATIVE = 1e-15
 
 
 def declared(path):
@@ -66,24 +61,3 @@ def declared(path):
         for kind in (type(ground), type(bar)):
             patch.setattr(kind, "at", lambda body, x, y=0.0, at=kind.at: at(body, free(x), free(y)))
         return load_case(path).scene
-
-
-def meant(number):
-    """What a constant of a graph stands for, a function of doubles: a fraction, or one of the
-    double nearest to pi, or a double.
-
-    Slopes of a table, moments of a density and the like are fractions of small numbers, rounded.
-    """
-
-    def constant(x):
-        for part, pi in ((x, 1), (x / math.pi, math.pi), (x * math.pi, 1 / number(math.pi))):
-            near = (
-                Fraction(part).limit_denominator(_DENOMINATOR)
-                if math.isfinite(part)
-                else Fraction(0)
-            )
-            if near and abs(float(near) - part) <= _RELATIVE * abs(part):
-                return number(near.numerator) / near.denominator * pi
-        return number(x)
-
-    return constant

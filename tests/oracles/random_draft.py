@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 import oracle
-from arithmetic import DOUBLE
 from random_formula import Formula, Measure, Number, joint_coordinate, literal
 
 Place = tuple[float, float]
@@ -441,8 +440,8 @@ class Draft:
             oracle.Result({name: tuple(map(oracle.Jet, pose)) for name, pose in self.poses.items()})
         )
 
-    def oracle(self, t: float, arithmetic=DOUBLE) -> oracle.Oracle:
-        """The oracle of an instant, in doubles."""
+    def oracle(self, t: float) -> oracle.Oracle:
+        """The oracle of an instant."""
         extras = [_extra(name, f, t, holds=True) for name, f in self.constraints.items()]
         extras += [_extra(name, f, t, holds=False) for name, (f, _) in self.rows.items()]
         extras += [contact.extra(name, t) for name, contact in self.contacts.items()]
@@ -464,7 +463,6 @@ class Draft:
             loads,
             extras,
             unaided,
-            arithmetic,
             pushed=[*pushed] or None,
             spreads=spreads,
             weights=pushed if more else {},

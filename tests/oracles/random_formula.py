@@ -11,8 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import oracle
-from arithmetic import DOUBLE
-from jets import Jet, functions
+from jets import FUNCTIONS, Jet
 
 
 class Number(NamedTuple):
@@ -97,27 +96,23 @@ class Formula:
     names: Mapping[str, Measure]
     parameters: Mapping[str, float]
 
-    def jet(self, place, t, arithmetic=DOUBLE) -> Jet:
+    def jet(self, place, t) -> Jet:
         """Its value with its derivatives by time; of rates only the values are known."""
         known = {}
         for name, measure in self.names.items():
             found = measure.jet(place)
             known[name] = Jet(found.d) if measure.rate else found
-        return self._value(known, Jet(arithmetic.number(t), 1.0), arithmetic)
+        return self._value(known, Jet(t, 1.0))
 
-    def effect(self, place, t, arithmetic=DOUBLE) -> list[tuple[Any, Any, Any, Any]]:
+    def effect(self, place, t) -> list[tuple[Any, Any, Any, Any]]:
         """What a unit multiplier of this formula does: its slope by each measure, or by the rates
         where it is a row, along it.
         """
         known, row_of_rates = {}, any(m.rate for m in self.names.values())
-        for row, (name, measure) in zip(
-            np.eye(len(self.names), dtype=arithmetic.dtype), self.names.items(), strict=True
-        ):
+        for row, (name, measure) in zip(np.eye(len(self.names)), self.names.items(), strict=True):
             found = measure.jet(place)
             known[name] = Jet(found.d if measure.rate else found.v, row)
-        slopes = np.broadcast_to(
-            self._value(known, Jet(arithmetic.number(t)), arithmetic).d, len(self.names)
-        )
+        slopes = np.broadcast_to(self._value(known, Jet(t)).d, len(self.names))
         acting = [
             (m, x)
             for m, x in zip(self.names.values(), slopes, strict=True)
@@ -125,10 +120,9 @@ class Formula:
         ]
         return [part for measure, size in acting for part in measure.does(place, size)]
 
-    def _value(self, known, t, arithmetic):
-        numbers = {name: arithmetic.number(value) for name, value in self.parameters.items()}
-        value = eval(_compiled(self.text), {**functions(arithmetic), **numbers, **known, "t": t})
-        return value if isinstance(value, Jet) else Jet(arithmetic.number(value))
+    def _value(self, known, t):
+        value = eval(_compiled(self.text), {**FUNCTIONS, **self.parameters, **known, "t": t})
+        return value if isinstance(value, Jet) else Jet(float(value))
 
 
 @functools.cache

@@ -33,7 +33,6 @@ class Rub:
     static: float | None = None
     stribeck: float = 1.0
     smooth: float | None = None
-    arithmetic: Any = DOUBLE
     force: Any = field(default=0.0, init=False)
 
     def acts(self, place: Callable) -> list:
@@ -50,7 +49,7 @@ class Rub:
         """What the law says of a reaction."""
         v, (fx, fy, mz) = self.rate(place), reaction
         if not self.joint.slides:
-            pressed, speed = self.radius * self.arithmetic.sqrt(fx * fx + fy * fy), v * self.radius
+            pressed, speed = self.radius * math.sqrt(fx * fx + fy * fy), v * self.radius
         else:
             x, y = (along.v for along in axis_of(self.joint, place))
             normal, speed = -y * fx + x * fy, v
@@ -64,27 +63,26 @@ class Rub:
         return -sign * mu * pressed - self.viscous * v
 
 
-def converge(balanced: Callable, laws: Sequence[Callable], a=DOUBLE) -> tuple[Any, Any]:
+def converge(balanced: Callable, laws: Sequence[Callable]) -> tuple[Any, Any]:
     """What ``balanced`` returns for the forces that laws tell of its reactions, and these forces.
 
     ``balanced(forces)`` is an instant, and the reactions of joints. Fails where the iteration does
     not converge.
     """
     n = len(laws)
-    alone = balanced(a.zeros(n))[1]
+    alone = balanced(np.zeros(n))[1]
     size = 1 + np.max(np.abs(alone))
-    units = (a.array([size if j == k else 0 * size for j in range(n)]) for k in range(n))
-    slopes = np.stack([(balanced(unit)[1] - alone) / size for unit in units], axis=-1)
-    forces, left = a.zeros(n), None
+    slopes = np.stack([(balanced(unit)[1] - alone) / size for unit in size * np.eye(n)], axis=-1)
+    forces, left = np.zeros(n), None
     for _ in range(ROUNDS):
         for _ in range(PASSES):
             before, reactions = forces, alone + slopes @ forces
-            forces = a.array([law(r) for law, r in zip(laws, reactions, strict=True)])
-            if np.max(np.abs(forces - before)) <= a.tolerance / 10 * size:
+            forces = np.array([law(r) for law, r in zip(laws, reactions, strict=True)])
+            if np.max(np.abs(forces - before)) <= DOUBLE.tolerance / 10 * size:
                 break
         result, reactions = balanced(forces)
         left = max(abs(law(r) - x) for law, r, x in zip(laws, reactions, forces, strict=True))
-        if left <= 1000 * a.tolerance * size:
+        if left <= 1000 * DOUBLE.tolerance * size:
             return result, forces
         # What presses gears apart has kinks, beside which reactions are linear.
         alone = reactions - slopes @ forces
@@ -100,27 +98,25 @@ def solve_rubbing(oracle: Oracle, rubs: Sequence[Rub], drives, guess) -> Result:
         for rub, force in zip(rubs, forces, strict=True):
             rub.force = force
         result = rubbed.solve(drives, guess)
-        return result, oracle.arithmetic.array([result.reactions[rub.joint.name] for rub in rubs])
+        return result, np.array([result.reactions[rub.joint.name] for rub in rubs])
 
     laws = [lambda reaction, rub=rub: rub.law(reaction, place) for rub in rubs]
-    return converge(balanced, laws, oracle.arithmetic)[0]
+    return converge(balanced, laws)[0]
 
 
 def solve(oracle: Oracle, m, values, drives, guess) -> Result:
     """The oracle of a mechanism of the package's, with the frictions that are declared in that, if
     any.
     """
-    a, joints = oracle.arithmetic, {joint.name: joint for joint in oracle.joints}
+    joints = {joint.name: joint for joint in oracle.joints}
     rubs: dict[str, Rub] = {}
     for load in m.loads.values():
         if type(load).__name__ == "Friction":
-            numbers = {
-                word: a.number(m.number(number, values)) for word, number in load.numbers.items()
-            }
-            rubs[load.name] = Rub(joints[load.joint.name], **numbers, arithmetic=a)
+            numbers = {word: m.number(number, values) for word, number in load.numbers.items()}
+            rubs[load.name] = Rub(joints[load.joint.name], **numbers)
     if not rubs:
         return oracle.solve(drives, guess)
-    result = solve_rubbing(oracle, [*rubs.values()], oracle._numbers(drives), guess)
+    result = solve_rubbing(oracle, [*rubs.values()], drives, guess)
     place = oracle.places(result)
     for name, rub in rubs.items():
         result.frictions |= {

@@ -1,30 +1,14 @@
-"""Every case: its certificate, its page; planar ones: against vector Newton-Euler at several
-instants, their figures.
-"""
+"""Every case: its certificate and its page; figures of some that are known."""
 
 import math
 
 import numpy as np
 import pytest
-from arithmetic import DOUBLE
-from balance import compare
-from beside import of_case
-from conftest import CASES, NAMES, PLANAR
+from conftest import CASES, NAMES
 
 from lagrange_casadi import evaluate, load_case
 
 pytestmark = pytest.mark.usefixtures("released")
-
-
-@pytest.mark.sampled(3)
-@pytest.mark.parametrize("name", PLANAR)
-def test_against_newton_euler(name):
-    scene = load_case(CASES / name).scene
-    start, stop, _ = scene.t
-    acting = of_case(name, DOUBLE, scene.mechanism.values())
-    for part in (0.0, 0.13, 0.4, 0.77):
-        worst, gap = compare(scene, t=start + part * (stop - start), nudge=1e-4, **acting)
-        assert gap < 1e-12, f"{worst} at {part}"
 
 
 @pytest.mark.sampled(15)
