@@ -18,6 +18,17 @@ INSTANT = 0.3
 PIN = Mechanism.revolute
 
 
+def links_of(m, **rows):
+    """Declare links by rows: name to length and mass."""
+    return [m.link(name, length=length, mass=mass) for name, (length, mass) in rows.items()]
+
+
+def pins_of(m, axis=None, **rows):
+    """Declare revolute joints by rows: name to parent and child; in space about an axis."""
+    told = {} if axis is None else {"axis": axis}
+    return [m.revolute(name, *ends, **told) for name, ends in rows.items()]
+
+
 def slider_crank(wanted=("all",), mechanism=None, **keywords):
     """The paper's mechanism, with parameters; or another one with its motion."""
     keywords = {"posture": {"rod": 0.0}, "t": (0, 0.08, 81), "xi": (0, 1, 11)} | keywords
@@ -32,11 +43,11 @@ def slider_crank(wanted=("all",), mechanism=None, **keywords):
 def crank_slider(pin=PIN, lengths=(0.1, 0.2)):
     m = Mechanism("slider_crank")
     r, l = (m.parameter(name, length, "m") for name, length in zip("rl", lengths, strict=True))
-    crank = m.link("crank", length=r, mass=m.parameter("m1", 0.1, "kg"))
-    rod = m.link("rod", length=l, mass=m.parameter("m2", 0.1, "kg"))
+    crank, rod = links_of(
+        m, crank=(r, m.parameter("m1", 0.1, "kg")), rod=(l, m.parameter("m2", 0.1, "kg"))
+    )
     slider = m.point_mass("slider", m.parameter("m3", 0.1, "kg"))
-    m.revolute("O", m.ground, crank)
-    m.revolute("A", crank.tip, rod)
+    pins_of(m, O=(m.ground, crank), A=(crank.tip, rod))
     pin(m, "B", rod.tip, slider)
     m.prismatic("guide", m.ground, slider, axis=(1, 0))
     return m
@@ -62,8 +73,7 @@ def four_bar(
     else:
         m.revolute("A", a.tip, near)
     if turned[1]:
-        m.revolute("C", c.tip, ground)
-        m.revolute("B", c.base, far)
+        pins_of(m, C=(c.tip, ground), B=(c.base, far))
     else:
         pin(m, "B", far, c.tip)
         m.revolute("C", ground, c)
@@ -82,9 +92,7 @@ def crank_and_rod(rod, crank=None, loads=lambda m, parts: None, **link):
     a = m.link("a", length=0.1, **(crank or {"mass": 0.3}))
     b = m.link("b", length=0.35, **rod)
     s = m.point_mass("s", 0.6)
-    m.revolute("O", m.ground, a)
-    m.revolute("A", a.tip, b)
-    m.revolute("B", b.tip, s)
+    pins_of(m, O=(m.ground, a), A=(a.tip, b), B=(b.tip, s))
     m.prismatic("P", m.ground.at(0, 0.02), s, axis=(1, 0))
     loads(m, {"a": a, "b": b, "s": s})
     return Scene(m, {"O": MOTION}, posture={"b": 0.0}, t=(INSTANT, 1, 2))
@@ -114,9 +122,7 @@ def block(guide_of="ground"):
         m.link(n, length=l, mass=w)
         for n, l, w in (("a", 0.1, 0.3), ("b", 0.35, 0.5), ("s", 0.05, 0.6))
     )
-    m.revolute("O", m.ground, a)
-    m.revolute("A", a.tip, b)
-    m.revolute("B", b.tip, s)
+    pins_of(m, O=(m.ground, a), A=(a.tip, b), B=(b.tip, s))
     m.prismatic("P", m.ground.at(0, 0.03), s, axis=(1, 0.2), angle=0.4)
     return Scene(m, {"O": MOTION}, posture={"b": 0.0}, t=(INSTANT, 1, 2))
 
@@ -126,9 +132,7 @@ def driven_slider():
     m = Mechanism("driven_slider")
     a, b = m.link("a", length=0.1, mass=0.3), m.link("b", length=0.35, mass=0.5)
     s = m.point_mass("s", 0.6)
-    m.revolute("O", m.ground, a)
-    m.revolute("A", a.tip, b)
-    m.revolute("B", b.tip, s)
+    pins_of(m, O=(m.ground, a), A=(a.tip, b), B=(b.tip, s))
     m.prismatic("P", m.ground.at(0, 0.03), s, axis=(1, 0.2))
     return Scene(m, {"P": polynomial(0.3, 0.2, 0.1)}, posture={"a": 1.0}, t=(INSTANT, 1, 2))
 
@@ -142,9 +146,7 @@ def inverted(block_carries):
         m.link(n, length=l, mass=w)
         for n, l, w in (("a", 0.1, 0.3), ("rocker", 0.5, 0.5), ("s", 0.05, 0.2))
     )
-    m.revolute("O", m.ground, a)
-    m.revolute("Q", m.ground.at(0, -0.3), b)
-    m.revolute("A", a.tip, s)
+    pins_of(m, O=(m.ground, a), Q=(m.ground.at(0, -0.3), b), A=(a.tip, s))
     if block_carries:
         m.prismatic("P", s, b, axis=(1, 0), angle=0.3)
     else:
@@ -176,12 +178,15 @@ def six_bar():
         for n, l, w in zip("abcd", (0.1, 0.35, 0.25, 0.4), (0.3, 0.5, 0.4, 0.2), strict=True)
     )
     s = m.point_mass("s", 0.6)
-    m.revolute("O", m.ground, a)
-    m.revolute("A", a.tip, b)
-    m.revolute("C", m.ground.at(0.3, 0.05), c)
-    m.revolute("B", b.tip, c.tip)
-    m.revolute("D", c.tip, d)
-    m.revolute("E", d.tip, s)
+    pins_of(
+        m,
+        O=(m.ground, a),
+        A=(a.tip, b),
+        C=(m.ground.at(0.3, 0.05), c),
+        B=(b.tip, c.tip),
+        D=(c.tip, d),
+        E=(d.tip, s),
+    )
     m.prismatic("guide", m.ground.at(0.3, 0.1), s, axis=(1, 0))
     return Scene(m, {"O": MOTION}, posture={"c": 1.5, "d": 0.0}, t=(INSTANT, 1, 2))
 
@@ -220,8 +225,7 @@ def ladder(length=1.0, mass=2.0):
     foot, tip, middle = (m.point_mass(name, 0.0) for name in ("foot", "tip", "middle"))
     m.revolute("O", m.ground, crank)
     m.prismatic("floor", m.ground, foot, axis=(1, 0))
-    m.revolute("F", bar, foot)
-    m.revolute("T", bar.tip, tip)
+    pins_of(m, F=(bar, foot), T=(bar.tip, tip))
     m.prismatic("wall", m.ground, tip, axis=(0, 1))
     m.revolute("M", bar.at(length / 2), middle)
     m.slot("slot", crank, middle)
@@ -238,12 +242,15 @@ def parallelogram(third=1.0, pendulum=False):
     m = Mechanism("three_cranks")
     a, b, c = (m.link(n, length=0.2, mass=0.3) for n in "abc")
     bar = m.link("bar", length=1.0, mass=1.0)
-    m.revolute("O", m.ground, a)
-    m.revolute("P", m.ground.at(0.4, 0), b)
-    m.revolute("Q", m.ground.at(third, 0.3), c)
-    m.revolute("A", a.tip, bar)
-    m.revolute("B", b.tip, bar.at(0.4))
-    m.revolute("C", c.tip, bar.at(1.0, 0.3))
+    pins_of(
+        m,
+        O=(m.ground, a),
+        P=(m.ground.at(0.4, 0), b),
+        Q=(m.ground.at(third, 0.3), c),
+        A=(a.tip, bar),
+        B=(b.tip, bar.at(0.4)),
+        C=(c.tip, bar.at(1.0, 0.3)),
+    )
     motion = {"O": polynomial(0.7, 2.0)}
     if pendulum:
         m.revolute("hang", bar.at(0.7), m.link("bob", length=0.3, mass=0.4))
@@ -253,13 +260,8 @@ def parallelogram(third=1.0, pendulum=False):
 
 def flat_parallelogram():
     m = Mechanism("parallelogram")
-    a = m.link("a", length=0.2, mass=1.0)
-    b = m.link("b", length=0.5, mass=1.0)
-    c = m.link("c", length=0.2, mass=1.0)
-    m.revolute("O", m.ground, a)
-    m.revolute("A", a.tip, b)
-    m.revolute("B", b.tip, c.tip)
-    m.revolute("C", m.ground.at(0.5, 0), c)
+    a, b, c = links_of(m, a=(0.2, 1.0), b=(0.5, 1.0), c=(0.2, 1.0))
+    pins_of(m, O=(m.ground, a), A=(a.tip, b), B=(b.tip, c.tip), C=(m.ground.at(0.5, 0), c))
     return Scene(m, {"O": polynomial(0.7, 4.0)}, posture={"b": 0.0, "c": 0.7}, t=(0, 1, 101))
 
 
@@ -270,9 +272,7 @@ def double_crank(step):
     m = Mechanism("double_crank")
     a, b, c = (m.link(n, length=l, mass=1.0) for n, l in (("a", 0.3), ("b", 0.25), ("c", 0.35)))
     wheel = m.link("wheel", length=0.1, mass=0.1)
-    m.revolute("O", m.ground, a)
-    m.revolute("A", a.tip, b)
-    m.revolute("B", b.tip, c.tip)
+    pins_of(m, O=(m.ground, a), A=(a.tip, b), B=(b.tip, c.tip))
     joints = m.revolute("C", m.ground.at(0.1, 0.0), c), m.revolute("G", m.ground.at(0.5, 0), wheel)
     m.gear("mesh", *joints, ratio=-2.0)
     return Scene(m, {"O": polynomial(0.2, 1.0)}, posture={"c": 0.6, "b": 1.5}, t=(0, 12 * step, 13))
@@ -369,8 +369,7 @@ def sprung(
     a, b, c = (
         m.link(n, length=l, mass=w) for n, l, w in zip("abc", sides, (0.3, 0.5, 0.4), strict=True)
     )
-    m.revolute("O", m.ground, a)
-    m.revolute("A", a.tip, b)
+    pins_of(m, O=(m.ground, a), A=(a.tip, b))
     pin(m, "B", b.tip, c.tip)
     m.revolute("C", m.ground.at(*frame), c)
     for joint in joints:
@@ -401,8 +400,7 @@ def counting(motion, load, **parameters):
     crank, rod = m.link("crank", length=0.1, mass=0.3), m.link("rod", length=0.35, mass=0.5)
     slider = m.point_mass("slider", 0.6)
     joint = m.revolute("O", m.ground, crank)
-    m.revolute("A", crank.tip, rod)
-    m.revolute("B", rod.tip, slider)
+    pins_of(m, A=(crank.tip, rod), B=(rod.tip, slider))
     m.prismatic("guide", m.ground, slider, axis=(1, 0))
     m.force("load", slider, x=load(m, m.coordinate(joint), **symbols))
     return Scene(m, {"O": motion}, posture={"rod": 0.0}, t=(0.0, 0.1, 11))
@@ -428,10 +426,13 @@ def far(distance, load=0.0):
         m.link(name, length=length, mass=1.0)
         for name, length in zip("abc", (0.1, 0.35, 0.25), strict=True)
     )
-    m.revolute("O", m.ground.at(distance, 0), a)
-    m.revolute("A", a.tip, b)
-    m.revolute("B", b.tip, c.tip)
-    m.revolute("C", m.ground.at(distance + 0.3, 0.05), c)
+    pins_of(
+        m,
+        O=(m.ground.at(distance, 0), a),
+        A=(a.tip, b),
+        B=(b.tip, c.tip),
+        C=(m.ground.at(distance + 0.3, 0.05), c),
+    )
     if load:
         m.force("load", c.at(0.1), x=load)
     return Scene(m, {"O": polynomial(0, 10.0)}, t=(0, 0.6, 61), posture={"c": 1.5})
@@ -466,11 +467,9 @@ def press(law=polynomial, wanted=("all",), pin=PIN, **keywords):
     """
     m = Mechanism("press")
     rpm, length = m.parameter("rpm", 600.0, "1/min"), m.parameter("l", 0.5, "m", low=0.0)
-    crank = m.link("crank", length=0.1, mass=1.2)
-    rod = m.link("rod", length=length, mass=2.0)
+    crank, rod = links_of(m, crank=(0.1, 1.2), rod=(length, 2.0))
     ram = m.point_mass("ram", 15.0)
-    m.revolute("O", m.ground, crank)
-    m.revolute("A", crank.tip, rod)
+    pins_of(m, O=(m.ground, crank), A=(crank.tip, rod))
     pin(m, "B", rod.tip, ram)
     m.prismatic("guide", m.ground, ram, axis=(0, 1))
     asked = {

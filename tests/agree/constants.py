@@ -10,6 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 from threading import Event
 
 import casadi as ca
+from mechanisms import pins_of
 
 from lagrange_casadi import Mechanism, Scene, derive, symbolic
 from lagrange_casadi.motion import polynomial
@@ -22,8 +23,7 @@ def declared():
     with symbolic:
         length = m.parameter("ratio", 1.0) * LENGTH
     links = [m.link(name, length=length, mass=MASS) for name in "ab"]
-    m.revolute("O", m.ground.at(LENGTH, MASS), links[0])
-    m.revolute("A", links[0].tip, links[1])
+    pins_of(m, O=(m.ground.at(LENGTH, MASS), links[0]), A=(links[0].tip, links[1]))
     return Scene(m, {"O": polynomial(LENGTH), "A": polynomial(MASS)}, t=(0, LENGTH, 2))
 
 

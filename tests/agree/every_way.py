@@ -20,6 +20,8 @@ from mechanisms import (
     DRAG_LINK,
     bracket,
     every_function,
+    links_of,
+    pins_of,
     sampled_cam,
     sprung,
     truss_platform,
@@ -81,8 +83,7 @@ def plane():
     gas = curve(round_, [1.0, 1.2, 1.1, 0.9, 1.0, 1.3, 0.8, 0.7, 1.0], periodic=True)
     push = m.force("gas", piston, x=-200.0 * gas(m.coordinate(main)))
     arm, rocker = m.link("arm", length=0.35, mass=0.4), m.link("rocker", length=0.25, mass=0.0)
-    m.revolute("C", crank.tip, arm)
-    m.revolute("D", arm.tip, rocker.tip)
+    pins_of(m, C=(crank.tip, arm), D=(arm.tip, rocker.tip))
     swing = m.revolute("E", m.ground.at(0.3, -0.05), rocker)
     m.line_load(
         "flow",
@@ -183,8 +184,7 @@ def namesake(called=lambda name: name):
     """
     m = Mechanism("namesake")
     size = m.parameter(called("law_rate"), 0.3)
-    crank = m.link("crank", length=size, mass=1.0)
-    rod = m.link("rod", length=0.9, mass=2.0)
+    crank, rod = links_of(m, crank=(size, 1.0), rod=(0.9, 2.0))
     bob = m.link(called("rod_acceleration"), length=0.2, mass=0.5)
     m.revolute("O", m.ground, crank)
     m.revolute(called("O_rate"), crank.tip, rod)

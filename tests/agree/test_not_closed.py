@@ -5,6 +5,7 @@ import subprocess
 import numpy as np
 import pytest
 from internals import DesignEngine, EvaluationMethod, Status, blocks, loops
+from mechanisms import pins_of
 
 from lagrange_casadi import Mechanism, Scene, evaluate, export
 from lagrange_casadi.errors import AssemblyError
@@ -21,8 +22,7 @@ def mistaken(monkeypatch):
     monkeypatch.setattr(blocks, "solves", lambda *_: True)
     m = Mechanism("mistaken")
     a, b = m.link("a", length=0.6, mass=1.0), m.link("b", length=0.5, mass=1.2)
-    m.revolute("A", m.ground, a)
-    m.revolute("B", a.tip, b)
+    pins_of(m, A=(m.ground, a), B=(a.tip, b))
     m.prismatic(
         "S", m.ground.at(0, -1), m.point_mass("s", m.parameter("mass", 1.0, "kg")), axis=(1, 0)
     )

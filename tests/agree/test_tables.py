@@ -18,6 +18,7 @@ from mechanisms import (
     flat_parallelogram,
     four_bar,
     parallelogram,
+    pins_of,
     slider_crank,
     truss_platform,
 )
@@ -46,8 +47,7 @@ def arm(load=None, law=None, **keywords):
 def geared(ratio):
     m = Mechanism("geared")
     wheel, link = m.link("wheel", length=0.05, mass=0.2), m.link("link", length=0.1, mass=0.3)
-    first = m.revolute("first", m.ground.at(-0.2, 0), wheel)
-    second = m.revolute("second", m.ground, link)
+    first, second = pins_of(m, first=(m.ground.at(-0.2, 0), wheel), second=(m.ground, link))
     m.gear("mesh", first, second, ratio=ratio)
     return Scene(m, {"first": motion.polynomial(0.2, 3.0)}, t=(0.0, 1.0, 31))
 
@@ -177,8 +177,7 @@ def test_a_station_that_stands_still_is_on_no_other_side_of_a_section(place, tmp
     """
     m = Mechanism("loaded")
     crank, rod = m.link("crank", length=0.1, mass=1.0), m.link("rod", length=0.4, mass=1.0)
-    m.revolute("O", m.ground, crank)
-    m.revolute("A", crank.tip, rod)
+    pins_of(m, O=(m.ground, crank), A=(crank.tip, rod))
     m.slot("guide", m.ground, rod.tip)
     m.force("load", rod.at(m.parameter("place", place)), y=-20.0)
     law, grid = motion.polynomial(0.0, 10.0), {"t": (0.0, 0.6, 31), "xi": (0.0, 1.0, 41)}

@@ -13,6 +13,7 @@ from pathlib import Path
 from threading import Barrier
 
 import numpy as np
+from mechanisms import links_of, pins_of
 from stepped import pinned
 
 from lagrange_casadi import Mechanism, Scene, evaluate, export, load, save, sweep, symbolic
@@ -30,11 +31,9 @@ def press(own, pin=Mechanism.revolute):
 
 def _press(m, own, pin):
     l, r = m.parameter("l", 0.5, "m", low=0.0), m.parameter("r", 0.1, "m", low=0.0)
-    crank = m.link("crank", length=r, mass=1.2 + own / 8)
-    rod = m.link("rod", length=2 * l - l, mass=l * 4)
+    crank, rod = links_of(m, crank=(r, 1.2 + own / 8), rod=(2 * l - l, l * 4))
     ram = m.point_mass("ram", 15.0)
-    m.revolute("O", m.ground, crank)
-    m.revolute("A", crank.tip, rod)
+    pins_of(m, O=(m.ground, crank), A=(crank.tip, rod))
     pin(m, "B", rod.tip, ram)
     m.prismatic("guide", m.ground, ram, axis=(0, 1))
     return Scene(

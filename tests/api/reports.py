@@ -8,6 +8,7 @@ from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from mechanisms import links_of, pins_of
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, density, evaluate
 from lagrange_casadi.motion import polynomial
@@ -36,12 +37,10 @@ def solved(name, count=41):
 def press(t=(0, 0.628, 9), wanted=("all",), unit="m"):
     """The slider-crank of the README."""
     m = Mechanism("press")
-    crank = m.link("crank", length=0.1, mass=1.2)
-    rod = m.link("rod", length=m.parameter("l", 0.5, unit, low=0.0), mass=2.0)
+    crank, rod = links_of(m, crank=(0.1, 1.2), rod=(m.parameter("l", 0.5, unit, low=0.0), 2.0))
     ram = m.point_mass("ram", 15.0)
     drive = m.revolute("O", m.ground, crank)
-    m.revolute("A", crank.tip, rod)
-    m.revolute("B", rod.tip, ram)
+    pins_of(m, A=(crank.tip, rod), B=(rod.tip, ram))
     m.prismatic("guide", m.ground, ram, axis=(0, 1))
     m.output("own", m.rate(drive), unit=unit)
     return evaluate(

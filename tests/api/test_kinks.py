@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from mechanisms import links_of
 from outside import doubled
 
 from lagrange_casadi import Mechanism, Scene, elements, evaluate, export, prepare, sweep, table
@@ -177,8 +178,7 @@ def constraint(default=0.0):
 
 def disc(default=0.0):
     m = Mechanism("disc")
-    wheel = m.link("wheel", length=0.1, mass=1.0)
-    rod = m.link("rod", length=0.1, mass=1.0)
+    wheel, rod = links_of(m, wheel=(0.1, 1.0), rod=(0.1, 1.0))
     k = m.parameter("k", default)
     main = m.revolute("turn", m.ground, wheel)
     lead = m.prismatic("lead", m.ground, rod, axis=(0, 1), angle="90 deg")

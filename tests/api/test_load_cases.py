@@ -9,7 +9,7 @@ import re
 
 import numpy as np
 import pytest
-from mechanisms import parallelogram
+from mechanisms import parallelogram, pins_of
 
 from lagrange_casadi import (
     Mechanism,
@@ -147,9 +147,7 @@ def test_node_sets_have_names_of_the_mesh_and_are_told_apart(crank_rod, tmp_path
     crank = m.link("crank", length=0.1, mass=1.0)
     steel = beams.Beam(beams.rectangle(0.06, 0.03), beams.material("S355"))
     rod, ram = m.link("rod", length=0.4, beam=steel), m.point_mass("ram", 15.0)
-    m.revolute("O", m.ground, crank)
-    m.revolute("tip", crank.tip, rod)
-    m.revolute("Tip", rod.tip, ram)
+    pins_of(m, O=(m.ground, crank), tip=(crank.tip, rod), Tip=(rod.tip, ram))
     m.prismatic("guide", m.ground, ram, axis=(0, 1))
     m.force("base", rod.at(0.13, 0.02), x=-3000.0, y=500.0)
     scene = Scene(m, {"O": polynomial(0, 30.0)}, t=(0, 0.2, 21), posture={"rod": 1.5})

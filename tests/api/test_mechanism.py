@@ -4,7 +4,7 @@ import math
 
 import casadi as ca
 import pytest
-from mechanisms import slider_crank
+from mechanisms import pins_of, slider_crank
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, derive
 from lagrange_casadi.errors import (
@@ -298,8 +298,7 @@ def test_a_body_has_moments_of_inertia_that_can_be(inertia, possible):
 def islands():
     m, a = arm(Mechanism)
     b, c = (m.link(name, length=1, mass=1) for name in "bc")
-    m.revolute("J", m.ground, a)
-    m.revolute("K", b.tip, c)
+    pins_of(m, J=(m.ground, a), K=(b.tip, c))
     return m, {"J": polynomial(0, 1)}, {}
 
 

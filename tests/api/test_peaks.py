@@ -9,7 +9,7 @@ import pytest
 from conftest import CASES
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mechanisms import LENGTH, MASS, G, parallelogram, pendulum
+from mechanisms import LENGTH, MASS, G, parallelogram, pendulum, pins_of
 
 from lagrange_casadi import Mechanism, Scene, evaluate, load, load_case, motion, save
 from lagrange_casadi.errors import AssemblyError, DeclarationError
@@ -105,8 +105,7 @@ def two_links(one, other):
     """An arm of two links, each with a motion of its own."""
     m = Mechanism("two_links")
     arm = m.link("arm", length=0.5, mass=1.0)
-    m.revolute("A", m.ground, arm)
-    m.revolute("B", arm.tip, m.link("hand", length=0.3, mass=0.5))
+    pins_of(m, A=(m.ground, arm), B=(arm.tip, m.link("hand", length=0.3, mass=0.5)))
     return Scene(m, {"A": one, "B": other}, wanted=["motion"])
 
 

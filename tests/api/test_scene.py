@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from mechanisms import four_bar, slider_crank
+from mechanisms import four_bar, pins_of, slider_crank
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, export, load_case, refine, sweep
 from lagrange_casadi.cli import main
@@ -206,10 +206,7 @@ def reaching(lengths, rocker=1.5, **more):
     each = zip("pqr", lengths, strict=True)
     sides = [m.parameter(name, size, "m", low=0.0) for name, size in each]
     a, b, c = (m.link(name, length=l, mass=0.4) for name, l in zip("abc", sides, strict=True))
-    m.revolute("O", m.ground, a)
-    m.revolute("A", a.tip, b)
-    m.revolute("B", b.tip, c.tip)
-    m.revolute("C", m.ground.at(0.3, 0.05), c)
+    pins_of(m, O=(m.ground, a), A=(a.tip, b), B=(b.tip, c.tip), C=(m.ground.at(0.3, 0.05), c))
     return Scene(m, {"O": polynomial(0.2, 6.0)}, posture={"c": rocker}, t=(0.0, 1.0, 101), **more)
 
 

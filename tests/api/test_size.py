@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from mechanisms import pins_of
 from strong import BARS, arms
 
 from lagrange_casadi import Mechanism, Scene, beams, evaluate, size
@@ -111,8 +112,7 @@ def two_beams():
     first = m.link("first", length=0.5, beam=beams.Beam(section, material))
     flat = beams.rectangle(m.parameter("h2", 0.05, "m"), m.parameter("b2", 0.02, "m"))
     second = m.link("second", length=0.5, beam=beams.Beam(flat, material))
-    m.revolute("O", m.ground, first)
-    m.revolute("A", first.tip, second)
+    pins_of(m, O=(m.ground, first), A=(first.tip, second))
     still = polynomial(0.3)
     return Scene(m, {"O": still, "A": still}, t=(0, 1, 3))
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from mechanisms import bracket
+from mechanisms import bracket, pins_of
 from spatial_scenes import beams
 
 from lagrange_casadi import Mechanism, Scene, evaluate, load, save
@@ -100,8 +100,7 @@ def slotted(x=0.05):
     """A crank's pin in the slot of a rocker that is too short for it."""
     m = Mechanism("slotted")
     a, b = m.link("a", length=0.1, mass=0.3), m.link("b", length=0.32, mass=0.5)
-    m.revolute("O", m.ground, a)
-    m.revolute("Q", m.ground.at(x, -0.3), b)
+    pins_of(m, O=(m.ground, a), Q=(m.ground.at(x, -0.3), b))
     m.slot("S", b, a.tip)
     return Scene(m, {"O": polynomial(0.2, 6.0)}, posture={"b": 1.5}, t=(0.0, 1.1, 111))
 

@@ -5,6 +5,7 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
+from mechanisms import links_of, pins_of
 
 from lagrange_casadi import Mechanism, Scene, derive, elements, evaluate, motion
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
@@ -18,11 +19,9 @@ def engine(wanted=("all",), more=lambda m, parts: None):
     """
     m = Mechanism("engine")
     r = m.parameter("r", 0.1, "m")
-    crank = m.link("crank", length=r, mass=0.8)
-    rod = m.link("rod", length=0.25, mass=1.1)
+    crank, rod = links_of(m, crank=(r, 0.8), rod=(0.25, 1.1))
     piston = m.point_mass("piston", 0.6)
-    main = m.revolute("main", m.ground, crank)
-    pin = m.revolute("pin", crank.tip, rod)
+    main, pin = pins_of(m, main=(m.ground, crank), pin=(crank.tip, rod))
     m.revolute("wrist", rod.tip, piston)
     bore = m.prismatic("bore", m.ground, piston, axis=(1, 0))
     m.weld("lump", rod.at(0.1, 0.02), m.point_mass("lumped", 0.3))

@@ -9,6 +9,7 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
+from mechanisms import links_of, pins_of
 
 from lagrange_casadi import (
     LagrangeSystem,
@@ -45,16 +46,14 @@ def plane() -> SimpleNamespace:
     length = m.parameter("l", 0.5, "m", low=0.1)
     arm = m.link("arm", length=length, mass=1.0, beam=beams.Beam(BAR, STEEL))
     rod = m.link("rod", length=1.0, mass=1.0)
-    pin = m.revolute("O", m.ground, arm)
-    other = m.revolute("A", arm.tip, rod)
+    pin, other = pins_of(m, O=(m.ground, arm), A=(arm.tip, rod))
     return SimpleNamespace(m=m, l=length, arm=arm, rod=rod, pin=pin, other=other)
 
 
 def space() -> SimpleNamespace:
     """A spatial one."""
     m = SpatialMechanism("s")
-    arm = m.link("arm", length=0.5, mass=1.0)
-    rod = m.link("rod", length=0.5, mass=1.0)
+    arm, rod = links_of(m, arm=(0.5, 1.0), rod=(0.5, 1.0))
     bar = m.link("bar", between=((0.0, 0.0, 0.0), (0.0, 1.0, 0.0)), mass=1.0)
     return SimpleNamespace(m=m, arm=arm, rod=rod, bar=bar, pin=m.revolute("O", m.ground, arm))
 
@@ -65,10 +64,8 @@ def wheels() -> SimpleNamespace:
     first, second = (
         elements.wheel(m, name, radius=0.1, width=0.01) for name in ("first", "second")
     )
-    m.revolute("F", m.ground, first)
-    m.revolute("G", m.ground.at(0.2, 0.0), second)
-    cam = m.link("cam", length=0.1, mass=1.0)
-    follower = m.link("follower", length=0.1, mass=1.0)
+    pins_of(m, F=(m.ground, first), G=(m.ground.at(0.2, 0.0), second))
+    cam, follower = links_of(m, cam=(0.1, 1.0), follower=(0.1, 1.0))
     turn = m.revolute("T", m.ground, cam)
     slide = m.prismatic("L", m.ground, follower, axis=(0.0, 1.0), angle="90 deg")
     return SimpleNamespace(m=m, first=first, second=second, turn=turn, slide=slide)
@@ -254,8 +251,7 @@ def declarations() -> Iterator[tuple[str, Call]]:
     e = Mechanism("e")
     sun = elements.wheel(e, "sun", teeth=18, radius=0.018, width=0.01)
     arm = e.link("carrier", length=0.1, mass=1.0)
-    e.revolute("S", e.ground, sun)
-    e.revolute("C", e.ground, arm)
+    pins_of(e, S=(e.ground, sun), C=(e.ground, arm))
     given: dict[str, Any] = {
         "mechanism": e,
         "name": "new",

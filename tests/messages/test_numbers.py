@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from mechanisms import four_bar
+from mechanisms import four_bar, links_of
 
 from lagrange_casadi import (
     Mechanism,
@@ -155,8 +155,7 @@ def crank(u=as_number, law=None):
     m = Mechanism("crank")
     r = m.parameter("r", u(0.1, "m"), "m", low=u(0.02, "m"), high=u(0.3, "m"))
     lean = m.parameter("lean", u(0.25, "rad"), "rad", low=u(0.0, "rad"), high=u(1.0, "rad"))
-    arm = m.link("arm", length=r, mass=u(1.5, "kg"))
-    hand = m.link("hand", length=u(0.1, "m"), mass=0.5)
+    arm, hand = links_of(m, arm=(r, u(1.5, "kg")), hand=(u(0.1, "m"), 0.5))
     m.revolute("O", m.ground, arm)
     m.weld("fist", arm.tip, hand, angle=lean)
     law = law or harmonic(u(0.2, "rad"), u(0.5, "rad"), 6.0, u(0.1, "rad"))

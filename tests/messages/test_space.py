@@ -6,6 +6,7 @@ import math
 
 import casadi as ca
 import pytest
+from mechanisms import pins_of
 
 from lagrange_casadi import LagrangeCasadiError, Scene, SpatialMechanism, evaluate
 from lagrange_casadi.motion import polynomial
@@ -49,10 +50,7 @@ def four_bar():
     a, b, c = (
         m.link(name, length=x, mass=1.0) for name, x in zip("abc", (0.1, 0.3, 0.25), strict=True)
     )
-    m.revolute("O", m.ground, a)
-    m.revolute("A", a.tip, b)
-    m.revolute("B", b.tip, c)
-    m.revolute("C", c.tip, m.ground.at(0.3, 0.0, 0.0))
+    pins_of(m, O=(m.ground, a), A=(a.tip, b), B=(b.tip, c), C=(c.tip, m.ground.at(0.3, 0.0, 0.0)))
     return Scene(m, {"O": polynomial(0.0, 1.0)})
 
 

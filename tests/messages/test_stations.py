@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from mechanisms import pins_of
 
 from lagrange_casadi import Mechanism, Scene, evaluate
 from lagrange_casadi.errors import DeclarationError, ParameterError
@@ -104,8 +105,7 @@ def test_the_same_explanation_wherever_sections_are_asked_for(part):
     m = Mechanism("plated")
     rod = m.link("rod", length=0.5, mass=1.0)
     plate = m.link("plate", length=0.5, mass=1.0, centre=(0.1, 0.0), inertia=0.1)
-    m.revolute("O", m.ground, rod)
-    m.revolute("A", rod.tip, plate)
+    pins_of(m, O=(m.ground, rod), A=(rod.tip, plate))
     m.weld("W", plate.tip, m.point_mass("lump", 1.0))
     scene = Scene(m, {"O": polynomial(0, 1), "A": polynomial(0, 1)}, t=(0, 1, 3))
     solution = evaluate(scene, wanted=["effort"])

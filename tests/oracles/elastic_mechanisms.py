@@ -2,6 +2,7 @@
 
 import numpy as np
 from internals import Compliance, Member, nodes
+from mechanisms import pins_of
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams
 from lagrange_casadi.motion import harmonic
@@ -49,10 +50,9 @@ def four_bar(axis=(0, 0, 1), third=None):
         "c": m.link("c", length=0.25, beam=third or made(beams.tube(0.02, 0.003))),
     }
     a, b, c = parts.values()
-    m.revolute("O", m.ground, a, axis=axis)
-    m.revolute("A", a.tip, b, axis=axis)
-    m.revolute("B", b.tip, c.tip, axis=axis)
-    m.revolute("C", m.ground.at(0.3, 0, 0), c, axis=axis)
+    pins_of(
+        m, axis=axis, O=(m.ground, a), A=(a.tip, b), B=(b.tip, c.tip), C=(m.ground.at(0.3, 0, 0), c)
+    )
     m.force("side", b.at(0.15), x=20.0, z=100.0)
     return m
 

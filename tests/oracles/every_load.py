@@ -1,5 +1,7 @@
 """A planar mechanism with every kind of joint, of load and of friction."""
 
+from mechanisms import pins_of
+
 from lagrange_casadi import Mechanism, Scene
 from lagrange_casadi.motion import harmonic, polynomial
 
@@ -14,8 +16,7 @@ def every_joint_and_load():
     slider = m.link("slider", length=0.1, mass=0.7)
     block = m.point_mass("block", 0.5)
     lump = m.point_mass("lump", 0.3)
-    o = m.revolute("O", m.ground, crank)
-    a = m.revolute("A", crank.tip, rod)
+    o, a = pins_of(m, O=(m.ground, crank), A=(crank.tip, rod))
     m.revolute("B", rod.tip, slider)
     guide = m.prismatic("G", m.ground, slider, axis=(1.0, 0.0))
     c = m.revolute("C", m.ground.at(0.05, -0.4), arm)

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from arithmetic import DTYPES, ROUNDING
 from estimates import kind
+from mechanisms import links_of, pins_of
 from truth import true_errors, truth
 
 from lagrange_casadi import Mechanism, Scene, evaluate
@@ -113,19 +114,24 @@ def spinner():
     """A link that spins on one that hardly moves."""
     m, number, motion = _declared("spinner")
     arm = m.link("arm", length=number("r", 0.1), mass=number("m1", 0.1, "kg"))
-    m.revolute("O", m.ground, arm)
-    m.revolute("A", arm.tip, m.link("wheel", length=number("l", 0.2), mass=number("m2", 0.1, "kg")))
+    pins_of(
+        m,
+        O=(m.ground, arm),
+        A=(arm.tip, m.link("wheel", length=number("l", 0.2), mass=number("m2", 0.1, "kg"))),
+    )
     return Scene(m, {"O": polynomial(0.4, 0.01), "A": motion})
 
 
 @functools.cache
 def slider_crank(law=None, pin=Mechanism.revolute):
     m, number, motion = _declared("slider_crank")
-    crank = m.link("crank", length=number("r", 0.1), mass=number("m1", 0.1, "kg"))
-    rod = m.link("rod", length=number("l", 0.2), mass=number("m2", 0.1, "kg"))
+    crank, rod = links_of(
+        m,
+        crank=(number("r", 0.1), number("m1", 0.1, "kg")),
+        rod=(number("l", 0.2), number("m2", 0.1, "kg")),
+    )
     slider = m.point_mass("slider", number("m3", 0.1, "kg"))
-    m.revolute("O", m.ground.at(number("x", 0.0), number("y", 0.0)), crank)
-    m.revolute("A", crank.tip, rod)
+    pins_of(m, O=(m.ground.at(number("x", 0.0), number("y", 0.0)), crank), A=(crank.tip, rod))
     pin(m, "B", rod.tip, slider)
     m.prismatic("guide", m.ground.at(number("gx", 0.0), number("gy", 0.0)), slider, axis=(1, 0))
     return Scene(m, {"O": law or motion}, posture={"rod": 0.0, "guide": 0.3})
@@ -143,8 +149,7 @@ def four_bar(pin=Mechanism.revolute):
         m.link(name, length=number(f"l{name}", length), mass=number(f"m{name}", mass, "kg"))
         for name, length, mass in (("a", 0.1, 0.3), ("b", 0.35, 0.5), ("c", 0.25, 0.4))
     )
-    m.revolute("O", m.ground.at(number("x", 0.0), number("y", 0.0)), a)
-    m.revolute("A", a.tip, b)
+    pins_of(m, O=(m.ground.at(number("x", 0.0), number("y", 0.0)), a), A=(a.tip, b))
     pin(m, "B", b.tip, c.tip)
     m.revolute("C", m.ground.at(number("cx", 0.3), number("cy", 0.05)), c)
     return Scene(m, {"O": motion}, posture={"b": 0.9, "c": 1.5})
@@ -156,13 +161,16 @@ def lever():
     moves, and one that does not.
     """
     m, number, motion = _declared("lever")
-    crank = m.link("crank", length=number("r", 0.1), mass=number("m1", 0.3, "kg"))
-    arm = m.link("arm", length=number("l", 0.6), mass=number("m2", 0.5, "kg"))
-    bob = m.link("bob", length=number("b", 0.2), mass=number("mb", 0.3, "kg"))
+    crank, arm, bob = links_of(
+        m,
+        crank=(number("r", 0.1), number("m1", 0.3, "kg")),
+        arm=(number("l", 0.6), number("m2", 0.5, "kg")),
+        bob=(number("b", 0.2), number("mb", 0.3, "kg")),
+    )
     pin = m.point_mass("pin", number("m3", 0.1, "kg"))
-    m.revolute("O", m.ground.at(0.0, number("h", 0.25)), crank)
-    m.revolute("A", crank.tip, pin)
-    m.revolute("C", m.ground, arm)
+    pins_of(
+        m, O=(m.ground.at(0.0, number("h", 0.25)), crank), A=(crank.tip, pin), C=(m.ground, arm)
+    )
     m.slot("slot", arm.base, pin, axis=(1, 0))
     m.revolute("D", arm.at(number("s", 0.45)), bob)
     return Scene(m, {"O": motion, "D": polynomial(0.5, 3.0, 2.0)}, posture={"arm": 1.5})
@@ -179,9 +187,7 @@ def tapered():
         density=tabulated([0, 1e-3, 0.5, 0.999, 1], [2.0, 1.0, 3.0, 0.5, 0.0]),
     )
     slider = m.point_mass("slider", number("m3", 0.1, "kg"))
-    m.revolute("O", m.ground, crank)
-    m.revolute("A", crank.tip, rod)
-    m.revolute("B", rod.tip, slider)
+    pins_of(m, O=(m.ground, crank), A=(crank.tip, rod), B=(rod.tip, slider))
     m.prismatic("guide", m.ground, slider, axis=(1, 0))
     return Scene(m, {"O": motion}, posture={"rod": 0.0})
 

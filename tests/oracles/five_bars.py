@@ -1,5 +1,7 @@
 """Five-bars: two cranks and two rods that meet at a tool, and one whose rods are geared."""
 
+from mechanisms import links_of, pins_of
+
 from lagrange_casadi import Mechanism, Scene
 from lagrange_casadi.elements import gears
 from lagrange_casadi.motion import polynomial
@@ -11,13 +13,15 @@ def five_bar(drives=None, wanted=("all",), path=False, power=False, **keywords):
     """
     m = Mechanism("five_bar")
     heavier = m.parameter("heavier", 2.0)
-    a, b = m.link("a", length=0.3, mass=1.0), m.link("b", length=0.5, mass=1.5)
-    c, d = m.link("c", length=0.5, mass=1.2), m.link("d", length=0.3, mass=0.8)
-    m.revolute("O", m.ground.at(-0.1, 0), a)
-    m.revolute("C", m.ground.at(0.2, 0), d)
-    m.revolute("A", a.tip, b)
-    m.revolute("D", d.tip, c)
-    m.revolute("P", b.tip, c.tip)
+    a, b, c, d = links_of(m, a=(0.3, 1.0), b=(0.5, 1.5), c=(0.5, 1.2), d=(0.3, 0.8))
+    pins_of(
+        m,
+        O=(m.ground.at(-0.1, 0), a),
+        C=(m.ground.at(0.2, 0), d),
+        A=(a.tip, b),
+        D=(d.tip, c),
+        P=(b.tip, c.tip),
+    )
     m.weld("hung", b.at(0.2, 0.05), m.point_mass("weight", 0.4))
     m.force("cut", c.tip, x=-20.0, y=5.0)
     if path:
@@ -42,8 +46,9 @@ def geared_five_bar(order, rubs=False):
     declaration.
     """
     m = Mechanism("five")
-    first, coupler = m.link("first", length=0.1, mass=1.0), m.link("coupler", length=0.25, mass=0.6)
-    third, fourth = m.link("third", length=0.2, mass=0.8), m.link("fourth", length=0.22, mass=0.8)
+    first, coupler, third, fourth = links_of(
+        m, first=(0.1, 1.0), coupler=(0.25, 0.6), third=(0.2, 0.8), fourth=(0.22, 0.8)
+    )
     pins = {
         "O": (m.ground, first),
         "A": (first.tip, coupler),

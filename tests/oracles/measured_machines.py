@@ -2,6 +2,7 @@
 
 import casadi as ca
 import numpy as np
+from mechanisms import pins_of
 
 from lagrange_casadi import Measurements, Mechanism, Scene, SpatialMechanism, evaluate
 from lagrange_casadi.motion import expression, harmonic
@@ -45,8 +46,7 @@ def two_links(length=0.5):
         about = inertia - moment**2 / mass
         links.append(m.link(f"l{k}", length=length, mass=mass, centre=centre, inertia=about))
     first, second = links
-    m.revolute("A", m.ground, first)
-    m.revolute("B", first.tip, second)
+    pins_of(m, A=(m.ground, first), B=(first.tip, second))
     motion = {"A": swinging(0.3, 0.5, 0.2), "B": swinging(0.8, 0.4, 0.3, rate=5.0)}
     return Scene(m, motion, t=(0, 3, 301))
 
@@ -102,8 +102,7 @@ def rubbing():
         m.link("rocker", length=0.3, mass=1.0),
     )
     o = m.revolute("O", m.ground, crank)
-    m.revolute("A", crank.tip, coupler)
-    m.revolute("B", coupler.tip, rocker.tip)
+    pins_of(m, A=(crank.tip, coupler), B=(coupler.tip, rocker.tip))
     c = m.revolute("C", m.ground.at(0.35, 0), rocker)
     length = 0.2 - p["preload"] / p["k"]
     m.spring("s", m.ground.at(0, 0.6), rocker.tip, stiffness=p["k"], length=length, damping=p["c"])

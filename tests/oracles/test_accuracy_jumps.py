@@ -8,6 +8,7 @@ import casadi as ca
 import pytest
 from arithmetic import ROUNDING
 from estimates import COUNT, METHODS, assert_near, ratios
+from mechanisms import links_of, pins_of
 from truth import truth
 
 from lagrange_casadi import Mechanism, Scene, evaluate, table
@@ -58,12 +59,10 @@ def friction(load):
     slider pushed likewise.
     """
     m = Mechanism("friction")
-    crank = m.link("crank", length=0.1, mass=1.0)
-    rod = m.link("rod", length=0.3, mass=1.0)
+    crank, rod = links_of(m, crank=(0.1, 1.0), rod=(0.3, 1.0))
     slider = m.point_mass("slider", 1.0)
     main = m.revolute("O", m.ground, crank)
-    m.revolute("A", crank.tip, rod)
-    m.revolute("B", rod.tip, slider)
+    pins_of(m, A=(crank.tip, rod), B=(rod.tip, slider))
     guide = m.prismatic("guide", m.ground, slider, axis=(1, 0))
     m.torque("torque", crank, load(m.time, m.coordinate(main), m.rate(main)))
     m.force("force", slider, x=load(m.time, m.coordinate(guide), m.rate(guide)))

@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from mechanisms import links_of
 
 from lagrange_casadi import Scene, SpatialMechanism, derive, evaluate
 from lagrange_casadi.errors import AssemblyError, PostureError
@@ -14,9 +15,7 @@ pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 def askew(posture, offset=0.03, reach=0.4):
     """A slider that turns about its guide; the rod's pin passes the guide's line at a distance."""
     m = SpatialMechanism("askew")
-    crank = m.link("crank", length=0.1, mass=1.0)
-    rod = m.link("rod", length=reach, mass=1.0)
-    slider = m.link("slider", length=0.05, mass=1.0)
+    crank, rod, slider = links_of(m, crank=(0.1, 1.0), rod=(reach, 1.0), slider=(0.05, 1.0))
     m.revolute("O", m.ground.at(0.0, 0.12, 0.13), crank, axis=(0.0, 0.3, 1.0))
     m.spherical("A", crank.tip, rod)
     m.revolute("B", slider.at(0.0, offset, 0.0), rod.tip, axis=(0, 0, 1))

@@ -4,6 +4,7 @@ must not see it by chance.
 
 import numpy as np
 import pytest
+from mechanisms import links_of, pins_of
 
 from lagrange_casadi import Mechanism, Scene, evaluate
 from lagrange_casadi.motion import polynomial
@@ -21,13 +22,17 @@ def rail(end):
     """
     m = Mechanism("rail")
     l = m.parameter("l", LENGTH, "m")
-    crank, coupler = m.link("crank", length=0.1, mass=0.3), m.link("coupler", length=0.35, mass=0.5)
-    arm, bar = m.link("arm", length=l, mass=0.0), m.link("bar", length=l, mass=0.7)
-    m.revolute("O", m.ground, crank)
-    m.revolute("A", crank.tip, coupler)
-    m.revolute("C", m.ground.at(*PIVOT), arm)
-    m.revolute("B", arm.tip, coupler.tip)
-    m.revolute("R", m.ground.at(*PIVOT), bar if end == "tip" else bar.tip)
+    crank, coupler, arm, bar = links_of(
+        m, crank=(0.1, 0.3), coupler=(0.35, 0.5), arm=(l, 0.0), bar=(l, 0.7)
+    )
+    pins_of(
+        m,
+        O=(m.ground, crank),
+        A=(crank.tip, coupler),
+        C=(m.ground.at(*PIVOT), arm),
+        B=(arm.tip, coupler.tip),
+        R=(m.ground.at(*PIVOT), bar if end == "tip" else bar.tip),
+    )
     m.slot("S", bar, coupler.tip, axis=(1, 0))
     at = 1.0 if end == "tip" else 0.0
     m.output("felt", m.results.section(bar, at).shear, unit="N")

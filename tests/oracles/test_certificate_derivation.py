@@ -8,6 +8,7 @@ import casadi as ca
 import pytest
 from every_load import every_joint_and_load
 from internals import assembly, cache, sampled_laws
+from mechanisms import pins_of
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate, motion
 from lagrange_casadi.errors import CertificateWarning
@@ -32,8 +33,7 @@ def tool_on_a_path():
     """A point whose place is given, and a body whose direction is."""
     m = Mechanism("tool")
     near, far = (m.link(name, length=0.6, mass=1.0) for name in ("near", "far"))
-    m.revolute("A", m.ground, near)
-    m.revolute("B", near.tip, far)
+    pins_of(m, A=(m.ground, near), B=(near.tip, far))
     m.path("tool", far.tip)
     law = motion.harmonic(0.7, 0.1, 2.0), motion.harmonic(0.2, 0.1, 2.0, 0.5)
     return Scene(

@@ -7,6 +7,7 @@ import numpy as np
 import oracle
 import pytest
 from balance import assert_balanced
+from mechanisms import pins_of
 
 from lagrange_casadi import Mechanism, Scene, evaluate
 from lagrange_casadi.motion import expression, polynomial
@@ -28,9 +29,12 @@ def towed(drives):
     m.prismatic("X", m.ground, cross, axis=(1, 0))
     across = m.prismatic("Y", cross, pivot, axis=(0, 1))
     turn = m.revolute("turn", pivot, body)
-    m.revolute("shoulder", m.ground.at(0.3, -1.2), upper)
-    m.revolute("elbow", upper.tip, lower)
-    m.revolute("nose", body.tip, lower.tip)
+    pins_of(
+        m,
+        shoulder=(m.ground.at(0.3, -1.2), upper),
+        elbow=(upper.tip, lower),
+        nose=(body.tip, lower.tip),
+    )
     vx, vy = m.velocity(body)
     q = m.direction(body)
     m.nonholonomic("blade", -ca.sin(q) * vx + ca.cos(q) * vy, replaces=across)

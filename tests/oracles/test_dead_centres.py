@@ -15,6 +15,7 @@ import pytest
 from design_rows import values
 from internals import DesignEngine, EvaluationMethod, Status, run
 from internals import refusal_refusal as refusal
+from mechanisms import pins_of
 from structured import blocks
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate, export
@@ -46,8 +47,7 @@ def four_bar(crossed=False, space=False, iterated=False):
         m.spherical("A", crank.tip, coupler)
         m.spherical("B", coupler.tip, rocker.tip)
     else:
-        m.revolute("A", crank.tip, coupler)
-        m.revolute("B", coupler.tip, rocker.tip)
+        pins_of(m, A=(crank.tip, coupler), B=(coupler.tip, rocker.tip))
     hinge = m.revolute("C", foot, rocker)
     if iterated:
         wheel = m.link("wheel", length=0.1, mass=0.1)
@@ -69,9 +69,7 @@ def slider_crank():
     r, l, e = (m.parameter(name, value) for name, value in (("r", 0.1), ("l", 0.1), ("e", 0.0)))
     crank, rod = m.link("crank", length=r, mass=1.0), m.link("rod", length=l, mass=1.0)
     slider = m.point_mass("slider", 1.0)
-    m.revolute("O", m.ground, crank)
-    m.revolute("A", crank.tip, rod)
-    m.revolute("B", rod.tip, slider)
+    pins_of(m, O=(m.ground, crank), A=(crank.tip, rod), B=(rod.tip, slider))
     m.prismatic("guide", m.ground.at(0, e), slider, axis=(1, 0))
     return Scene(m, {"O": law(m, 0.9)}, posture={"rod": -0.9}, t=(0, 1, COUNT), wanted=["effort"])
 

@@ -10,6 +10,8 @@ from mechanisms import (
     double_crank,
     flat_parallelogram,
     four_bar,
+    links_of,
+    pins_of,
     slider_crank,
     truss_platform,
 )
@@ -51,8 +53,7 @@ def stretched(pin, **keywords):
     m = Mechanism("straightened")
     crank, rod = m.link("crank", length=0.1, mass=0.3), m.link("rod", length=0.35, mass=0.5)
     ram = m.point_mass("ram", 0.6)
-    m.revolute("O", m.ground, crank)
-    m.revolute("A", crank.tip, rod)
+    pins_of(m, O=(m.ground, crank), A=(crank.tip, rod))
     pin(m, "B", rod.tip, ram)
     m.prismatic("P", m.ground, ram, axis=(1, 0))
     return Scene(m, {"P": polynomial(0.4, 0.05)}, t=(0, 1, 41), **keywords)
@@ -66,11 +67,9 @@ def twice():
     """As many drives as freedoms, but a loop has two and the open chain beside it none."""
     m = Mechanism("twice")
     a, b, c, d = (m.link(n, length=1.0, mass=1.0) for n in "abcd")
-    m.revolute("O", m.ground, a)
-    m.revolute("A", a.tip, b)
+    pins_of(m, O=(m.ground, a), A=(a.tip, b))
     m.prismatic("P", m.ground.at(0, 1), b, axis=(1, 0))
-    m.revolute("Q", m.ground.at(3, 0), c)
-    m.revolute("R", c.tip, d)
+    pins_of(m, Q=(m.ground.at(3, 0), c), R=(c.tip, d))
     return Scene(m, {"O": polynomial(0.5), "P": polynomial(0.1)}, posture={"b": 0.0})
 
 
@@ -235,12 +234,9 @@ def test_a_dead_centre_is_passed_in_no_silence_however_often_a_guide_is_declared
     pivot.
     """
     m = Mechanism("scott_russell")
-    crank = m.link("crank", length=0.2, mass=1.0)
-    bar = m.link("bar", length=0.4, mass=1.0)
+    crank, bar = links_of(m, crank=(0.2, 1.0), bar=(0.4, 1.0))
     foot = m.point_mass("foot", 0.1)
-    m.revolute("O", m.ground, crank)
-    m.revolute("A", crank.tip, bar.at(0.2))
-    m.revolute("B", bar, foot)
+    pins_of(m, O=(m.ground, crank), A=(crank.tip, bar.at(0.2)), B=(bar, foot))
     for k in range(guides):
         m.prismatic(f"X{k}", m.ground, foot, axis=(1, 0))
     scene = Scene(m, {"O": polynomial(1.0, 1.0)}, posture={"bar": 2.14, "X0": 0.2}, t=(0, 1, 101))

@@ -5,6 +5,7 @@ pattern is there, iterated elsewhere.
 import math
 
 import pytest
+from mechanisms import links_of, pins_of
 
 from lagrange_casadi import Scene, SpatialMechanism, derive, evaluate
 from lagrange_casadi.errors import AssemblyError, PostureError
@@ -44,8 +45,7 @@ def reaching(leg, posture, height=0.5, carried=False):
 
 
 def telescope(m, foot, reverse=False):
-    cylinder = m.link("cylinder", length=0.3, mass=1.0)
-    piston = m.link("piston", length=0.3, mass=0.5)
+    cylinder, piston = links_of(m, cylinder=(0.3, 1.0), piston=(0.3, 0.5))
     if reverse:
         # The cylinder is the parent: its first turn is the one about its own axis.
         m.universal("U", cylinder, foot, axis=Y, second=X, turned=((0.0, 0.0, -1.0), Y))
@@ -91,8 +91,7 @@ def scara(m, foot):
         m.link(name, length=length, mass=0.5)
         for name, length in (("arm", 0.15), ("fore", 0.12), ("quill", 0.1))
     )
-    m.revolute("A", foot, arm, axis=Z)
-    m.revolute("E", arm.tip, fore, axis=Z)
+    pins_of(m, axis=Z, A=(foot, arm), E=(arm.tip, fore))
     m.prismatic("Q", fore.tip, quill, axis=Z)
     return quill.base
 

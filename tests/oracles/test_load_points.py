@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from balance import columns_at, oracle_of, postures
 from internals import DesignEngine, EvaluationMethod
+from mechanisms import pins_of
 from oracle import SECTION
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, export, refine
@@ -225,8 +226,7 @@ def shaper(slots, length, base):
     """
     m = Mechanism("shaper")
     crank, rail = m.link("crank", length=0.2, mass=1.0), m.link("rail", length=length, mass=2.0)
-    m.revolute("O", m.ground.at(0, 0.5), crank)
-    m.revolute("R", m.ground, rail.at(base))
+    pins_of(m, O=(m.ground.at(0, 0.5), crank), R=(m.ground, rail.at(base)))
     for name in slots:
         m.slot(name, rail, crank.tip, axis=(1, 0))
     m.force("f", rail.at(0.31), x=20.0, y=3.0)

@@ -8,7 +8,7 @@ import casadi as ca
 import numpy as np
 import pytest
 from balance import assert_balanced
-from mechanisms import PATTERNS, ladder
+from mechanisms import PATTERNS, ladder, links_of, pins_of
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
 from lagrange_casadi.elements import cylinder
@@ -47,8 +47,7 @@ def prescribed(equations, posture):
     """
     m = Mechanism("prescribed")
     a, b = m.link("a", length=0.6, mass=1.0), m.link("b", length=0.5, mass=1.2)
-    m.revolute("A", m.ground, a)
-    m.revolute("B", a.tip, b)
+    pins_of(m, A=(m.ground, a), B=(a.tip, b))
     m.prismatic("S", m.ground.at(0, -1), m.point_mass("s", 1.0), axis=(1, 0))
     for name, gap in equations(m, b).items():
         m.constraint(name, gap)
@@ -120,10 +119,8 @@ def test_two_circles_have_a_closed_form_whatever_their_size(size):
     Places are drawn near a metre, and few links reach so far.
     """
     m = Mechanism("lever")
-    crank = m.link("crank", length=0.05 * size, mass=1.0)
-    lever = m.link("lever", length=0.2 * size, mass=1.0)
-    m.revolute("O", m.ground, crank)
-    m.revolute("P", m.ground.at(0.25 * size, 0.0), lever)
+    crank, lever = links_of(m, crank=(0.05 * size, 1.0), lever=(0.2 * size, 1.0))
+    pins_of(m, O=(m.ground, crank), P=(m.ground.at(0.25 * size, 0.0), lever))
     cylinder(
         m,
         "ram",

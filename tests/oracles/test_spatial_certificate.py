@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 from internals import Output, certify
+from mechanisms import links_of
 from spatial_solutions import evaluated, residuals
 
 from lagrange_casadi import Scene, SpatialMechanism, evaluate, motion
@@ -37,8 +38,7 @@ def hung_on_masses(m):
 def on_a_mass(m):
     """A link whose base is at a point mass, turned by the link at its tip."""
     a = m.point_mass("a", 1.0)
-    b = m.link("b", length=0.5, mass=1.0)
-    c = m.link("c", length=0.5, mass=1.0)
+    b, c = links_of(m, b=(0.5, 1.0), c=(0.5, 1.0))
     m.prismatic("P", m.ground, a, axis=(1, 0, 0))
     m.spherical("S", a, b)
     m.revolute("R", m.ground.at(0.3, 0.2, 0.1), c, axis=(0, 0, 1))

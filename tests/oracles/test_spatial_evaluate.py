@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 from internals import Output
+from mechanisms import links_of
 from spatial_bridge import coordinate, named, postures
 from spatial_mechanisms import FAMILIES
 from spatial_oracle import SECTION
@@ -194,9 +195,7 @@ def turning_crank(turns=3, **options):
     joint closes the loop.
     """
     m = SpatialMechanism("crank")
-    crank = m.link("crank", length=0.1, mass=1.0)
-    rod = m.link("rod", length=0.4, mass=1.5)
-    ram = m.link("ram", length=0.1, mass=2.0)
+    crank, rod, ram = links_of(m, crank=(0.1, 1.0), rod=(0.4, 1.5), ram=(0.1, 2.0))
     m.revolute("O", m.ground, crank, axis=(0, 0, 1))
     m.cylindrical("A", crank.tip, rod, axis=(0, 0, 1))
     m.revolute("B", rod.tip, ram, axis=(0, 0, 1))

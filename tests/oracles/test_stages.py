@@ -11,7 +11,7 @@ import pytest
 from conftest import CASES, NAMES
 from estimates import kind as kind_of
 from internals import certify, controlled, interpret, numpy_arithmetic
-from mechanisms import counting, four_bar, harmonics, sampled, slider_crank
+from mechanisms import counting, four_bar, harmonics, links_of, pins_of, sampled, slider_crank
 from mechanisms import sprung as four_bar_with_springs
 from outside import doubled
 from stepped import pinned
@@ -108,14 +108,11 @@ LAWS = {
 def geared(ratio):
     """A crank and a wheel on a gear, the wheel's pin a connecting rod's."""
     m = Mechanism("geared")
-    crank = m.link("crank", length=0.1, mass=0.3)
-    wheel = m.link("wheel", length=0.06, mass=0.5)
-    rod = m.link("rod", length=0.2, mass=0.1)
+    crank, wheel, rod = links_of(m, crank=(0.1, 0.3), wheel=(0.06, 0.5), rod=(0.2, 0.1))
     slider = m.point_mass("slider", 0.4)
     first, second = m.revolute("O", m.ground, crank), m.revolute("W", m.ground.at(0.3, 0.0), wheel)
     m.gear("mesh", first, second, ratio=ratio, offset=0.2)
-    m.revolute("A", wheel.tip, rod)
-    m.revolute("B", rod.tip, slider)
+    pins_of(m, A=(wheel.tip, rod), B=(rod.tip, slider))
     m.prismatic("guide", m.ground, slider, axis=(1, 0))
     return Scene(m, {"O": RAMP}, posture={"rod": 0.1}, t=(0.0, 0.1, 11))
 

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import casadi as ca
 from conftest import CASES
+from mechanisms import pins_of
 
 from lagrange_casadi import Mechanism, Scene, motion
 
@@ -48,9 +49,9 @@ def rolling():
     sun = m.link("sun", length=s, mass=0.5, centre=(0, 0), inertia=2e-4)
     carrier = m.link("carrier", length=s + p, mass=0.4, centre=(0, 0), inertia=5e-4)
     planet = m.link("planet", length=p, mass=0.3, centre=(0, 0), inertia=6e-5)
-    main = m.revolute("main", m.ground, sun)
-    output = m.revolute("output", m.ground, carrier)
-    pin = m.revolute("pin", carrier.tip, planet)
+    main, output, pin = pins_of(
+        m, main=(m.ground, sun), output=(m.ground, carrier), pin=(carrier.tip, planet)
+    )
     angle, (vx, vy) = m.direction(carrier), m.velocity(planet)
     along, spin = ca.cos(angle) * vy - ca.sin(angle) * vx, m.rate(output) + m.rate(pin)
     m.nonholonomic("inside", along - p * spin - s * m.rate(main), replaces=output)
@@ -71,8 +72,7 @@ def called_as_rates():
     """An arm whose second drive is called as the rate of the first."""
     m = Mechanism("arm")
     upper, lower = (m.link(name, length=0.4, mass=1.0) for name in ("upper", "lower"))
-    m.revolute("pin", m.ground, upper)
-    m.revolute("pin_rate", upper.tip, lower)
+    pins_of(m, pin=(m.ground, upper), pin_rate=(upper.tip, lower))
     moved = {"pin": motion.polynomial(0.1, 2.0), "pin_rate": motion.polynomial(0.2, 3.0)}
     return Scene(m, moved, t=(0.0, 1.0, 11))
 

@@ -1,5 +1,7 @@
 """Mechanisms whose links are made of something."""
 
+from mechanisms import pins_of
+
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams
 from lagrange_casadi.motion import harmonic, polynomial
 
@@ -24,9 +26,7 @@ def press(
     crank = m.link("crank", length=m.parameter("r", 0.1, "m"), mass=1.2)
     rod = m.link("rod", length=0.4, beam=beam)
     ram = m.point_mass("ram", 15.0)
-    m.revolute("O", m.ground, crank)
-    m.revolute("A", crank.tip, rod)
-    m.revolute("B", rod.tip, ram)
+    pins_of(m, O=(m.ground, crank), A=(crank.tip, rod), B=(rod.tip, ram))
     m.prismatic("guide", m.ground, ram, axis=(0, 1))
     m.force("push", rod.at(0.13), x=push)
     m.line_load("wind", rod, y=lambda x: 200.0 * x, between=(0.1, 0.35))
@@ -66,9 +66,7 @@ def slider(endurance=None, tip=None):
     crank = m.link("crank", length=r, beam=bar)
     rod = m.link("rod", length=l, beam=bar)
     ram = m.point_mass("ram", 15.0)
-    m.revolute("O", m.ground, crank)
-    m.revolute("A", crank.tip, rod)
-    m.revolute("B", rod.tip, ram)
+    pins_of(m, O=(m.ground, crank), A=(crank.tip, rod), B=(rod.tip, ram))
     m.prismatic("guide", m.ground, ram, axis=(0, 1))
     return Scene(m, {"O": polynomial(0, 30.0)}, t=(0, 0.2094395, 65), posture={"rod": 1.5})
 
@@ -84,8 +82,7 @@ def arms(push=-60.0, shared=False):
     upper = m.link("upper", length=0.5, beam=beams.Beam(beams.round_bar(d1), STEEL))
     fore = m.link("fore", length=0.4, beam=beams.Beam(beams.round_bar(d1 if shared else d2), STEEL))
     plate = m.link("plate", length=0.1, beam=beams.Beam(beams.rectangle(0.05, 0.01), STEEL))
-    m.revolute("shoulder", m.ground, upper)
-    m.revolute("elbow", upper.tip, fore)
+    pins_of(m, shoulder=(m.ground, upper), elbow=(upper.tip, fore))
     m.weld("hand", fore.tip, plate)
     m.force("push", plate.tip, y=push)
     return Scene(

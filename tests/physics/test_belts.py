@@ -7,6 +7,7 @@ from __future__ import annotations
 import math
 
 import pytest
+from mechanisms import pins_of
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate
 from lagrange_casadi.elements import belt, wheel
@@ -24,8 +25,9 @@ def drive(radii=(0.05, 0.12), crossed=False, turn=0.4, **more):
         wheel(m, name, radius=r, mass=1.0)
         for name, r in zip(("first", "second"), radii, strict=True)
     )
-    m.revolute("A", m.ground, first)
-    m.revolute("B", m.ground.at(0.4 * math.cos(turn), 0.4 * math.sin(turn)), second)
+    pins_of(
+        m, A=(m.ground, first), B=(m.ground.at(0.4 * math.cos(turn), 0.4 * math.sin(turn)), second)
+    )
     made = belt(m, "belt", first, second, radii=radii, preload=preload, crossed=crossed, **more)
     m.torque("load", second, load)
     return m, made

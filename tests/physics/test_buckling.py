@@ -9,6 +9,7 @@ import math
 import numpy as np
 import pytest
 import strong
+from mechanisms import pins_of
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams, evaluate
 from lagrange_casadi.errors import DeclarationError
@@ -76,9 +77,7 @@ def test_the_weakest_axis_and_the_thinnest_place_count():
 def driven(m, arm, axis):
     """A crank whose rod ends on a slide."""
     rod, foot = m.link("rod", length=0.5, mass=1.0), m.point_mass("foot", 1.0)
-    m.revolute("O", m.ground, arm)
-    m.revolute("A", arm.tip, rod)
-    m.revolute("B", rod.tip, foot)
+    pins_of(m, O=(m.ground, arm), A=(arm.tip, rod), B=(rod.tip, foot))
     m.prismatic("guide", m.ground.at(0.0, -0.3), foot, axis=(1, 0))
     return ["O"]
 

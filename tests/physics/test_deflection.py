@@ -8,6 +8,7 @@ import frames
 import numpy as np
 import pytest
 import strong
+from mechanisms import pins_of
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams, evaluate, tool_deflection
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
@@ -222,10 +223,9 @@ def test_an_over_constrained_loop_in_space():
     b = m.link("b", length=0.3, beam=beams.Beam(beams.rectangle(0.02, 0.01), STEEL_OF_TOOL))
     c = m.link("c", length=0.25, beam=beams.Beam(beams.tube(0.02, 0.003), STEEL_OF_TOOL))
     axis = (0, 0, 1)
-    m.revolute("O", m.ground, a, axis=axis)
-    m.revolute("A", a.tip, b, axis=axis)
-    m.revolute("B", b.tip, c.tip, axis=axis)
-    m.revolute("C", m.ground.at(0.3, 0, 0), c, axis=axis)
+    pins_of(
+        m, axis=axis, O=(m.ground, a), A=(a.tip, b), B=(b.tip, c.tip), C=(m.ground.at(0.3, 0, 0), c)
+    )
     m.force("side", b.at(0.15), x=20.0, y=-300.0, z=100.0)
     scene = Scene(
         m, {"O": polynomial(0.2)}, posture={"A": 0.5, "C": 1.5}, t=(0, 0, 1), elastic=True

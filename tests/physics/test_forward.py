@@ -10,6 +10,7 @@ import casadi as ca
 import numpy as np
 import pytest
 from conftest import CASES
+from mechanisms import pins_of
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, flywheel, forward, free, load_case
 from lagrange_casadi.errors import DeclarationError, LagrangeCasadiError
@@ -38,9 +39,7 @@ def slider_crank(motion, friction=0.0, **posture):
     m = Mechanism("slider_crank")
     crank, rod = m.link("crank", length=0.1, mass=1.0), m.link("rod", length=0.3, mass=1.0)
     block = m.point_mass("block", 2.0)
-    m.revolute("O", m.ground, crank)
-    m.revolute("A", crank.tip, rod)
-    m.revolute("B", rod.tip, block)
+    pins_of(m, O=(m.ground, crank), A=(crank.tip, rod), B=(rod.tip, block))
     guide = m.prismatic("guide", m.ground, block, axis=(1, 0))
     if friction:
         m.friction("rub", guide, mu=friction)
@@ -259,8 +258,7 @@ TWO = {"O": polynomial(0.0, 1.0), "A": polynomial(0.0, 1.0)}
 def arm():
     m = Mechanism("arm")
     upper, lower = m.link("upper", length=0.3, mass=1.0), m.link("lower", length=0.3, mass=1.0)
-    m.revolute("O", m.ground, upper)
-    m.revolute("A", upper.tip, lower)
+    pins_of(m, O=(m.ground, upper), A=(upper.tip, lower))
     return Scene(m, TWO, t=(0.0, 1.0, 11))
 
 

@@ -7,6 +7,7 @@ import re
 
 import numpy as np
 import pytest
+from mechanisms import pins_of
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate
 from lagrange_casadi.elements import gears, planetary, wheel
@@ -160,9 +161,9 @@ TEETH = {"teeth": (20, 40), "module": 0.003}
 def test_bad_gears_are_refused_by_name(where, more, says):
     m = Mechanism("bad")
     a, b, c = (wheel(m, name, radius=0.05, mass=1.0) for name in "abc")
-    m.revolute("A", m.ground, a)
-    m.revolute("B", m.ground.at(0.05 if where == "ring" else 0.1, 0), b)
-    m.revolute("C", b.tip, c)
+    pins_of(
+        m, A=(m.ground, a), B=(m.ground.at(0.05 if where == "ring" else 0.1, 0), b), C=(b.tip, c)
+    )
     radii = (0.05, 0.1) if where == "ring" else (0.05, 0.05)
     told = more if {"radii", "teeth", "module"} & set(more) else more | {"radii": radii}
     told = told | ({"carrier": c} if "carrier" in more else {})
@@ -184,8 +185,7 @@ def test_values_that_do_not_fit_are_refused(values, says):
     m = Mechanism("swept")
     z, r, share = m.parameter("z", 40.0), m.parameter("r", 0.06, "m"), m.parameter("share", 0.9)
     first, second = wheel(m, "first", radius=0.03, mass=1.0), wheel(m, "second", radius=r, mass=1.0)
-    m.revolute("A", m.ground, first)
-    m.revolute("B", m.ground.at(0.09, 0), second)
+    pins_of(m, A=(m.ground, first), B=(m.ground.at(0.09, 0), second))
     gears(m, "mesh", first, second, teeth=(20, z), radii=(0.03, r), efficiency=share)
     scene = Scene(m, {"A": polynomial(0, 1)}, t=(0, 1, 2))
     assert evaluate(scene).certified
@@ -213,8 +213,7 @@ def test_a_gear_in_a_ring_that_loses_too_much_jams():
 def test_planets_that_do_not_fit_are_refused_by_name(more, says):
     m = more.get("of", Mechanism)("set")
     sun, carrier = (wheel(m, name, radius=0.05, mass=1.0) for name in ("sun", "carrier"))
-    m.revolute("A", m.ground, sun)
-    m.revolute("B", m.ground, carrier)
+    pins_of(m, A=(m.ground, sun), B=(m.ground, carrier))
     told = {"teeth": (24, 18, 60), "module": 0.002, "mass": 0.1} | more
     with pytest.raises(DeclarationError, match=says):
         planetary(m, "set", sun, carrier, m.ground, **{k: v for k, v in told.items() if k != "of"})

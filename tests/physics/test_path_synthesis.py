@@ -10,6 +10,7 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
+from mechanisms import links_of, pins_of
 
 from lagrange_casadi import Mechanism, Scene, curve, evaluate, optimise, prepare
 from lagrange_casadi.motion import polynomial
@@ -89,13 +90,16 @@ def errors(design):
 def linkage(design, side=1):
     m = Mechanism("path")
     p = {name: m.parameter(name, value) for name, value in design.items()}
-    crank = m.link("crank", length=p["crank"], mass=1.0)
-    rocker = m.link("rocker", length=p["rocker"], mass=1.0)
-    coupler = m.link("coupler", length=p["coupler"], mass=1.0)
-    m.revolute("O", m.ground.at(p["x"], p["y"]), crank)
-    m.revolute("A", crank.tip, coupler)
-    m.revolute("C", m.ground.at(p["x_rocker"], p["y_rocker"]), rocker)
-    m.revolute("B", coupler.tip, rocker.tip)
+    crank, rocker, coupler = links_of(
+        m, crank=(p["crank"], 1.0), rocker=(p["rocker"], 1.0), coupler=(p["coupler"], 1.0)
+    )
+    pins_of(
+        m,
+        O=(m.ground.at(p["x"], p["y"]), crank),
+        A=(crank.tip, coupler),
+        C=(m.ground.at(p["x_rocker"], p["y_rocker"]), rocker),
+        B=(coupler.tip, rocker.tip),
+    )
     shares = np.linspace(0.0, 1.0, 19)
     x, y, *_ = m.place(coupler.at(p["along"], p["aside"]))
     off = [

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from balance import instant_at
 from conftest import SIXTY_DIGITS
-from mechanisms import slider_crank
+from mechanisms import pins_of, slider_crank
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
 from lagrange_casadi.motion import polynomial
@@ -77,9 +77,7 @@ def test_marghitu_slider_crank():
     m.set_gravity(0.0, -10.0)
     a, b = (m.link(name, length=1.0, mass=1.0) for name in ("one", "two"))
     c = m.point_mass("three", 1.0)
-    m.revolute("A", m.ground, a)
-    m.revolute("B", a.tip, b)
-    m.revolute("C", b.tip, c)
+    pins_of(m, A=(m.ground, a), B=(a.tip, b), C=(b.tip, c))
     m.prismatic("guide", m.ground, c, axis=(1, 0))
     solution = evaluate(
         Scene(

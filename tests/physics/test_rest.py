@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import rubbing
 from balance import apart, columns_at, oracle_of, postures
+from mechanisms import links_of, pins_of
 from packer import scene as packer
 
 from lagrange_casadi import (
@@ -46,8 +47,7 @@ def pushed_beside():
     """
     m = Mechanism("drawer")
     mu, length = m.parameter("mu", 0.2), m.parameter("length", 0.1, "m")
-    block = m.link("block", length=0.3, mass=2.0)
-    pusher = m.link("pusher", length=0.1, mass=0.0)
+    block, pusher = links_of(m, block=(0.3, 2.0), pusher=(0.1, 0.0))
     m.set_gravity(0.0, 0.0)
     m.prismatic("O", m.ground.at(0.0, ARM), pusher, axis=(1, 0))
     guide = m.prismatic("guide", m.ground, block, axis=(1, 0))
@@ -94,8 +94,7 @@ def reciprocating(motion, **options):
     mu = m.parameter("mu", 0.15)
     crank, rod = m.link("crank", length=0.1, mass=0.8), m.link("rod", length=0.25, mass=1.1)
     piston = m.link("piston", length=0.05, mass=0.6, centre=(0.0, 0.0), inertia=1e-4)
-    m.revolute("O", m.ground, crank)
-    m.revolute("A", crank.tip, rod)
+    pins_of(m, O=(m.ground, crank), A=(crank.tip, rod))
     wrist = m.revolute("B", rod.tip, piston)
     bore = m.prismatic("bore", m.ground, piston, axis=(1, 0))
     m.force("gas", piston, x=-900.0)
@@ -161,8 +160,11 @@ def drawn_scene(seed, kind):
     """A slider-crank or a four-bar all of whose joints rub, at rest at a posture, under loads."""
     rng = np.random.default_rng(seed)
     m = Mechanism("held")
-    crank = m.link("crank", length=rng.uniform(0.06, 0.1), mass=rng.uniform(0.2, 2.0))
-    rod = m.link("rod", length=rng.uniform(0.25, 0.35), mass=rng.uniform(0.2, 2.0))
+    crank, rod = links_of(
+        m,
+        crank=(rng.uniform(0.06, 0.1), rng.uniform(0.2, 2.0)),
+        rod=(rng.uniform(0.25, 0.35), rng.uniform(0.2, 2.0)),
+    )
     pins = [m.revolute("O", m.ground, crank), m.revolute("A", crank.tip, rod)]
     last = m.link("last", length=0.25, mass=2.0)
     pins.append(m.revolute("B", rod.tip, last if kind == "slider" else last.tip))

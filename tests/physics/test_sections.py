@@ -7,6 +7,7 @@ from __future__ import annotations
 import casadi as ca
 import numpy as np
 import pytest
+from mechanisms import links_of, pins_of
 
 from lagrange_casadi import (
     Mechanism,
@@ -44,11 +45,13 @@ def fibre(side, tip, height=0.1, reach=0.3):
     """
     m = Mechanism("fibres")
     m.set_gravity(0, 0)
-    beam = m.link("beam", length=LENGTH * (1 - AT), mass=1.0)
-    bar = m.link("bar", length=reach, mass=1.0)
-    m.revolute("pin", m.ground.at(LENGTH * AT, -side * height / 2), beam.at(0, -side * height / 2))
-    m.revolute("back", m.ground.at(LENGTH * AT - reach, side * height / 2), bar)
-    m.revolute("front", bar.tip, beam.at(0, side * height / 2))
+    beam, bar = links_of(m, beam=(LENGTH * (1 - AT), 1.0), bar=(reach, 1.0))
+    pins_of(
+        m,
+        pin=(m.ground.at(LENGTH * AT, -side * height / 2), beam.at(0, -side * height / 2)),
+        back=(m.ground.at(LENGTH * AT - reach, side * height / 2), bar),
+        front=(bar.tip, beam.at(0, side * height / 2)),
+    )
     m.force("load", beam.tip, y=tip)
     solution = evaluate(Scene(m, {}, t=(0, 1, 2), posture={"bar": 0.0, "beam": 0.0}))
     return height * solution.section("bar").axial[0, 0]

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 from conftest import CASES
+from mechanisms import links_of, pins_of
 
 from lagrange_casadi import (
     Mechanism,
@@ -102,13 +103,14 @@ def test_a_four_bar_is_balanced_as_berkof_and_lowen_say(coupler):
     found = []
     for balanced in (False, True):
         m = Mechanism("balanced")
-        crank = m.link("crank", length=a, mass=1.0)
-        rod = m.link("rod", length=b, mass=coupler)
-        rocker = m.link("rocker", length=c, mass=2.0)
-        m.revolute("O", m.ground, crank)
-        m.revolute("A", crank.tip, rod)
-        m.revolute("B", rod.tip, rocker.tip)
-        m.revolute("C", m.ground.at(base, 0), rocker)
+        crank, rod, rocker = links_of(m, crank=(a, 1.0), rod=(b, coupler), rocker=(c, 2.0))
+        pins_of(
+            m,
+            O=(m.ground, crank),
+            A=(crank.tip, rod),
+            B=(rod.tip, rocker.tip),
+            C=(m.ground.at(base, 0), rocker),
+        )
         for link, length, mass in ((crank, a, 1.0), (rocker, c, 2.0)) if balanced else ():
             # Half of the coupler at the tip: m_w r_w = (m/2 + m_coupler/2) l, at half the length
             # beyond the pin.

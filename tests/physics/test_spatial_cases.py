@@ -9,6 +9,7 @@ import math
 import numpy as np
 import pytest
 from conftest import CASES
+from mechanisms import pins_of
 
 from lagrange_casadi import Scene, SpatialMechanism, evaluate, load_case
 from lagrange_casadi.motion import polynomial
@@ -103,9 +104,7 @@ def test_a_slider_beside_its_guide_hangs_on_its_pin():
     crank, rod = m.link("crank", length=0.1, mass=0.5), m.link("rod", length=0.4, mass=0.6)
     inertia = (0.01, 0.01, 0.01)
     slider = m.link("slider", length=0.05, mass=mass, centre=(0.0, 0.0, side), inertia=inertia)
-    m.revolute("O", m.ground, crank, axis=(0, 0, 1))
-    m.revolute("A", crank.tip, rod, axis=(0, 0, 1))
-    m.revolute("B", rod.tip, slider, axis=(0, 0, 1))
+    pins_of(m, axis=(0, 0, 1), O=(m.ground, crank), A=(crank.tip, rod), B=(rod.tip, slider))
     m.cylindrical("G", m.ground, slider, axis=(1, 0, 0))
     law, posture = {"O": polynomial(0.3, 2.0)}, {"A": -0.4, "B": 0.1}
     solution = evaluate(Scene(m, law, t=(0, 1, 9), posture=posture))
