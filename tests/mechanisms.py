@@ -58,32 +58,16 @@ def four_bar(
     masses=(0.3, 0.5, 0.4),
     frame=(0.3, 0.05),
     rocker=1.5,
-    turned=(False, False),
     pin=PIN,
     **keywords,
 ):
-    """A crank-rocker; ``turned`` swaps parent and child, and the ends of coupler and rocker."""
+    """A crank-rocker."""
     m = Mechanism("four_bar")
     a, b, c = (m.link(n, length=l, mass=w) for n, l, w in zip("abc", lengths, masses, strict=True))
-    ground = m.ground.at(*frame)
-    m.revolute("O", m.ground, a)
-    near, far = (b.tip, b.base) if turned[0] else (b.base, b.tip)
-    if turned[0]:
-        m.revolute("A", near, a.tip)
-    else:
-        m.revolute("A", a.tip, near)
-    if turned[1]:
-        pins_of(m, C=(c.tip, ground), B=(c.base, far))
-    else:
-        pin(m, "B", far, c.tip)
-        m.revolute("C", ground, c)
-    return Scene(
-        m,
-        {"O": MOTION},
-        posture={"c": rocker - math.pi if turned[1] else rocker},
-        t=(INSTANT, 1.0, 2),
-        **keywords,
-    )
+    pins_of(m, O=(m.ground, a), A=(a.tip, b))
+    pin(m, "B", b.tip, c.tip)
+    m.revolute("C", m.ground.at(*frame), c)
+    return Scene(m, {"O": MOTION}, posture={"c": rocker}, t=(INSTANT, 1.0, 2), **keywords)
 
 
 def crank_and_rod(rod, crank=None, loads=lambda m, parts: None, **link):
@@ -98,35 +82,6 @@ def crank_and_rod(rod, crank=None, loads=lambda m, parts: None, **link):
     return Scene(m, {"O": MOTION}, posture={"b": 0.0}, t=(INSTANT, 1, 2))
 
 
-def chain(*parts):
-    """Links end to end from the ground; each part is (kind, reverse)."""
-    m = Mechanism("chain")
-    near, motion = m.ground, {}
-    for i, (kind, reverse) in enumerate(parts):
-        link = m.link(f"l{i}", length=0.1 + 0.07 * i, mass=0.3 + 0.2 * i)
-        ends = (link, near) if reverse else (near, link)
-        if kind == "revolute":
-            m.revolute(f"J{i}", *ends)
-        else:
-            m.prismatic(f"J{i}", *ends, axis=(1.0, 0.3), angle=0.5)
-        motion[f"J{i}"] = polynomial(0.1 + 0.2 * i, -2.0 + i, 1.0 + 0.5 * i)
-        near = link.tip
-    m.revolute("P", near, m.point_mass("payload", 0.7))
-    return Scene(m, motion, t=(INSTANT, 1, 2))
-
-
-def block(guide_of="ground"):
-    """An offset slider-crank whose slider is a link, guided at an angle."""
-    m = Mechanism("block")
-    a, b, s = (
-        m.link(n, length=l, mass=w)
-        for n, l, w in (("a", 0.1, 0.3), ("b", 0.35, 0.5), ("s", 0.05, 0.6))
-    )
-    pins_of(m, O=(m.ground, a), A=(a.tip, b), B=(b.tip, s))
-    m.prismatic("P", m.ground.at(0, 0.03), s, axis=(1, 0.2), angle=0.4)
-    return Scene(m, {"O": MOTION}, posture={"b": 0.0}, t=(INSTANT, 1, 2))
-
-
 def driven_slider():
     """The slider drives the crank."""
     m = Mechanism("driven_slider")
@@ -135,60 +90,6 @@ def driven_slider():
     pins_of(m, O=(m.ground, a), A=(a.tip, b), B=(b.tip, s))
     m.prismatic("P", m.ground.at(0, 0.03), s, axis=(1, 0.2))
     return Scene(m, {"P": polynomial(0.3, 0.2, 0.1)}, posture={"a": 1.0}, t=(INSTANT, 1, 2))
-
-
-def inverted(block_carries):
-    """A block on the crank's pin slides along a rocker (RPR); either of
-    the two carries the axis.
-    """
-    m = Mechanism("inverted")
-    a, b, s = (
-        m.link(n, length=l, mass=w)
-        for n, l, w in (("a", 0.1, 0.3), ("rocker", 0.5, 0.5), ("s", 0.05, 0.2))
-    )
-    pins_of(m, O=(m.ground, a), Q=(m.ground.at(0, -0.3), b), A=(a.tip, s))
-    if block_carries:
-        m.prismatic("P", s, b, axis=(1, 0), angle=0.3)
-    else:
-        m.prismatic("P", b, s, axis=(1, 0))
-    return Scene(m, {"O": MOTION}, posture={"rocker": 1.6}, t=(INSTANT, 1, 2))
-
-
-def cross_slide():
-    """A pin on a crank moves two slides at right angles (PRP): no branch, two equations for two
-    slides.
-    """
-    m = Mechanism("cross_slide")
-    a, x, y = (
-        m.link(n, length=l, mass=w)
-        for n, l, w in (("a", 0.1, 0.3), ("x", 0.2, 0.5), ("y", 0.05, 0.2))
-    )
-    m.revolute("O", m.ground, a)
-    m.prismatic("X", m.ground, x, axis=(1, 0))
-    m.prismatic("Y", x, y, axis=(0, 1), angle=0.2)
-    m.revolute("A", a.tip, y)
-    return Scene(m, {"O": MOTION}, t=(INSTANT, 1, 2))
-
-
-def six_bar():
-    """A four-bar whose rocker's pin drives a slider: two loops, one after the other."""
-    m = Mechanism("six_bar")
-    a, b, c, d = (
-        m.link(n, length=l, mass=w)
-        for n, l, w in zip("abcd", (0.1, 0.35, 0.25, 0.4), (0.3, 0.5, 0.4, 0.2), strict=True)
-    )
-    s = m.point_mass("s", 0.6)
-    pins_of(
-        m,
-        O=(m.ground, a),
-        A=(a.tip, b),
-        C=(m.ground.at(0.3, 0.05), c),
-        B=(b.tip, c.tip),
-        D=(c.tip, d),
-        E=(d.tip, s),
-    )
-    m.prismatic("guide", m.ground.at(0.3, 0.1), s, axis=(1, 0))
-    return Scene(m, {"O": MOTION}, posture={"c": 1.5, "d": 0.0}, t=(INSTANT, 1, 2))
 
 
 def truss_platform(loads=lambda m: None):
@@ -436,29 +337,6 @@ def far(distance, load=0.0):
     if load:
         m.force("load", c.at(0.1), x=load)
     return Scene(m, {"O": polynomial(0, 10.0)}, t=(0, 0.6, 61), posture={"c": 1.5})
-
-
-PATTERNS = {
-    "slider_crank": lambda: slider_crank(t=(INSTANT, 1, 2)),
-    "four_bar": four_bar,
-    "four_bar_ends_swapped": lambda: four_bar(turned=(True, False)),
-    "four_bar_rocker_swapped": lambda: four_bar(turned=(False, True)),
-    "four_bar_all_swapped": lambda: four_bar(turned=(True, True)),
-    "block": block,
-    "driven_slider": driven_slider,
-    "inverted_rocker_carries": lambda: inverted(block_carries=False),
-    "inverted_block_carries": lambda: inverted(block_carries=True),
-    "cross_slide": cross_slide,
-    "six_bar": six_bar,
-    "chain_rrr": lambda: chain(("revolute", False), ("revolute", False), ("revolute", False)),
-    "chain_reversed": lambda: chain(("revolute", True), ("revolute", True), ("revolute", False)),
-    "chain_prismatic": lambda: chain(
-        ("revolute", False), ("prismatic", False), ("revolute", False)
-    ),
-    "chain_prismatic_reversed": lambda: chain(
-        ("revolute", False), ("prismatic", True), ("revolute", True)
-    ),
-}
 
 
 def press(law=polynomial, wanted=("all",), pin=PIN, **keywords):

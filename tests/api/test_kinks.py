@@ -9,12 +9,12 @@ import re
 import casadi as ca
 import numpy as np
 import pytest
+from drawn_curves import cam, constraint, slide
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mechanisms import links_of
 from outside import doubled
 
-from lagrange_casadi import Mechanism, Scene, elements, evaluate, export, prepare, sweep, table
+from lagrange_casadi import Mechanism, Scene, evaluate, export, prepare, sweep, table
 from lagrange_casadi.errors import AssemblyError, DeclarationError
 from lagrange_casadi.motion import expression, polynomial
 
@@ -151,48 +151,23 @@ def bend(x, k):
     return 0.02 * (ca.sin(x) + k * ca.fabs(ca.sin(x - 0.5)))
 
 
-def slide(law, default=0.0):
-    """A slide that follows a law of the time and of a parameter k."""
-    m = Mechanism("slide")
-    body, k = m.point_mass("body", 2.0), m.parameter("k", default)
-    m.prismatic("way", m.ground, body, axis=(1, 0))
-    return Scene(m, {"way": expression(lambda t: law(t, k))}, t=(0.0, 1.0, 101))
-
-
 def jump(t, k):
     """The angle of 7 t, which atan2 takes back by a turn, where k is not 0."""
     return ca.atan2(k * ca.sin(7 * t), 1 - k + k * ca.cos(7 * t))
 
 
-def constraint(default=0.0):
-    """A slide whose place is a function of a crank's angle."""
-    m = Mechanism("constraint")
-    crank = m.link("crank", length=0.1, mass=1.0)
-    body = m.point_mass("body", 2.0)
-    k = m.parameter("k", default)
-    turn = m.revolute("turn", m.ground, crank)
-    way = m.prismatic("way", m.ground.at(0.0, 0.2), body, axis=(0, 1))
-    m.constraint("profile", m.coordinate(way) - bend(m.coordinate(turn), k))
-    return Scene(m, {"turn": polynomial(0.1, 1.0)}, t=(0.0, 1.0, 101))
-
-
-def disc(default=0.0):
-    m = Mechanism("disc")
-    wheel, rod = links_of(m, wheel=(0.1, 1.0), rod=(0.1, 1.0))
-    k = m.parameter("k", default)
-    main = m.revolute("turn", m.ground, wheel)
-    lead = m.prismatic("lead", m.ground, rod, axis=(0, 1), angle="90 deg")
-    elements.disc_cam(
-        m, "profile", main, lead, lambda x: 0.1 * bend(x, k), base_radius=0.1, roller=0.01
-    )
-    return Scene(m, {"turn": polynomial(0.1, 1.0)}, t=(0.0, 1.0, 101))
+def lifted(**told):
+    """A cam's lift that is bent."""
+    return cam(lambda x, k: 0.1 * bend(x, k), **told)
 
 
 PLACES = {
     functools.partial(slide, bend): "the motion of joint 'way': its slope jumps",
     functools.partial(slide, jump): "the motion of joint 'way': its value jumps",
-    constraint: "constraint 'profile': its slope jumps",
-    disc: "cam 'profile': its lift: its slope jumps",
+    functools.partial(constraint, bend): "constraint 'profile': its slope jumps",
+    functools.partial(
+        cam, lambda x, k: 0.1 * bend(x, k)
+    ): "cam 'profile': its lift: its slope jumps",
 }
 
 
@@ -203,7 +178,7 @@ SCENES = pytest.mark.parametrize("scene", PLACES)
 def test_parameters_with_a_corner_are_refused_by_every_way(scene, tmp_path):
     """And others beside them have their results."""
     made, says = scene(), PLACES[scene]
-    assert evaluate(made).certified
+    assert evaluate(made, wanted=["all"]).certified
     f = prepare(made, wanted=["effort"])
     for refused in (
         lambda: evaluate(made, parameters={"k": 1.0}),
@@ -222,12 +197,12 @@ def test_parameters_with_a_corner_are_refused_by_every_way(scene, tmp_path):
 
 @SCENES
 def test_a_scene_whose_defaults_have_a_corner_serves_for_values_that_have_none(scene, tmp_path):
-    made = scene(1.0)
+    made = scene(default=1.0)
     f = prepare(made, wanted=["effort"])
     for refused in (lambda: evaluate(made), f):
         with pytest.raises(DeclarationError, match=PLACES[scene]):
             refused()
-    assert evaluate(made, parameters={"k": 0.0}).certified
+    assert evaluate(made, wanted=["all"], parameters={"k": 0.0}).certified
     one, other = (next(iter(g(k=0.0).values())) for g in (f, prepare(scene(), wanted=["effort"])))
     np.testing.assert_array_equal(one, other)
     export(made, tmp_path / "c", parameters={"k": 0.0}, wanted=["effort"])

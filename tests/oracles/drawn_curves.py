@@ -137,29 +137,29 @@ def told_by_limits(expression, k, place=0.0):
     return "isolated" if ((here < low - 1e-4) | (here > high + 1e-4)).any() else "smooth"
 
 
-def slide(law, t=(0.0, 1.0, 101)):
+def slide(law, t=(0.0, 1.0, 101), default=0.0):
     """A slide whose motion is a law of time and of a parameter k."""
     m = Mechanism("slide")
-    body, k = m.point_mass("body", 2.0), m.parameter("k", 0.0)
+    body, k = m.point_mass("body", 2.0), m.parameter("k", default)
     m.prismatic("way", m.ground, body, axis=(1, 0))
     return Scene(m, {"way": expression(lambda t: law(t, k))}, t=t, wanted=("effort",))
 
 
-def constraint(law, t=(0.0, 1.0, 101)):
+def constraint(law, t=(0.0, 1.0, 101), default=0.0):
     """A slide whose place is a law of a crank's angle and of a parameter k."""
     m = Mechanism("constraint")
     crank, body = m.link("crank", length=0.1, mass=1.0), m.point_mass("body", 2.0)
-    k, turn = m.parameter("k", 0.0), m.revolute("turn", m.ground, crank)
+    k, turn = m.parameter("k", default), m.revolute("turn", m.ground, crank)
     way = m.prismatic("way", m.ground.at(0.0, 0.2), body, axis=(0, 1))
     m.constraint("profile", m.coordinate(way) - law(m.coordinate(turn), k))
     return Scene(m, {"turn": polynomial(0.0, 1.0)}, t=t, wanted=("effort",))
 
 
-def cam(law, t=(0.0, 1.0, 101), turn=None):
+def cam(law, t=(0.0, 1.0, 101), turn=None, default=0.0):
     """A cam whose lift is a law of its angle and of a parameter k."""
     m = Mechanism("cam")
     wheel, rod = (m.link(name, length=0.1, mass=1.0) for name in ("wheel", "rod"))
-    k, main = m.parameter("k", 0.0), m.revolute("turn", m.ground, wheel)
+    k, main = m.parameter("k", default), m.revolute("turn", m.ground, wheel)
     lead = m.prismatic("lead", m.ground, rod, axis=(0, 1), angle="90 deg")
     disc_cam(m, "profile", main, lead, lambda x: law(x, k), base_radius=0.1, roller=0.01)
     return Scene(m, {"turn": turn or polynomial(0.0, 1.0)}, t=t, wanted=("effort",))

@@ -1,5 +1,5 @@
-"""Forces that equilibrium leaves open, by least strain energy: against a frame solver, closed
-forms and published ones; and what is told of them.
+"""Forces that equilibrium leaves open, by least strain energy: against closed forms and published
+numbers; and what is told of them.
 """
 
 from __future__ import annotations
