@@ -193,6 +193,7 @@ LINES = {
         100,
     ),
     "export CASE --out x": (0, 5000),
+    "cases --copy x": (3000,),
     "report CASE --out x.html": (5000,),
     "table before.h5 --csv x.csv": (0, 100),
     "table before.h5 --csv x.xlsx": (100,),

@@ -3,10 +3,8 @@ Each is written to, or refused in one line, and never replaced; all nodes are th
 """
 
 import os
-import resource
 import shlex
 import shutil
-import signal
 import stat
 import subprocess
 import sys
@@ -189,31 +187,6 @@ def test_a_link_stays_and_what_it_leads_to_is_written(folder, interpreted):
     assert sorted(os.listdir("real")) == sorted(names)
     assert "index.html" in os.listdir("real/figures")
     assert all((folder / name).is_symlink() for name in names)
-
-
-LONG = f"{RUN} --no-figures --want effort --t 0:1:5001 --backend vm"
-
-
-@pytest.mark.parametrize(
-    ("line", "what", "size"),
-    [
-        (LONG, "x.h5", 20_000),
-        (LONG, "x.h5", 60_000),
-        ("export arm.py --out c", "c", 5000),
-        ("cases --copy mine", "mine", 3000),
-    ],
-)
-def test_a_disk_that_is_full_is_one_line(folder, line, what, size):
-    """The system's limit of a file stands for the disk; what was there stays, all of it."""
-
-    def limit():
-        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-        resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
-
-    before = {path.name: path.read_bytes() for path in folder.iterdir()}
-    done = shell(f"{PROGRAM} {line}", preexec_fn=limit)
-    assert (done.returncode, done.stderr) == (1, f"error: cannot write {what}: File too large\n")
-    assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
 
 
 @pytest.mark.parametrize("before", [False, True])

@@ -13,7 +13,7 @@ from spatial_mechanisms import FAMILIES
 from spatial_oracle import SECTION
 from spatial_solutions import RATIOS, evaluated, residuals, scene_of
 
-from lagrange_casadi import Scene, SpatialMechanism, evaluate, load_case, motion, refine
+from lagrange_casadi import Scene, SpatialMechanism, evaluate, motion, refine
 from lagrange_casadi.peaks import forces
 
 pytestmark = pytest.mark.usefixtures("interpreted")
@@ -225,36 +225,6 @@ def test_angles_that_loops_set_go_on():
         0
     ] == pytest.approx(-3 * math.tau, abs=1e-9)
     assert solution.motion("B").value[-1] == pytest.approx(solution.motion("B").value[0], abs=1e-9)
-
-
-@pytest.mark.sampled(5)
-@pytest.mark.parametrize(
-    ("made", "values"),
-    [
-        (turning_crank, {}),
-        (lambda: load_case("rssr").scene, {}),
-        (lambda: load_case("cardan_shaft").scene, {"phase": math.pi / 2}),
-        (lambda: load_case("cardan_shaft").scene, {"phase": 0.0, "load": 0.0}),
-    ],
-    ids=["planar", "skew", "out of phase", "in phase"],
-)
-def test_a_table_of_the_cycle_gives_the_same(made, values):
-    """In phase, no force goes with the rate: all that do are rounding, and none is taken for what
-    does not repeat.
-    """
-    scene, sizes = made(), {}
-    exact = evaluate(scene, parameters=values)
-    found = evaluate(scene, parameters=values, table=1e-6)
-    assert found.certified
-    assert found.undetermined == exact.undetermined
-    assert set(residuals(found.certificate)) == ({"closure"} if found.indeterminate else WHOLE)
-    told = [name for name in exact.names() if exact.determined(name)]
-    for name in told:
-        unit = exact.unit(name)
-        sizes[unit] = max(sizes.get(unit, 0.0), np.abs(exact.array(name)).max())
-    for name in told:
-        gap = np.abs(found.array(name) - exact.array(name)).max()
-        assert gap <= 2e-6 * sizes[exact.unit(name)] + 1e-12, name
 
 
 def test_a_point_that_slides_off_its_link_is_noted():

@@ -27,9 +27,9 @@ def differences(instant, found, weighed=False):
         gaps.setdefault(kind, [0.0]).extend(float(abs(x)) for x in given - np.atleast_1d(own))
         sizes.setdefault(kind, [0.0]).extend(float(abs(x)) for x in given)
 
-    for (joint, k), name in instant.efforts.items():
+    for (joint, k), effort in instant.efforts.items():
         turns = k in instant.mechanism.joint(joint).turning
-        compare("moment" if turns else "force", data["efforts"][name], found.efforts[joint, k])
+        compare("moment" if turns else "force", effort, found.efforts[joint, k])
     for joint, given in data.get("reactions", {}).items():
         for kind, part in (("force", slice(3)), ("moment", slice(3, 6))):
             if kind in given:
@@ -39,7 +39,7 @@ def differences(instant, found, weighed=False):
     }
     for rod, given in data.get("sections", {}).items():
         for one in given:
-            own, R = found.sections[rod].at(numbers(one["xi"]).item()), found.poses[rod].R
+            own, R = found.sections[rod].at(numbers(one["xi"])), found.poses[rod].R
             compare("force", one["force"], R @ own[:3])
             compare("moment", one["moment"], R @ own[3:])
             local = numbers(one["local"])
