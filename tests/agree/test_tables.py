@@ -108,6 +108,12 @@ def test_a_table_gives_what_the_graph_gives(name, method):
                 assert gap <= 1.1e-9 * peak + rounded, each
 
 
+def test_rounding_is_not_taken_for_what_does_not_repeat():
+    """In phase, no force goes with the rate: all that do are rounding."""
+    asked = {"parameters": {"phase": 0.0, "load": 0.0}, "table": 1e-6}
+    assert evaluate(case("cardan_shaft"), **asked).certified
+
+
 @pytest.mark.parametrize("turns", [-100_000, 1000, 100_000])
 def test_after_many_turns_all_is_as_before(turns):
     """The angle as it is decides: nothing is lost of it but its own last digits."""

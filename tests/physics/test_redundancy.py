@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from mechanisms import parallelogram
 
-from lagrange_casadi import Mechanism, Scene, evaluate, load_case, prepare
+from lagrange_casadi import Mechanism, Scene, evaluate, prepare
 from lagrange_casadi.errors import AssemblyError, MobilityError
 from lagrange_casadi.motion import polynomial
 
@@ -76,19 +76,3 @@ def test_what_the_defaults_leave_open_is_told_of_designs_that_determine_it(backe
     np.testing.assert_allclose(found, [np.nan, upright], atol=1e-13)
     assert np.isnan(ready()["reaction:B0:fx"]).all()
     assert ready(angle=math.pi / 2)["reaction:B0:fx"] == pytest.approx([upright], abs=1e-13)
-
-
-@pytest.mark.xfail(reason="what is open is decided for all places along a link together")
-def test_what_a_hinge_leaves_no_moment_of_is_determined_at_it():
-    """Bricard's loop: a section at a hinge has no moment about the hinge's axis but the drive's
-    effort, at both ends of five links; between them both moments are open.
-    """
-    solution = evaluate(load_case("bricard").scene)
-    for name in solution.links_with_sections:
-        section, driven = solution.section(name), name == "link1"
-        effort = solution.effort("J0") if driven else np.zeros(solution.t.size)
-        size = 1e-12 * np.abs(solution.effort("J0")).max()
-        np.testing.assert_allclose(np.abs(section.bending_z[:, 0]), np.abs(effort), atol=size)
-        np.testing.assert_allclose(section.bending_y[:, -1], 0.0, atol=size)
-        assert np.isnan(section.bending_y[:, :-1]).all()
-        assert np.isnan(section.bending_z[:, 1:]).all()

@@ -24,25 +24,6 @@ def test_a_tolerance_that_is_none_is_refused(rounding):
         swinging(rounding)
 
 
-@pytest.mark.parametrize("off", [1e-13, 1e-8, -9e-7])
-def test_a_second_axis_is_made_exact(off):
-    """Its part across the first is taken, of a joint and of the child's axes; the first stays."""
-    m = SpatialMechanism("cross")
-    turned = ((0.0, 0.0, 1.0), (-1.0, 0.0, off))
-    joint = m.universal(
-        "C",
-        m.ground,
-        m.link("rod", length=0.3, mass=0.5),
-        axis=(1, 0, 0),
-        second=(off, 1, 0),
-        turned=turned,
-    )
-    for first, second in (joint.triad[:2], (joint.turned.x, joint.turned.y)):
-        assert abs(np.dot(first, second)) < 1e-12
-        assert np.linalg.norm(second) == pytest.approx(1.0, abs=1e-15)
-    assert joint.triad[0] == (1.0, 0.0, 0.0)
-
-
 def test_a_second_axis_that_is_off_by_more_is_refused():
     m = SpatialMechanism("cross")
     with pytest.raises(DeclarationError, match="right angles"):

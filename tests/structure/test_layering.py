@@ -129,39 +129,6 @@ def test_only_the_table_of_methods_names_what_is_above():
         assert function in defined | brought, answer
 
 
-def for_users() -> set[str]:
-    """Functions and classes that the façade imports, and commands."""
-    commands = re.findall(r'"(\w+\.\w+)"', modules()["cli.commands"].read_text())
-    return {
-        f"{node.module}.{alias.name}"
-        for node in nodes_of(PACKAGE / "__init__.pyi")
-        if isinstance(node, ast.ImportFrom) and node.level == 1
-        for alias in node.names
-    } | {f"cli.{place}" for place in commands}
-
-
-@pytest.mark.quick
-def test_no_function_takes_more_than_eight_arguments():
-    """Public functions and commands have as many keywords as users need. Inside, what belongs
-    together is one object.
-    """
-    users = for_users()
-    for name, path in modules().items():
-        classes = [node for node in nodes_of(path) if isinstance(node, ast.ClassDef)]
-        owners = {member: owner.name for owner in classes for member in owner.body}
-        for node in nodes_of(path):
-            if not isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)):
-                continue
-            taken = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
-            count = sum(one.arg not in ("self", "cls") for one in taken)
-            called = getattr(node, "name", "lambda")
-            marks = {ast.unparse(mark) for mark in getattr(node, "decorator_list", ())}
-            own = f"{name}.{owners.get(node, called)}" in users and not called.startswith("_")
-            assert count <= 8 or own or marks & {"public", "overload"}, (
-                f"{name}:{node.lineno} {called} takes {count}"
-            )
-
-
 @pytest.mark.quick
 def test_the_engine_knows_no_mechanism():
     """Nothing under the cases may know the words of one."""
