@@ -300,8 +300,7 @@ def counting(motion, load, **parameters):
     symbols = {name: m.parameter(name, value) for name, value in parameters.items()}
     crank, rod = m.link("crank", length=0.1, mass=0.3), m.link("rod", length=0.35, mass=0.5)
     slider = m.point_mass("slider", 0.6)
-    joint = m.revolute("O", m.ground, crank)
-    pins_of(m, A=(crank.tip, rod), B=(rod.tip, slider))
+    joint, *_ = pins_of(m, O=(m.ground, crank), A=(crank.tip, rod), B=(rod.tip, slider))
     m.prismatic("guide", m.ground, slider, axis=(1, 0))
     m.force("load", slider, x=load(m, m.coordinate(joint), **symbols))
     return Scene(m, {"O": motion}, posture={"rod": 0.0}, t=(0.0, 0.1, 11))

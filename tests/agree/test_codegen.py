@@ -7,7 +7,6 @@ import itertools
 import numpy as np
 import pytest
 from compiled import PEDANTIC, STRICT
-from conftest import CASES
 from design_rows import DENSITIES, loaded
 from internals import backends, library
 from mechanisms import (
@@ -18,9 +17,8 @@ from mechanisms import (
     spline_arm,
     truss_platform,
 )
-from parametric import declared
 
-from lagrange_casadi import Mechanism, Scene, derive, evaluate, motion, prepare
+from lagrange_casadi import Mechanism, Scene, derive, evaluate, load_case, motion, prepare
 from lagrange_casadi.errors import SizeError
 
 SCENES = {
@@ -35,7 +33,7 @@ BACKENDS = ("c", "lanes")
 WHOLE = SCENES | {
     "functions": every_function,
     "stations": lambda: crank_and_rod(DENSITIES["table"](), loads=loaded),
-    "sleigh": lambda: declared(CASES / "sleigh"),
+    "sleigh": lambda: load_case("sleigh").scene,
 }
 
 

@@ -39,8 +39,7 @@ def press(t=(0, 0.628, 9), wanted=("all",), unit="m"):
     m = Mechanism("press")
     crank, rod = links_of(m, crank=(0.1, 1.2), rod=(m.parameter("l", 0.5, unit, low=0.0), 2.0))
     ram = m.point_mass("ram", 15.0)
-    drive = m.revolute("O", m.ground, crank)
-    pins_of(m, A=(crank.tip, rod), B=(rod.tip, ram))
+    drive, *_ = pins_of(m, O=(m.ground, crank), A=(crank.tip, rod), B=(rod.tip, ram))
     m.prismatic("guide", m.ground, ram, axis=(0, 1))
     m.output("own", m.rate(drive), unit=unit)
     return evaluate(

@@ -21,8 +21,9 @@ def engine(wanted=("all",), more=lambda m, parts: None):
     r = m.parameter("r", 0.1, "m")
     crank, rod = links_of(m, crank=(r, 0.8), rod=(0.25, 1.1))
     piston = m.point_mass("piston", 0.6)
-    main, pin = pins_of(m, main=(m.ground, crank), pin=(crank.tip, rod))
-    m.revolute("wrist", rod.tip, piston)
+    main, pin, *_ = pins_of(
+        m, main=(m.ground, crank), pin=(crank.tip, rod), wrist=(rod.tip, piston)
+    )
     bore = m.prismatic("bore", m.ground, piston, axis=(1, 0))
     m.weld("lump", rod.at(0.1, 0.02), m.point_mass("lumped", 0.3))
     gas = m.force("gas", piston, x=-100.0 * m.coordinate(bore))

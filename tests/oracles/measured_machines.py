@@ -101,8 +101,7 @@ def rubbing():
         m.link("coupler", length=0.4, mass=p["mass"]),
         m.link("rocker", length=0.3, mass=1.0),
     )
-    o = m.revolute("O", m.ground, crank)
-    pins_of(m, A=(crank.tip, coupler), B=(coupler.tip, rocker.tip))
+    o, *_ = pins_of(m, O=(m.ground, crank), A=(crank.tip, coupler), B=(coupler.tip, rocker.tip))
     c = m.revolute("C", m.ground.at(0.35, 0), rocker)
     length = 0.2 - p["preload"] / p["k"]
     m.spring("s", m.ground.at(0, 0.6), rocker.tip, stiffness=p["k"], length=length, damping=p["c"])

@@ -28,9 +28,9 @@ def towed(drives):
     )
     m.prismatic("X", m.ground, cross, axis=(1, 0))
     across = m.prismatic("Y", cross, pivot, axis=(0, 1))
-    turn = m.revolute("turn", pivot, body)
-    pins_of(
+    turn, *_ = pins_of(
         m,
+        turn=(pivot, body),
         shoulder=(m.ground.at(0.3, -1.2), upper),
         elbow=(upper.tip, lower),
         nose=(body.tip, lower.tip),
