@@ -104,12 +104,6 @@ def test_processes_give_the_same_bytes(slider_crank, processes, whole, tmp_path)
     assert found.path.read_bytes() == whole
 
 
-def test_two_workers_of_a_scheduler_give_the_same_bytes(slider_crank, two_workers, whole, tmp_path):
-    with client(two_workers) as executor:
-        found = sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", executor=executor)
-    assert found.path.read_bytes() == whole
-
-
 def test_searches_for_a_design_give_the_same_bytes(slider_crank, processes, tmp_path):
     words = {
         "minimise": "peak:effort:O",

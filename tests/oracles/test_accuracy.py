@@ -1,6 +1,5 @@
 """Estimates of errors against the errors themselves, which fifty digits tell."""
 
-import functools
 import importlib
 import math
 from contextlib import nullcontext
@@ -11,7 +10,7 @@ import extremes
 import numpy as np
 import pytest
 from arithmetic import ROUNDING
-from conftest import CASES, PLANAR
+from conftest import CASES
 from estimates import COUNT, FACTOR, LEAST, METHODS, assert_near, looked_at, methods, random, ratios
 from internals import run
 from mechanisms import slider_crank
@@ -23,32 +22,6 @@ from truth import true_errors, truth
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, load_case
 from lagrange_casadi.errors import CertificateWarning
 from lagrange_casadi.motion import harmonic, polynomial
-
-ITERATED = ("beam_pump", "rrr3")
-"""Of the planar cases."""
-
-
-@functools.cache
-def case(name):
-    """A case on a grid of its own, and what it has there."""
-    scene = load_case(CASES / name).scene
-    scene = replace(scene, t=(*scene.span, COUNT), over=None)
-    return scene, truth(scene, evaluate(scene, wanted=["motion"]).t)
-
-
-@pytest.mark.sampled(97)
-@pytest.mark.parametrize(
-    ("name", "method"),
-    [
-        (name, method)
-        for name in PLANAR
-        for method in METHODS
-        if name in ITERATED or "newton" not in method
-    ],
-)
-def test_cases(name, method):
-    scene, exact = case(name)
-    assert_near(ratios(evaluate(scene, **METHODS[method]), exact))
 
 
 @pytest.mark.filterwarnings(

@@ -11,7 +11,7 @@ import casadi as ca
 import numpy as np
 import pytest
 import rubbing
-from balance import apart, columns_at, oracle_of, postures
+from balance import columns_at, oracle_of, postures
 from mechanisms import links_of, pins_of
 from packer import scene as packer
 
@@ -195,7 +195,6 @@ def by_drawing(scene, rng):
     """
     m = scene.mechanism
     found, drives = columns_at(derive(scene), 0.0, m.values())
-    drives, _ = apart(m, drives, m.values())
     plain = oracle_of(m, m.values())
     joints = {joint.name: joint for joint in plain.joints}
     loads = [load for load in m.loads.values() if type(load).__name__ == "Friction"]

@@ -5,6 +5,7 @@ away, and what is compiled is not declared again.
 import ast
 import re
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -116,17 +117,7 @@ def test_only_the_table_of_methods_names_what_is_above():
     assert asked.keys() == METHODS.keys()
     for answer in METHODS.values():
         module, _, function = answer.partition(":")
-        tree = tree_of(modules()[module])
-        defined = {
-            node.name for node in tree.body if isinstance(node, (ast.FunctionDef, ast.ClassDef))
-        }
-        brought = {
-            alias.asname or alias.name
-            for node in tree.body
-            if isinstance(node, ast.ImportFrom)
-            for alias in node.names
-        }
-        assert function in defined | brought, answer
+        assert hasattr(import_module(f"lagrange_casadi.{module}"), function), answer
 
 
 @pytest.mark.quick
