@@ -285,6 +285,9 @@ RESULTANT = Quantity("reaction", "resultant", FORCE, "resultant of the joint's r
 MOMENT_RESULTANT = Quantity("reaction", "moment", MOMENT, "resultant of the joint's moment")
 """The size of a reaction's moment in space, likewise."""
 
+_LOAD_SIZE = Quantity("load", "resultant", FORCE, "size of the applied force", "never negative")
+_LOAD_MOMENT = Quantity("load", "moment", MOMENT, "size of the applied torque", "never negative")
+
 
 @dataclass(frozen=True)
 class Terms:
@@ -394,7 +397,7 @@ _SPATIAL_SIZES = {"shear": ("shear_y", "shear_z"), "bending": ("bending_y", "ben
 PLANE = Table(
     CONVENTIONS,
     QUANTITIES,
-    ((RESULTANT, ("fx", "fy")),),
+    ((RESULTANT, ("fx", "fy")), (_LOAD_SIZE, ("fx", "fy"))),
     {
         "axial": Terms(_N, "n", "qn"),
         "shear": Terms(_F, "f", "qf"),
@@ -407,6 +410,8 @@ SPACE = Table(
     (
         (RESULTANT, ("fx", "fy", "fz")),
         (MOMENT_RESULTANT, ("mx", "my", "mz")),
+        (_LOAD_SIZE, ("fx", "fy", "fz")),
+        (_LOAD_MOMENT, ("mx", "my", "mz")),
         *(
             (row, _SPATIAL_SIZES[row.member])
             for row in SPATIAL_QUANTITIES

@@ -145,9 +145,6 @@ def run(
         save(solution, out, dump_specs(loaded.figures), grids=_grids(solution, grids, wanted or ()))
     names = [*forces(solution), *resultants(solution)] if refine_peaks else ()
     refined = refine(scene, solution, names) if names else ()
-    loads = [str(output) for output in solution.outputs if output.group == "load"]
-    if loads and any(peak.least is not None for peak in refined):
-        refined = (*refined, *refine(scene, solution, loads))
     rows = Rows.of(solution, refined, wanted or (), verbose)
     strength = scene if refine_peaks else None
     head = [_head(solution, refine_peaks if rows.rows else None), *rows.cards()]

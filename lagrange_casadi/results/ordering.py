@@ -53,9 +53,11 @@ _GROUPS = ("effort", "reaction", "friction", "section", *LARGEST, "output")
 
 
 def ordered(histories: Histories) -> Iterator[Output]:
-    """Efforts, reactions with their resultants, section forces, what is largest along links, and
-    own outputs.
+    """Efforts, reactions with their resultants, how large loads are, section forces, what is
+    largest along links, and own outputs.
     """
+    loads = histories.description.loads
+    moment = "moment" if histories.description.space else "mz"
     for output in histories.quantities():
         if output.group in _GROUPS:
             yield output
@@ -63,6 +65,10 @@ def ordered(histories: Histories) -> Iterator[Output]:
                 resultant = Output("reaction", output.part, member)
                 if output == histories.made_of(resultant)[-1]:
                     yield resultant
+        elif output.group == "load" and output.member == "fx":
+            kind = loads[output.part].kind
+            if kind != "friction":  # which has outputs of its own
+                yield Output("load", output.part, moment if kind == "torque" else "resultant")
 
 
 def error_of(solution: Solution, name: str | Output) -> float | None:

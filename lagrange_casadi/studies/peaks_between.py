@@ -35,6 +35,7 @@ from ..model.even_points import EvenPoints, are_even
 from ..model.scene import Scene
 from ..model.times import Over, Times, span_of
 from ..results.histories import Peak
+from ..results.ordering import ordered
 from ..results.section_laws import SectionLaw
 from ..results.signals import Quantity, SectionForce, Signals
 from ..results.solution import Solution
@@ -185,13 +186,12 @@ def shortfall(
 
 
 def resultants(solution: Solution) -> list[str]:
-    """The full names of the resultants of a solution's reactions that equilibrium determines."""
-    joints = dict.fromkeys(output.part for output in solution.outputs if output.group == "reaction")
-    found = (
-        Output("reaction", joint, member) for joint in joints for member in solution.table.reactions
-    )
-    there = (output for output in found if solution.made_of(output)[0] in solution.outputs)
-    return [str(output) for output in there if solution.determined(output)]
+    """The full names of the resultants of a solution's reactions that equilibrium determines, and
+    of how large its loads are.
+    """
+    sizes = solution.table.reactions
+    found = (one for one in ordered(solution) if one.group == "load" or one.member in sizes)
+    return [str(output) for output in found if solution.determined(output)]
 
 
 @public

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from commands import command
-from reports import HOSTILE, held, hostile, page, press, solved
+from reports import HOSTILE, held, hostile, page, press, snowed, solved
 from strong import slider
 
 from lagrange_casadi import evaluate, load_case, save
@@ -49,6 +49,16 @@ def test_a_map_is_the_solutions_grid_and_peak():
     for one, grid in zip(maps, grids, strict=True):
         values = array(one["values"]).reshape(grid.shape)
         np.testing.assert_allclose(values, grid, rtol=0, atol=1e-12 * np.abs(grid).max())
+
+
+@pytest.mark.parametrize("space", [False, True])
+def test_a_page_says_how_large_loads_are(space):
+    solution = snowed(space)
+    found, _ = held(page(solution))
+    for load in ("load:push:resultant", "load:snow:resultant"):
+        (row,) = (row for row in found["rows"] if row["name"] == load)
+        assert row["peak"]["value"] == solution.peak(load).value > 0.0
+        assert load in [series["name"] for series in found["series"]]
 
 
 def test_a_view_is_the_report_in_a_frame_that_reaches_nothing_else():

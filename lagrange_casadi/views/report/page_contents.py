@@ -155,7 +155,7 @@ def series_of(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) 
     resultants = (
         output
         for output in ordered(solution)
-        if len(output.components(solution.table)) > 1 and output.group == "reaction"
+        if len(output.components(solution.table)) > 1 and output.group in ("reaction", "load")
     )
     outputs = [output for output in solution.quantities() if output.group in (*_CHARTED, "section")]
     for output in sorted(
