@@ -10,6 +10,7 @@ from .model.elements.gears import Gears, gears
 from .model.elements.planetary import Planetary, planetary
 from .model.elements.plate import Plate, plate
 from .model.elements.profile_lift import ProfileLift, profile_lift, read_profile
+from .model.elements.strut import gas_spring, strut
 from .model.elements.supports import Bearings, Bushes, two_bearings, two_bushes
 from .model.elements.wheel import wheel
 
@@ -31,11 +32,13 @@ __all__ = [
     "cylinder",
     "cylindrical_cam",
     "disc_cam",
+    "gas_spring",
     "gears",
     "planetary",
     "plate",
     "profile_lift",
     "read_profile",
+    "strut",
     "two_bearings",
     "two_bushes",
     "wheel",

@@ -89,3 +89,4 @@ class Status(enum.IntEnum):
             " its value at a point differs from that on both sides"
         ),
     )
+    STROKE = 21, "a cylinder or a strut is longer than open, or shorter than closed"

@@ -159,6 +159,7 @@ def assemble(
         },
         axes=resting.turning,
         user_outputs=outputs,
+        strokes={one.what: resting.at_state(one.used) for one in mechanism.strokes.values()},
         turned=tuple(resting.turned.values()),
         kinetic=kinetic,
         velocities=velocities,

@@ -116,6 +116,7 @@ class Moving:
         }
         columns |= _locks(self.scene.mechanism, body, forces=self.want.forces)
         columns |= _rolls(body, self.want)
+        columns |= {Check("stroke", what): 2.0 * used - 1.0 for what, used in body.strokes.items()}
         columns |= {Check("closure", name): closure for name, closure in solved.closures.items()}
         columns |= {Check("gap", name): residual for name, residual in solved.residuals.items()}
         columns |= {

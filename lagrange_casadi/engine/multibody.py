@@ -204,7 +204,8 @@ class Multibody:
     of efforts along other coordinates than those whose motion is given, and ``along`` what a unit
     of effort does to a joint's child, in ground axes, both by coordinate; ``axes`` are the
     directions in ground axes about which turns relative to a body turn, by coordinate;
-    ``user_outputs`` are the user's outputs, in symbols of results too.
+    ``user_outputs`` are the user's outputs, in symbols of results too. ``strokes`` are the
+    shares of strokes that are out, by the parts in words.
     """
 
     mechanism: Mechanism
@@ -223,6 +224,7 @@ class Multibody:
     along: dict[str, Vector]
     axes: dict[str, Vector]
     user_outputs: dict[str, Any]
+    strokes: dict[str, Any]
     kinetic: Any
     velocities: Velocities
 

@@ -122,6 +122,17 @@ class Instance:
         far = f" {self.at}, by {share_beyond(self.value):.3g} of that range"
         return words_beyond(f"the {what}", argument, far)
 
+    @property
+    def stroke(self) -> str:
+        """Message on a cylinder or strut that is beyond its stroke."""
+        state, way = "shorter than closed", "further apart"
+        if self.value > 0.0:
+            state, way = "longer than open", "nearer to each other"
+        return (
+            f"{self.part} is {state} {self.at}, by {(self.size - 1.0) / 2.0:.3g} of its stroke:"
+            f" move its mounts {way}, or give it a longer stroke"
+        )
+
 
 @dataclass(frozen=True)
 class Rule:
@@ -268,6 +279,11 @@ VERDICTS: Mapping[str, Verdict] = {
                 " of {it.value:.3g} of the links' length",
             ),
         ),
+    ),
+    # Twice the share of a stroke that is out, less one.
+    "stroke": Verdict(
+        lambda at: 1.0 + BEYOND[at.precision],
+        (Rule(Status.STROKE, lambda x, limit, _: limit < ca.fabs(x), "{it.stroke}"),),
     ),
     # Residual of a non-holonomic row.
     "row": Verdict(

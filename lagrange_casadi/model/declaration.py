@@ -33,6 +33,7 @@ from .fitted import Fittings
 from .joints import Axis, Joint
 from .loads import Load
 from .measures import Measures
+from .strokes import Stroke
 
 
 @public
@@ -67,6 +68,7 @@ class Declaration(Graphs):
     rollers: dict[str, Roller] = field(default_factory=dict, init=False)
     pitch_circles: dict[str, PitchCircles] = field(default_factory=dict, init=False)
     tracks: dict[str, Track] = field(default_factory=dict, init=False)
+    strokes: dict[str, Stroke] = field(default_factory=dict, init=False)
     gravity: Vector = field(default=(0.0, -9.81, 0.0), init=False)
     frozen: bool = field(default=False, init=False)
     time: Any = field(default_factory=lambda: ca.SX.sym("t"), init=False)

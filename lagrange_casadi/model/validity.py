@@ -147,6 +147,15 @@ def _of(declared: Declaration, precision: Precision) -> ParameterConstraints:
             continue
         for point in load.points:
             found += _of_load_point(f"load '{load.name}'", point, precision, space=declared.space)
+    for stroke in declared.strokes.values():
+        words = f"{stroke.what}: open must be longer than closed, got {{open}} m and {{closed}} m"
+        ends = {"open": stroke.open, "closed": stroke.closed}
+        found.append(Demand.saying(stroke.open - stroke.closed, True, words, **ends))
+        found.append(
+            Demand.saying(
+                stroke.closed, True, f"{stroke.what}: closed must be positive, got {{got}} m"
+            )
+        )
     for constraint in declared.constraints.values():
         if constraint.transmission is not None:
             found += [

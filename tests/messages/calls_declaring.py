@@ -194,6 +194,7 @@ def declarations() -> Iterator[tuple[str, Call]]:
     corners = [(0.0, 0.0), (0.1, 0.0), (0.1, 0.1)]
     plate = elements.plate(w.m, "plate", corners, mass=1.0)
     bent = elements.bent_bar(w.m, "bent", corners, mass=1.0)
+    strutted = {"first": w.m.ground, "second": w.second, "closed": 0.3, "open": 0.5}
     cam = elements.disc_cam(w.m, "cams", w.turn, w.slide, lift, base_radius=0.05)
     groove = elements.cylindrical_cam(d.m, "groove", d.turn, d.slide, lift)
     points = [(0.05 * np.cos(a), 0.05 * np.sin(a)) for a in np.linspace(0.0, 6.0, 20)]
@@ -218,8 +219,11 @@ def declarations() -> Iterator[tuple[str, Call]]:
                 "rear": w.m.ground,
                 "front": w.first,
                 "closed": 0.3,
+                "open": 0.5,
                 "bore": 0.05,
             },
+            "strut": {**steel, **strutted},
+            "gas_spring": {**steel, **strutted, "force": (200.0, 300.0)},
             "cylindrical_cam": {
                 "mechanism": d.m,
                 "name": "new",

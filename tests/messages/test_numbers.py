@@ -104,8 +104,10 @@ def shapes(u):
     joint = m.revolute("O", m.ground, bar.pieces[0])
     m.weld("W", bar.pieces[-1].tip, plate.link, angle=u(0.3, "rad"))
     ram = elements.cylinder(m, "ram", m.ground.at(0.5, -0.5), bar.pieces[0], closed=u(0.4, "m"),
-                            bore=u(0.05, "m"), rod=u(0.03, "m"), barrel_mass=u(2.5, "kg"),
-                            rod_mass=u(1.5, "kg"))  # fmt: skip
+                            open=u(0.7, "m"), bore=u(0.05, "m"), rod=u(0.03, "m"),
+                            barrel_mass=u(2.5, "kg"), rod_mass=u(1.5, "kg"))  # fmt: skip
+    elements.gas_spring(m, "gas", m.ground, bar.pieces[0].tip, closed=u(0.2, "m"), open=u(0.3, "m"),
+                        force=(200.0, 300.0), end_damping=10.0, end=u(0.02, "m"))  # fmt: skip
     pin = bearings.Pin(u(0.01, "m"), u(0.02, "m"), u(0.01, "m"), STEEL, gap=u(0.001, "m"))
     plain = bearings.Plain(u(0.01, "m"), u(0.02, "m"), pressure=1e7, speed=u(1.5, "m/s"))
     bearings.fit(m, joint, pin, plain)

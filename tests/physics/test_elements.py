@@ -1,4 +1,6 @@
-"""Plates, bent bars and cylinders: closed forms, and that they are what they are made of."""
+"""Plates, bent bars, cylinders and struts: closed forms, and that they are what they are made
+of.
+"""
 
 from __future__ import annotations
 
@@ -8,8 +10,8 @@ import numpy as np
 import pytest
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate
-from lagrange_casadi.elements import bent_bar, cylinder, plate
-from lagrange_casadi.errors import DeclarationError
+from lagrange_casadi.elements import bent_bar, cylinder, gas_spring, plate, strut
+from lagrange_casadi.errors import AssemblyError, DeclarationError, ParameterError
 from lagrange_casadi.motion import move, moves, polynomial
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
@@ -158,3 +160,115 @@ def test_a_cylinder_bears_what_virtual_work_says():
     assert solution.output("ram_power") == pytest.approx(
         force * solution.motion("ram").rate, rel=1e-12
     )
+
+
+def hatch(space=False, **options):
+    """A lid on a gas spring from (0.1, -0.3) to a point 0.4 m along it."""
+    m = SpatialMechanism("hatch") if space else Mechanism("hatch")
+    lid = m.link("lid", length=1.0, mass=10.0)
+    m.revolute("hinge", m.ground, lid, **({"axis": (0, 0, 1)} if space else {}))
+    m.set_gravity(0.0, -9.81, *([0.0] if space else []))
+    long = m.parameter("long", 0.56, "m")
+    ends = {"first": m.ground.at(0.1, -0.3), "second": lid.at(0.4), "closed": 0.3, "open": long}
+    gas = {"force": (300.0, 420.0), "exponent": 1.2, "damping": 30.0, "end_damping": 400.0}
+    gas_spring(m, "gas", **ends, **gas, end=0.1)
+    strut(m, "bumper", **ends, stiffness=1e3, length=0.35, damping=20.0)
+    return Scene(m, {"hinge": polynomial(0.0, 1.0)}, **{"t": (0, 0.5, 21), **options})
+
+
+@pytest.mark.parametrize("space", [False, True])
+def test_a_gas_spring_pushes_as_its_gas_says(space):
+    """p V^n is constant, and the volume that is left falls in a straight line with the stroke."""
+    solution = evaluate(hatch(space))
+    assert solution.certified
+    angle = solution.t
+    away = np.stack([0.4 * np.cos(angle) - 0.1, 0.4 * np.sin(angle) + 0.3])
+    way = np.stack([-0.4 * np.sin(angle), 0.4 * np.cos(angle)])
+    reach = np.hypot(*away)
+    used, rate = (reach - 0.3) / 0.26, (away * way).sum(axis=0) / reach
+    assert solution.output("gas_stroke") == pytest.approx(used, rel=1e-13)
+    # The volume at open, in volumes that the rod takes over the stroke.
+    volume = 1.0 / (1.0 - (300.0 / 420.0) ** (1 / 1.2))
+    gas = 300.0 * (volume / (volume - (1.0 - used))) ** 1.2
+    slowed = 30.0 + 400.0 * np.clip((reach - 0.46) / 0.1, 0.0, 1.0)
+    assert slowed.min() == 30.0 < slowed.max()
+    push = gas - slowed * rate
+    assert solution.array("load:gas:resultant") == pytest.approx(np.abs(push), rel=1e-12)
+    # By virtual work of both and of the weight.
+    pull = 1e3 * (reach - 0.35) + 20.0 * rate
+    effort = (pull - push) * rate + 10.0 * 9.81 * 0.5 * np.cos(angle)
+    assert solution.effort("hinge") == pytest.approx(effort, abs=1e-10)
+
+
+def test_a_gas_spring_has_its_forces_at_its_ends():
+    m = Mechanism("m")
+    way = m.prismatic("way", m.ground.at(0.3, 0.0), m.point_mass("end", 1.0), axis=(1, 0))
+    gas_spring(m, "g", m.ground, way.child, closed=0.3, open=0.5, force=(300.0, 420.0))
+    m.set_gravity(0, 0)
+    solution = evaluate(Scene(m, {"way": polynomial(0.0, 0.2)}, t=(0, 1, 3)))
+    assert solution.effort("way") == pytest.approx([-420.0, -350.0, -300.0], rel=1e-13)
+
+
+def lifted(law, open_=0.75, **options):
+    """A lever that a cylinder moves about a pin 0.2 m beside its mount, which it passes."""
+    m = Mechanism("lifted")
+    m.revolute("pivot", m.ground, lever := m.link("lever", length=0.4, mass=3.0))
+    cylinder(m, "ram", m.ground.at(0.5, 0), lever.tip, closed=0.3, open=open_, bore=0.05)
+    return Scene(m, law, **options)
+
+
+STROKES = {
+    "cylinder 'ram' is longer than open at t = 2 s, where pivot = 2 rad .114.592 deg., by "
+    "0.0206 of its stroke: move its mounts nearer to each other, or give it a longer stroke": (
+        lambda: lifted({"pivot": polynomial(0, 1)}, t=(1, 2, 5))
+    ),
+    "cylinder 'ram' is shorter than closed at t = 0 s.*: move its mounts further apart": (
+        lambda: lifted({"pivot": polynomial(0.2, 1)}, t=(0, 1, 5))
+    ),
+    "gas spring 'gas' is longer than open at t = 0.6 s": lambda: hatch(t=(0, 0.6, 7)),
+    "gas spring 'gas': open must be longer than closed, got 0.2 m and 0.3 m": (
+        lambda: hatch(assembly={"long": 0.2})
+    ),
+}
+
+
+@pytest.mark.parametrize(("says", "make"), STROKES.items())
+def test_a_stroke_ends(says, make):
+    with pytest.raises((AssemblyError, ParameterError), match=says):
+        evaluate(make())
+
+
+@pytest.mark.parametrize(
+    ("scene", "where"),
+    [
+        (
+            lambda: lifted({"ram": polynomial(0.2, 0.5)}, 1.2, t=(0, 2, 8), posture={"lever": 0.5}),
+            "before",
+        ),
+        (lambda: lifted({"pivot": polynomial(2.8, 1)}, 1.2, t=(0, 1, 8), drives=["ram"]), "here"),
+    ],
+)
+def test_a_cylinder_turns_back_at_its_dead_centre(scene, where):
+    with pytest.raises(AssemblyError, match=f"; cylinder 'ram' turns back {where}: move its mount"):
+        evaluate(scene())
+
+
+@pytest.mark.parametrize(
+    ("says", "given"),
+    {
+        "gas spring 'g': open must be longer than closed, got 0.2 m and 0.3 m": {"open": 0.2},
+        "gas spring 'g': closed must be positive, got -1 m": {"closed": -1},
+        "gas spring 'g': expected 2 forces, open and closed, got 300.0": {"force": 300.0},
+        "gas spring 'g': its force must be positive, and not fall as it closes, got 4 N open and 3":
+            {"force": (4.0, 3.0)},
+        "gas spring 'g': end_damping needs end": {"end_damping": 10.0},
+        "gas spring 'g': end must be positive, got 0 m": {"end": 0.0},
+    }.items(),
+)  # fmt: skip
+def test_misuse_of_a_gas_spring_is_named(says, given):
+    m = Mechanism("m")
+    tip = m.link("a", length=1.0, mass=1.0).tip
+    with pytest.raises(DeclarationError, match=says):
+        gas_spring(
+            m, "g", m.ground, tip, **{"closed": 0.3, "open": 0.5, "force": (3.0, 4.0)} | given
+        )

@@ -28,7 +28,7 @@ from ..program import Program
 from .passed_dead_centres import Placed, dead_steps
 from .refusing import first_broken
 
-FRACTIONS = ("gap", "misfit", "beyond")
+FRACTIONS = ("gap", "misfit", "beyond", "stroke")
 """Checks that are small or large beside one."""
 
 TURNS = 4

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +19,7 @@ from ...base.status import Status
 from ...base.vocabulary import Precision
 from ...errors import AssemblyError, DeclarationError
 from ...model.beyond_ends import BEYOND
+from ...model.description import Description
 from ..codegen.stages import plain
 from ..kinematics import where
 from ..model_data import ModelData
@@ -29,6 +30,8 @@ from .evaluation_method import EvaluationMethod
 from .passed_dead_centres import Placed, dead_steps
 
 _SAMPLED = 4001
+_TURNING = (Status.OUT_OF_REACH, Status.DEAD_CENTRE, Status.PASSES_DEAD_CENTRE)
+"""Statuses where a cylinder may turn back."""
 
 
 @dataclass(frozen=True)
@@ -113,7 +116,31 @@ def words_of(program: Program, number: int, out: Array, most: Sequence[float], a
     else:
         part, column = str(program.bounds[k].part), program.bounds[k].column
         it = Instance(part, program.data.closing(part), at, float(out[column]), most[k])
-    return rule.words.format(it=it)
+    words = rule.words.format(it=it)
+    if rule.status in _TURNING:
+        where = "before" if rule.status == Status.OUT_OF_REACH else "here"
+        for name in _cylinders(program.data.content, it.part.split(", ")):
+            words += f"; cylinder '{name}' turns back {where}: move its mount"
+    return words
+
+
+def _cylinders(description: Description, parts: Collection[str]) -> Iterator[str]:
+    """The slides that drive, between two bodies with a pin each, which are among ``parts`` or
+    whose pins are.
+    """
+    joints = description.joints
+    for name in description.drives:
+        slide = joints.get(name)
+        if slide is not None and slide.kind == "prismatic":
+            ends = {place.body for place in slide.ends}
+            pins = [
+                joint
+                for joint in joints.values()
+                if joint is not slide and ends & {place.body for place in joint.ends}
+            ]
+            pinned = [joint.kind for joint in pins] == ["revolute", "revolute"]
+            if pinned and any(joint.name in parts for joint in (slide, *pins)):
+                yield name
 
 
 def first_broken(

@@ -33,6 +33,7 @@ _MEANINGS: dict[str, str | tuple[Status, ...]] = {
     "JAMS": (Status.JAMS,),
     "AT_REST": (Status.AT_REST,),
     "PASSES_DEAD_CENTRE": (Status.PASSES_DEAD_CENTRE,),
+    "STROKE": (Status.STROKE,),
 }
 """Meanings of all answers, or the statuses in whose words they are, in the order of C."""
 

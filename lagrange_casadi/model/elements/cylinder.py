@@ -15,6 +15,7 @@ from ...errors import DeclarationError
 from ..declared_parts import Body, Expression, Link, Outline, Point
 from ..joints import Joint
 from ..mechanism import Mechanism
+from .strut import stroke
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -40,6 +41,7 @@ def cylinder(
     front: Body | Point,
     *,
     closed: Expression,
+    open: Expression | None = None,  # noqa: A002
     bore: Expression,
     rod: Expression = 0.0,
     back_pressure: Expression = 0.0,
@@ -56,6 +58,9 @@ def cylinder(
         Points at which the barrel and the rod are pinned.
     closed
         Distance of the pins when the cylinder is retracted [m].
+    open
+        Distance of the pins when the cylinder is extended [m]. Instants at which the cylinder is
+        shorter than closed or longer than open have no result. By default there is no such limit.
     bore, rod
         Diameters of the piston and of the rod [m].
     back_pressure
@@ -69,7 +74,8 @@ def cylinder(
         The links NAME_barrel and NAME_rod, the pins NAME_rear and NAME_front, and the slide NAME,
         whose coordinate is the stroke. Outputs are NAME_cap_pressure and NAME_rod_pressure [Pa],
         the lower of which is the back pressure; NAME_flow [m^3/s], positive into the cap side; and
-        NAME_power [W]. If the slide is not a drive of the scene, the cylinder bears no force.
+        NAME_power [W]; and with ``open`` NAME_stroke, the share of the stroke that is out, from 0
+        to 1. If the slide is not a drive of the scene, the cylinder bears no force.
 
     Raises
     ------
@@ -109,6 +115,11 @@ def cylinder(
     )
     mechanism.output(f"{name}_flow", cap_area * rate, unit="m^3/s")
     mechanism.output(f"{name}_power", push * rate, unit="W")
+    # Of two ways to assemble it, that with the rod on the front's side of the barrel.
+    mechanism.rough[name] = ownership.at_defaults(barrel.length) / 2
+    if open is not None:
+        reach = barrel.length + mechanism.coordinate(slide)
+        stroke(mechanism, "cylinder", name, reach, closed, open)
     return Cylinder(barrel, piston, slide, cap_area, rod_area)
 
 

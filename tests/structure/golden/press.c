@@ -689,6 +689,8 @@ const char* press_message(press_status status) {
     return "a joint with friction is at rest, so its friction is indeterminate: take instants of motion, or give the friction smooth=";
   case PRESS_PASSES_DEAD_CENTRE:
     return "between two instants a loop passes through a dead centre, a joint through gimbal lock, a two-force link through its beside= direction, or the drives through a position in which they cannot produce the motion";
+  case PRESS_STROKE:
+    return "a cylinder or a strut is longer than open, or shorter than closed";
   }
   return "unknown status";
 }
