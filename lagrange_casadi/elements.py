@@ -7,6 +7,7 @@ from .model.elements.cam_profile import CamProfile
 from .model.elements.cylinder import Cylinder, cylinder
 from .model.elements.cylindrical_cam import CylindricalCam, cylindrical_cam
 from .model.elements.gears import Gears, gears
+from .model.elements.geneva import Geneva, geneva
 from .model.elements.planetary import Planetary, planetary
 from .model.elements.plate import Plate, plate
 from .model.elements.profile_lift import ProfileLift, profile_lift, read_profile
@@ -24,6 +25,7 @@ __all__ = [
     "Cylinder",
     "CylindricalCam",
     "Gears",
+    "Geneva",
     "Planetary",
     "Plate",
     "ProfileLift",
@@ -34,6 +36,7 @@ __all__ = [
     "disc_cam",
     "gas_spring",
     "gears",
+    "geneva",
     "planetary",
     "plate",
     "profile_lift",

@@ -7,7 +7,7 @@ They are made from the declared expressions alone. Nothing here comes from the d
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 import casadi as ca
@@ -59,12 +59,12 @@ class Touch:
     carrier: str
     centre: Triple
     reach: Triple
-    along: tuple[Triple, Triple]
-    apart: tuple[Triple, Triple]
-    braking: tuple[Triple, Triple]
     slack: float
     loss: tuple[float, float]
     rotations: tuple[tuple[int, str], ...]
+    along: tuple[Triple, Triple] = (ZERO, ZERO)
+    apart: tuple[Triple, Triple] = (ZERO, ZERO)
+    braking: tuple[Triple, Triple] = (ZERO, ZERO)
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +83,8 @@ class Equation(Graphs):
 
     ``values(places, rates, accelerations, t, p)`` gives the equation and, of a constraint, its
     first and second total time derivative; ``slopes(places, rates, t, p)`` what it changes by an
-    entry: by its place, or of a row by its rate.
+    entry: by its place, or of a row by its rate. ``wrenches(places, p)`` are those of the touches,
+    in a column.
     """
 
     name: str
@@ -91,6 +92,7 @@ class Equation(Graphs):
     p: tuple[float, ...]
     entries: tuple[Entry, ...]
     touches: tuple[Touch, ...]
+    wrenches: ca.Function
     values: ca.Function
     slopes: ca.Function
 
@@ -101,7 +103,7 @@ class Equation(Graphs):
         expression = ca.SX(declared.expression if isinstance(declared, Row) else declared.phi)
         transmission = None if isinstance(declared, Row) else declared.transmission
         found = _seen(mechanism, expression)
-        return cls._over(mechanism, declared.name, expression, found, row, _touches(transmission))
+        return cls._over(mechanism, declared.name, expression, found, row, transmission)
 
     @classmethod
     def driven(
@@ -111,7 +113,7 @@ class Equation(Graphs):
         ``moved`` is where its law says.
         """
         gap = moved.place - law.graph(mechanism.time)
-        return cls._over(mechanism, coordinate, gap, [moved], False, ())
+        return cls._over(mechanism, coordinate, gap, [moved], False, None)
 
     @classmethod
     def _over(
@@ -121,7 +123,7 @@ class Equation(Graphs):
         expression: ca.SX,
         found: Sequence[_Measured],
         row: bool,
-        touches: tuple[Touch, ...],
+        transmission: Transmission | None,
     ) -> Equation:
         places, rates = _columns(found)
         accelerations = ca.SX.sym("accelerations", len(found))
@@ -136,12 +138,21 @@ class Equation(Graphs):
             row=row,
             p=_parameters(mechanism),
             entries=tuple(one.entry for one in found),
-            touches=touches,
+            touches=_touches(transmission),
+            wrenches=ca.Function("wrenches", [places, p], [ca.densify(_wrenches(transmission))]),
             values=ca.Function(
                 "values", [places, rates, accelerations, t, p], [ca.densify(ca.vertcat(*changes))]
             ),
             slopes=ca.Function("slopes", [places, rates, t, p], [slopes]),
         )
+
+    def touching(self, places: Array) -> Iterator[Touch]:
+        """The touches with what acts there, over instants, from entries (entries, t)."""
+        if self.touches:
+            found = self.wrenches(places, list(self.p)).full()
+            each = found.reshape(len(self.touches), 3, 2, 3, -1)
+            for touch, (along, apart, braking) in zip(self.touches, each, strict=True):
+                yield replace(touch, along=along, apart=apart, braking=braking)
 
     def at(self, places: Array, rates: Array, accelerations: Array, t: Array) -> Array:
         """The equation over instants and, of a constraint, its derivatives: a row each, from
@@ -306,9 +317,6 @@ def _touches(transmission: Transmission | None) -> tuple[Touch, ...]:
             carrier=mesh.carrier.name,
             centre=mesh.centre,
             reach=mesh.reach,
-            along=_pair(mesh.along),
-            apart=_pair(mesh.apart),
-            braking=_pair(mesh.braking),
             slack=transmission.slack,
             loss=(0.0, 0.0) if loss is None else (loss.arm, loss.lean),
             rotations=tuple((sign, joint.name) for sign, joint in rotations),
@@ -317,5 +325,8 @@ def _touches(transmission: Transmission | None) -> tuple[Touch, ...]:
     )
 
 
-def _pair(wrench: Wrench | None) -> tuple[Any, Any]:
-    return (ZERO, ZERO) if wrench is None else (wrench.force, wrench.couple)
+def _wrenches(transmission: Transmission | None) -> ca.SX:
+    """The wrenches of a transmission's meshes, in a column."""
+    meshes = () if transmission is None else transmission.meshes
+    each = (one or Wrench() for mesh in meshes for one in (mesh.along, mesh.apart, mesh.braking))
+    return column(value for one in each for value in (*one.force, *one.couple))

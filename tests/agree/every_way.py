@@ -251,6 +251,6 @@ CASES = {name: lambda name=name: load_case(name).scene for name in [*PLANAR_CASE
 # Not where a piston is at rest but for rounding, which alone would tell the way that it rubs.
 CASES["v_twin"] = lambda: replace(load_case("v_twin").scene, t=(1e-4, 0.04, 361))
 SCENES = DECLARED | RANDOM | CASES
-TABLED = ["two_rods", "sampled_cam", "geneva_drive", "random-3", "random-5"]
+TABLED = ["two_rods", "sampled_cam", "random-3", "random-5"]
 TABLED += ["slider_crank", "four_bar", "six_bar", "andrews_squeezer", "rssr"]
 """Scenes that a cycle table may have."""

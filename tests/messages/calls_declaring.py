@@ -194,6 +194,11 @@ def declarations() -> Iterator[tuple[str, Call]]:
     corners = [(0.0, 0.0), (0.1, 0.0), (0.1, 0.1)]
     plate = elements.plate(w.m, "plate", corners, mass=1.0)
     bent = elements.bent_bar(w.m, "bent", corners, mass=1.0)
+    g = Mechanism("g")
+    main, axle = (
+        g.revolute(name, g.ground.at(x, 0), g.link(f"{name}_disc", length=0.1, mass=1.0))
+        for name, x in (("main", 0.0), ("axle", 0.2))
+    )
     strutted = {"first": w.m.ground, "second": w.second, "closed": 0.3, "open": 0.5}
     cam = elements.disc_cam(w.m, "cams", w.turn, w.slide, lift, base_radius=0.05)
     groove = elements.cylindrical_cam(d.m, "groove", d.turn, d.slide, lift)
@@ -223,6 +228,7 @@ def declarations() -> Iterator[tuple[str, Call]]:
                 "bore": 0.05,
             },
             "strut": {**steel, **strutted},
+            "geneva": {"mechanism": g, "name": "new", "crank": main, "wheel": axle, "slots": 6},
             "gas_spring": {**steel, **strutted, "force": (200.0, 300.0)},
             "cylindrical_cam": {
                 "mechanism": d.m,

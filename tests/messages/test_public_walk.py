@@ -273,7 +273,8 @@ def test_calls_that_do_not_fit_are_refused(things):
 
 
 RESULTS = """
-Bearings Belt Bent Bushes Cam CamProfile Cylinder CylindricalCam Gears Planetary Plate ProfileLift
+Bearings Belt Bent Bushes Cam CamProfile Cylinder CylindricalCam Gears Geneva Planetary Plate
+ProfileLift
 Choice InertiaRatio Animation Fibre Properties Course Density Slices Dwell Motion Move Column Life
 Plane Safety Stress StressPeak StressCycle Verdict Constraint Front FrontPoint Limit LocalOptimum
 Optimum Start LoadCase BearingLoads Term Axis Design Sweep Case Curve Peak Prepared Sensitivities

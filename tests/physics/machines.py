@@ -1,32 +1,13 @@
-"""The machines that the page on them declares, and a planetary gear by wheels that roll."""
+"""A planetary gear by wheels that roll."""
 
 from __future__ import annotations
 
-import contextlib
-import functools
-import io
-import re
 from dataclasses import replace
 
 import casadi as ca
-from conftest import CASES
 from mechanisms import pins_of
 
 from lagrange_casadi import Mechanism, Scene, motion
-
-PAGE = CASES.parent / "docs" / "machines.md"
-
-
-@functools.cache
-def shown(title):
-    """What the page declares under a heading, by name."""
-    _, _, part = PAGE.read_text().partition(f"## {title}\n")
-    (block,) = re.findall(r"```python\n(.*?)```", part.partition("\n## ")[0], re.DOTALL)
-    names = {}
-    with contextlib.redirect_stdout(io.StringIO()):
-        exec(compile(block, title, "exec"), names)
-    return names
-
 
 ROLLING = {
     "sun": 0.03,
@@ -77,7 +58,4 @@ def called_as_rates():
     return Scene(m, moved, t=(0.0, 1.0, 11))
 
 
-SCENES = {
-    title.replace(" ", "_").lower(): (lambda title=title: shown(title)["scene"])
-    for title in ("Scissor lift", "Geneva drive")
-} | {"rolling_gear": rolling, "rolling_gear_elsewhere": elsewhere}
+SCENES = {"rolling_gear": rolling, "rolling_gear_elsewhere": elsewhere}

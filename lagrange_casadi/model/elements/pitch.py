@@ -128,7 +128,7 @@ def _bevel(what: str, number: Evaluator, first: Course, second: Course, teeth: T
             f"the centre of its gear {k} is {{got}} m from where the axes meet; expected"
             " {meant} m by the radii"
         )
-        fits.append(_held(what, number, Fit(words, far, height, r1 + r2)))
+        fits.append(held(what, number, Fit(words, far, height, r1 + r2)))
     words = "the axes of its gears are {got} m apart; expected {meant} m"
     fits.append(Fit(words, dot(away, cross(u, v)) / sine, 0.0, r1 + r2))
     e = along(minus(w2, times(cosine, w1)), sine)
@@ -156,9 +156,9 @@ def _crossed(what: str, number: Evaluator, first: Course, second: Course, teeth:
             f"the centre of its gear {k} is {{got}} m along its axis from the common"
             " perpendicular of both axes; expected {meant} m"
         )
-        fits.append(_held(what, number, Fit(words, dot(away, axis), 0.0, r1 + r2)))
+        fits.append(held(what, number, Fit(words, dot(away, axis), 0.0, r1 + r2)))
     words = "its centres are {got} m apart; expected {meant} m as the sum of their radii"
-    fits.append(_held(what, number, Fit(words, distance, r1 + r2, r1 + r2)))
+    fits.append(held(what, number, Fit(words, distance, r1 + r2, r1 + r2)))
     e = along(away, distance)
     t = cross(u, e)
     cosine, sine = dot(u, v), dot(u, cross(v, e))
@@ -192,7 +192,7 @@ def _rack(what: str, number: Evaluator, first: Course, second: Course, teeth: Te
         "the pitch line of its rack is {got} m from the axis of its gear; expected its radius,"
         " {meant} m"
     )
-    fit = _held(what, number, Fit(words, distance, radius, radius))
+    fit = held(what, number, Fit(words, distance, radius, radius))
     _refuse_beside(what, number, beside, radius)
     fits = (
         fit,
@@ -206,7 +206,7 @@ def _rack(what: str, number: Evaluator, first: Course, second: Course, teeth: Te
     return Pitch("rack", arm, force, apart, arm, other, e, u, u, fits)
 
 
-def _held(what: str, number: Evaluator, fit: Fit) -> Fit:
+def held(what: str, number: Evaluator, fit: Fit) -> Fit:
     """A fit that holds. Raises :class:`.DeclarationError` for one that does not."""
     got, meant = number(fit.got), number(fit.meant)
     if abs(got - meant) > FITTING * number(fit.size):

@@ -193,14 +193,14 @@ def _held(placed: Placed, equation: Equation) -> Iterator[Action]:
     declared, reported = placed.declared, placed.reported
     output = Output("multiplier", equation.name)
     multiplier, name = reported.outputs[output], str(output)
-    for touch in equation.touches:
+    places, moving, _ = stacked(placed, equation)
+    for touch in equation.touching(places):
         for part in actions(
             touch, placed.bodies[touch.carrier], multiplier, sense(touch, declared, reported)
         ):
             yield Action(name, *part)
     if equation.touches:
         return
-    places, moving, _ = stacked(placed, equation)
     forces = multiplier * equation.slopes_at(places, moving, reported.t)
     axes = {
         axis.coordinate: (joint_name, axis)

@@ -146,7 +146,7 @@ def _of_equations(placed: Placed) -> Iterator[Scalar]:
     """Residuals of users' equations, over their slopes; and of the work of transmissions."""
     for equation in placed.stated.equations:
         yield _missed(placed, equation) * placed.declared.size
-        for touch in equation.touches:
+        for touch in equation.touching(stacked(placed, equation)[0]):
             yield idle(touch, placed.bodies, *placed.rates[:2]) * placed.declared.size
 
 

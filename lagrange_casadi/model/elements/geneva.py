@@ -1,0 +1,186 @@
+"""Geneva drives: a pin on a crank turns a wheel by one of its slots in each turn, and an arc of the
+crank locks the wheel in between.
+
+The pin, at r from the crank's axis, enters and leaves along a slot if r = c sin(pi/n), with c the
+distance of the axes and n the number of slots. With a the crank's angle from the middle of the
+engagement, m = c/r, and s = -1 for slots outside and 1 for slots inside,
+
+    the wheel's angle is s atan2(sin a, m + s cos a),   |a| <= pi/2 + s pi/n.
+
+The pin pushes at right angles to the slot. The arc of the crank, a circle about the crank's axis,
+pushes along its radius: on slots outside at the horn of the wheel where the angle h at the crank's
+axis from the line of the axes is largest, on slots inside at a right angle to that line. So of the
+torque T on the wheel the force is T/(c sin h), and none of it turns the crank.
+
+Source: J. H. Bickford, *Mechanisms for Intermittent Motion*, 1972, chapter 9.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import casadi as ca
+
+from ...base.arguments import public
+from ...base.brief import Brief
+from ...base.rotation import Rotation
+from ...base.units import count
+from ...base.vectors import AXES, ZERO, cross, dot, minus, norm, times
+from ...errors import DeclarationError
+from ..constraints import Constraint
+from ..declared_parts import Expression, Link, Point, Vector
+from ..joints import Joint
+from ..mechanism import Mechanism
+from ..meshes import Fit, Mesh, Transmission, Wrench
+from .pitch import held
+
+_LOCK = 0.8
+"""Radius of the locking arc, of the pin's."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Geneva(Brief):
+    """A Geneva drive: its ``constraint``, whose multiplier is the torque on the wheel [N m].
+
+    ``engaged`` is the angle of the crank over which the pin is in a slot, ``dwell`` the rest of a
+    turn, which is the angle of the crank's locking arc too [rad]. ``mouth`` is the distance of the
+    slots' mouths from the wheel's axis, ``depth`` how far the pin goes into a slot [m].
+    """
+
+    constraint: Constraint
+    engaged: float
+    dwell: float
+    mouth: Expression
+    depth: Expression
+
+
+@public
+def geneva(
+    mechanism: Mechanism,
+    name: str,
+    crank: Joint,
+    wheel: Joint,
+    *,
+    slots: int,
+    pin: Point | None = None,
+    internal: bool = False,
+    lock: Expression | None = None,
+) -> Geneva:
+    """Declare a Geneva drive in a plane, over whole turns of its crank.
+
+    Parameters
+    ----------
+    mechanism, name
+        The mechanism, and the name of the new part.
+    crank, wheel
+        The revolute joints of crank and wheel on one body. The wheel's coordinate is zero where the
+        pin is in the middle of a slot, at the coordinate of the crank from -180 to 180 deg.
+    slots
+        Number of slots, 3 to 12.
+    pin
+        The pin, a point of the crank; by default the tip of the crank. Its distance from the
+        crank's axis is that of both axes times the sine of 180 deg over the number of slots.
+    internal
+        True for slots that open inward, round the crank's axis.
+    lock
+        Radius of the locking arc [m]; by default 0.8 of the pin's.
+
+    Returns
+    -------
+    Geneva
+        The drive. Outputs are NAME_force, the force of the pin on a slot [N], positive where it
+        turns the wheel counter-clockwise, and NAME_lock, the force of the locking arc [N].
+
+    Raises
+    ------
+    DeclarationError
+        In space, for joints of other kinds, another number of slots, and sizes that do not fit.
+    """
+    what, ownership = f"geneva '{name}'", mechanism.ownership
+    ownership.free("constraint", name, mechanism.constraints)
+    slots = count(f"{what}: slots", slots, 3, 12)
+    for joint in (crank, wheel):
+        kind, carrier = ownership.joint(joint).kind, joint.parent.body
+        if mechanism.space or kind != "revolute" or carrier is not crank.parent.body:
+            raise DeclarationError(
+                f"{what}: expected two revolute joints of one parent, in a plane, got"
+                f" '{crank.name}' and '{wheel.name}'"
+            )
+    body = crank.child.body
+    assert isinstance(body, Link)
+    centre = ownership.point(what, body.tip if pin is None else pin)
+    if centre.body is not body:
+        raise DeclarationError(
+            f"{what}: its pin must be on '{body.name}', got '{centre.body.name}'"
+        )
+    arm, reach = (
+        minus(centre.place, crank.child.place),
+        minus(wheel.parent.place, crank.parent.place),
+    )
+    radius, apart = norm(arm), norm(reach)
+    locked = _LOCK * radius if lock is None else ownership.expression(f"{what}: lock", lock, "m")
+    # Of the horn's angle at the crank's axis.
+    cosine = (locked * locked + radius * radius) / (2.0 * locked * apart)
+    fits = [
+        Fit(
+            "its pin is {got} m from the crank's axis; expected {meant} m, the distance of the"
+            f" axes times the sine of {180.0 / slots:.6g} deg",
+            radius,
+            apart * math.sin(math.pi / slots),
+            apart,
+        ),
+        Fit(
+            "its locking arc of {got} m does not reach the wheel, or reaches the pin; expected"
+            " less than the pin's radius, as {meant} m",
+            locked,
+            ca.fmin(ca.fmax(locked, apart * (1.0 - math.cos(math.pi / slots))), radius),
+            apart,
+        ),
+    ]
+    fits = [held(what, ownership.at_defaults, fit) for fit in fits]
+    way = 1 if internal else -1
+    half = math.pi / 2.0 + way * math.pi / slots
+    turn, middle = mechanism.coordinate(crank), times(-way, reach)
+    angle = turn + ca.atan2(arm[1], arm[0]) - ca.atan2(middle[1], middle[0])
+    turns = ca.floor(angle / math.tau + 0.5)
+    within = angle - math.tau * turns
+    seen = ca.fmin(ca.fmax(within, -half), half)
+    slewed = ca.atan2(ca.sin(seen), apart / radius + way * ca.cos(seen))
+    engaged = ca.fabs(within) < half
+    place = Rotation.by(turn).apply(arm)
+    along = minus(place, reach)
+    far = dot(along, along)
+    # On the crank for a unit of torque on the wheel: at the pin, or along the arc's radius.
+    pushed = times(-1.0 / far, cross(AXES[2], along))
+    locking = times(1.0 / dot(reach, reach), cross(AXES[2], reach))
+    lean = 0.0 if internal else cosine / ca.sqrt(1.0 - cosine * cosine)
+    spread = times(-lean / dot(reach, reach), reach)
+    mesh = Mesh(
+        crank.child,
+        wheel.child,
+        crank.parent.body,
+        crank.parent.place,
+        reach,
+        Wrench(_either(engaged, pushed, locking), _either(engaged, cross(place, pushed), ZERO)),
+        Wrench(_either(engaged, ZERO, spread)),
+    )
+    phi = mechanism.coordinate(wheel) - way * (slewed + math.tau / slots * turns)
+    made = replace(
+        mechanism.constraint(name, phi),
+        transmission=Transmission(name, (mesh,), fits=tuple(fits)),
+    )
+    mechanism.constraints[name] = made
+    torque = mechanism.results.multiplier(made)
+    force = ca.if_else(engaged, torque / ca.sqrt(far), 0.0)
+    held_back = ca.if_else(engaged, 0.0, ca.fabs(torque) * ca.sqrt(1.0 + lean * lean) / apart)
+    mechanism.output(f"{name}_force", force, unit="N")
+    mechanism.output(f"{name}_lock", held_back, unit="N")
+    mouth = apart * math.cos(math.pi / slots)
+    depth = apart + radius - mouth if internal else mouth - apart + radius
+    return Geneva(made, 2.0 * half, math.tau - 2.0 * half, mouth, depth)
+
+
+def _either(condition: ca.SX, first: Vector, second: Vector) -> Vector:
+    x, y, z = (ca.if_else(condition, a, b) for a, b in zip(first, second, strict=True))
+    return x, y, z

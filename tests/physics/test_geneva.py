@@ -1,0 +1,144 @@
+"""Geneva drives over whole turns: closed forms of their motion, and statics of pin and locking arc.
+
+Source of the table: J. H. Bickford, *Mechanisms for Intermittent Motion*, 1972, chapter 9.
+"""
+
+import math
+
+import numpy as np
+import pytest
+
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate, refine
+from lagrange_casadi.elements import geneva
+from lagrange_casadi.errors import DeclarationError, ParameterError
+from lagrange_casadi.motion import polynomial
+
+pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
+
+AXLE = 0.1 * np.array([math.cos(0.3), math.sin(0.3)])
+INERTIA, LOAD = 1.5e-3, 2.0
+
+
+def drive(slots, internal=False, omega=5.0, t=(0, 4.0, 401), **options):
+    """A wheel 0.1 m from a crank, which begins 0.9 rad behind the middle of the engagement."""
+    m = Mechanism("geneva")
+    m.set_gravity(0, 0)
+    r = m.parameter("r", 0.1 * math.sin(math.pi / slots), "m")
+    crank = m.link("crank", length=r, mass=0.3, centre=(0, 0), inertia=1e-4)
+    wheel = m.link("wheel", length=0.1, mass=1.0, centre=(0, 0), inertia=INERTIA)
+    main = m.revolute("main", m.ground, crank)
+    axle = m.revolute("axle", m.ground.at(*AXLE), wheel)
+    made = geneva(m, "g", main, axle, slots=slots, internal=internal, **options)
+    m.torque("load", wheel, LOAD)
+    middle = 0.3 - (math.pi if internal else 0.0)
+    return made, Scene(m, {"main": polynomial(middle - 0.9, omega)}, t=t)
+
+
+@pytest.mark.parametrize("omega", [5.0, -5.0])
+@pytest.mark.parametrize("internal", [False, True])
+@pytest.mark.parametrize("slots", [3, 4, 7, 12])
+def test_a_wheel_turns_and_rests_as_the_closed_form_says(slots, internal, omega):
+    made, scene = drive(slots, internal, omega)
+    solution = evaluate(scene, backend="vm")
+    assert solution.certified
+    way, m = (1 if internal else -1), 1.0 / math.sin(math.pi / slots)
+    a = -0.9 + omega * solution.t
+    turns = np.round(a / math.tau)
+    x = a - math.tau * turns
+    inside = np.abs(x) < made.engaged / 2
+    assert made.engaged + made.dwell == pytest.approx(math.tau)
+    assert made.engaged == pytest.approx(math.pi + way * math.tau / slots)
+    s, c = np.sin(x), np.cos(x)
+    far = 1 + m * m + way * 2 * m * c
+    angle = np.where(inside, np.arctan2(s, m + way * c), np.sign(x) * math.pi / slots)
+    speed = np.where(inside, (m * c + way) / far, 0.0)
+    change = np.where(inside, -m * s * (m * m - 1) / far**2, 0.0)
+    wheel = solution.motion("axle")
+    assert wheel.value == pytest.approx(way * (angle + math.tau / slots * turns), abs=1e-13)
+    assert wheel.rate == pytest.approx(way * omega * speed, abs=1e-12)
+    assert wheel.acceleration == pytest.approx(way * omega**2 * change, abs=1e-10)
+    # The crank bears what moves the wheel, and no load in a dwell.
+    torque = INERTIA * wheel.acceleration - LOAD
+    assert solution.effort("main") * omega == pytest.approx(torque * wheel.rate, abs=1e-10)
+    statics(solution, solution.motion("main").value, inside, torque, slots, internal)
+
+
+def statics(solution, turned, inside, torque, slots, internal):
+    """Pin and arc from the places where they touch; the bearing of the crank bears them alone."""
+    radius = 0.1 * math.sin(math.pi / slots)
+    pin = radius * np.stack([np.cos(turned), np.sin(turned)])
+    seen = pin - AXLE[:, None]
+    far = np.hypot(*seen)
+    across = np.stack([-seen[1], seen[0]]) / far
+    assert solution.output("g_force") == pytest.approx(np.where(inside, torque / far, 0), abs=1e-11)
+    # The horns, where the arc's circle and that of the mouths meet, on either side.
+    arc, along = 0.8 * radius, AXLE / 0.1
+    cosine = (arc**2 + 0.01 - (0.1 * math.cos(math.pi / slots)) ** 2) / (0.2 * arc)
+    lever = math.pi / 2 if internal else math.acos(cosine)
+    found = []
+    for turn in (lever, -lever):
+        c, s = math.cos(turn), math.sin(turn)
+        push = np.array([c * along[0] - s * along[1], s * along[0] + c * along[1]])
+        horn = arc * push - AXLE
+        found.append((horn[0] * push[1] - horn[1] * push[0], push))
+    size, locked = np.zeros_like(torque), np.zeros_like(pin)
+    for moment, push in found:
+        bears = ~inside & (torque * moment > 0)
+        size[bears] = (torque / moment)[bears]
+        locked[:, bears] = size[bears] * push[:, None]
+    assert solution.output("g_lock") == pytest.approx(size, abs=1e-11)
+    bearing = np.where(inside, torque / far * across, locked)
+    main, axle = solution.reaction("main"), solution.reaction("axle")
+    assert np.stack([main.fx, main.fy]) == pytest.approx(bearing, abs=1e-10)
+    assert np.stack([axle.fx, axle.fy]) == pytest.approx(-bearing, abs=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("slots", "speed", "acceleration"),
+    [(3, 6.46, 31.4), (4, 2.41, 5.41), (5, 1.43, 2.30), (6, 1.0, 1.35), (8, 0.620, 0.700)],
+)
+def test_the_largest_speed_and_acceleration_are_those_of_the_table(slots, speed, acceleration):
+    _, scene = drive(slots, omega=1.0, t=(0, 2.0, 201))
+    wheel = evaluate(scene).motion("axle")
+    assert np.abs(wheel.rate).max() == pytest.approx(speed, rel=3e-3)
+    assert np.abs(wheel.acceleration).max() == pytest.approx(acceleration, rel=3e-3)
+
+
+def test_a_parameter_that_does_not_fit_is_refused():
+    _, scene = drive(4)
+    words = "'g': its pin is 0.08 m from the crank's axis; expected 0.0707107 m, the distance of"
+    with pytest.raises(ParameterError, match=words):
+        evaluate(scene, parameters={"r": 0.08})
+
+
+def joined(space=False, length=0.05):
+    m = SpatialMechanism("m") if space else Mechanism("m")
+    axis = {"axis": (0, 0, 1)} if space else {}
+    crank, wheel = (m.link(name, length=length, mass=1.0) for name in ("crank", "wheel"))
+    far = m.ground.at(0.05 / math.sin(math.pi / 4), 0.0)
+    joints = m.revolute("main", m.ground, crank, **axis), m.revolute("axle", far, wheel, **axis)
+    return m, *joints
+
+
+@pytest.mark.parametrize(
+    ("says", "made", "given"),
+    [
+        ("slots: expected a whole number from 3 to 12, got 2", {}, {"slots": 2}),
+        ("expected two revolute joints of one parent, in a plane", {"space": True}, {}),
+        ("its pin is 0.06 m from the crank's axis; expected 0.05 m", {"length": 0.06}, {}),
+        ("its locking arc of 0.055 m .* expected less .*, as 0.05 m", {}, {"lock": 0.055}),
+        ("its pin must be on 'crank', got 'wheel'", {}, {"pin": "wheel"}),
+    ],
+)  # fmt: skip
+def test_misuse_is_named(says, made, given):
+    m, main, axle = joined(**made)
+    given = {key: m.links[it].tip if key == "pin" else it for key, it in given.items()}
+    with pytest.raises(DeclarationError, match=f"geneva 'g': {says}"):
+        geneva(m, "g", main, axle, **{"slots": 4} | given)
+
+
+def test_a_peak_between_the_instants_is_found():
+    """The force of the pin at constant torque is largest where the pin is deepest in its slot."""
+    _, scene = drive(4, omega=1e-3, t=(0, 2000.0, 12))
+    (peak,) = refine(scene, evaluate(scene), ["output:g_force"])
+    assert abs(peak.value) == pytest.approx(LOAD / (0.1 - 0.1 * math.sin(math.pi / 4)), rel=1e-6)
