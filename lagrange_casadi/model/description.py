@@ -195,6 +195,7 @@ class Description(Brief):
     of a rounded drawing [rad and m]; its loops may miss within ``rounding``, and ``missed`` says by
     how much each of them does. ``bars`` are two-force links in space, whose spin about their own
     axis is taken to be none, and ``unmeasured`` coordinates without a value.
+    ``one_way`` are outputs of forces that cannot pull, and what happens where they are negative.
     """
 
     name: str
@@ -222,6 +223,7 @@ class Description(Brief):
     snapped: Mapping[str, Pair] = field(default_factory=dict)
     bars: tuple[str, ...] = ()
     unmeasured: tuple[str, ...] = ()
+    one_way: Mapping[str, str] = field(default_factory=dict)
 
     @classmethod
     def of(
@@ -282,6 +284,7 @@ class Description(Brief):
             ),
             rounding=mechanism.rounding,
             snapped=dict(mechanism.snapped),
+            one_way=dict(mechanism.one_way),
         )
 
     def __eq__(self, other: object) -> bool:

@@ -16,6 +16,12 @@ from .limits import MISSES, ROUNDED
 _EDGE = 1e-9
 """Relative tolerance, of a link's length, for points outside it by rounding."""
 
+_BRACKET = {
+    False: "joint's force acts on that end, as through a rigid bracket",
+    True: "line along which the joint slides is taken to go on",
+}
+"""Words for what is beyond the end of a link, by whether the link is rigid."""
+
 
 def notes(
     t: Array,
@@ -24,8 +30,8 @@ def notes(
     resting: npt.NDArray[np.bool_],
 ) -> Iterator[str]:
     """More drives than motions; slender links that slide across their axes, as nobody said; where a
-    joint that rubs is ``resting``; joints in gimbal lock, whose turns are not known; and each joint
-    whose point slides beyond the end of a link that has sections, and how far it goes.
+    joint that rubs is ``resting``; joints in gimbal lock, whose turns are not known; each joint
+    whose point slides beyond the end of a link, and how far it goes; and followers that lift off.
 
     As far as efforts, the motion of the joint, or the sections of the link, are among the outputs:
     those that are determined.
@@ -52,21 +58,31 @@ def notes(
             )
         body = description.bodies.get(joint.parent.body)
         directions = _along(joint)
-        if not directions or body is None or body.density is None:
+        if not directions or body is None or body.length is None:
             continue
         ratio = outputs.get(Output("station", joint.parent.body, "station", name))
         if ratio is None and directions.keys() <= outputs.keys():
             along = (direction * outputs[motion] for motion, direction in directions.items())
-            ratio = sum(along, np.full(t.shape, joint.parent.at[0])) / body.length_and_density[0]
+            ratio = sum(along, np.full(t.shape, joint.parent.at[0])) / body.length
         if ratio is None:
             continue
-        away = np.flatnonzero((ratio < -_EDGE) | (ratio > 1.0 + _EDGE))
+        # A rigid body may lie on both sides of its base, as a wheel does.
+        rigid = body.density is None
+        away = np.flatnonzero((ratio < -_EDGE - rigid) | (ratio > 1.0 + _EDGE))
         if away.size:
             low, high = (round(float(end), 9) + 0.0 for end in (ratio.min(), ratio.max()))
             yield (
                 f"joint '{name}' leaves link '{joint.parent.body}' at t = {t[away[0]]:.6g} s"
                 f" (xi/l from {low:.4g} to {high:.4g}); beyond the end of the link the"
-                " joint's force acts on that end, as through a rigid bracket"
+                f" {_BRACKET[rigid]}"
+            )
+    for name, what in description.one_way.items():
+        force = outputs.get(Output("output", name), np.zeros(0))
+        pulled = np.flatnonzero(force < -_EDGE * np.max(np.abs(force), initial=0.0))
+        if pulled.size:
+            yield (
+                f"{what} at t = {t[pulled[0]]:.6g} s: the force that keeps them together is"
+                f" negative there, {force.min():.6g} N at least; preload them, or move slower"
             )
 
 

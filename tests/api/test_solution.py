@@ -96,12 +96,12 @@ def test_what_is_shown_is_a_line(solution, slider_crank):
 # Points that slide beyond the end of a link: the forces are those of a bracket, and it is said.
 
 
-def slotted(x=0.05):
+def slotted(x=0.05, axis=(1, 0), **rigid):
     """A crank's pin in the slot of a rocker that is too short for it."""
     m = Mechanism("slotted")
-    a, b = m.link("a", length=0.1, mass=0.3), m.link("b", length=0.32, mass=0.5)
+    a, b = m.link("a", length=0.1, mass=0.3), m.link("b", length=0.32, mass=0.5, **rigid)
     pins_of(m, O=(m.ground, a), Q=(m.ground.at(x, -0.3), b))
-    m.slot("S", b, a.tip)
+    m.slot("S", b, a.tip, axis=axis)
     return Scene(m, {"O": polynomial(0.2, 6.0)}, posture={"b": 1.5}, t=(0.0, 1.1, 111))
 
 
@@ -129,6 +129,21 @@ def test_it_is_said_which_joint_leaves_when_and_how_far(scene, wanted, says, tmp
     assert load(tmp_path / "x.h5").notes == found.notes
     assert len(found.notes) == (says is not None)
     assert all(note.startswith(says + LEAVES) for note in found.notes)
+
+
+@pytest.mark.parametrize("axis", [(1, 0), (-1, 0)])
+def test_the_slot_of_a_rigid_body_ends_too(axis):
+    """A rigid body may lie on both sides of its base, as a wheel does."""
+    scene = replace(
+        slotted(axis=axis, centre=(0.0, 0.0), inertia=4e-3), posture={"b": axis[0] * 1.5}
+    )
+    (note,) = evaluate(scene, wanted=["motion"]).notes
+    ends = "0.6379 to 1.263" if axis[0] > 0 else "-1.263 to -0.6379"
+    assert note == (
+        f"joint 'S' leaves link 'b' at t = 0 s (xi/l from {ends}); beyond the end of the link the"
+        " line along which the joint slides is taken to go on"
+    )
+    assert evaluate(replace(scene, t=(0.6, 0.8, 9)), wanted=["motion"]).notes == ()
 
 
 def test_resultants_axes_and_turns(spatial, slider_crank):

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from derivatives import derivatives
 
-from lagrange_casadi import LagrangeCasadiError, Mechanism, Scene, evaluate
+from lagrange_casadi import LagrangeCasadiError, Mechanism, Scene, evaluate, load, save
 from lagrange_casadi.elements import disc_cam, profile_lift, read_profile
 from lagrange_casadi.errors import DeclarationError, PathError
 from lagrange_casadi.motion import dwell, move, moves, polynomial
@@ -373,3 +373,17 @@ def test_a_file_that_is_no_profile_is_told(here, text, error, says):
 def test_other_units_and_columns_are_read(here):
     (here / "p.csv").write_text("point;x [mm];y [um]\n1;40,5;-12\n2;-0,25;1e3\n")
     assert read_profile("p.csv").tolist() == [[0.0405, -1.2e-5], [-0.00025, 1e-3]]
+
+
+def test_it_is_said_where_a_follower_lifts_off(tmp_path):
+    _, scene = machine("roller")
+    kept, loose = (evaluate(scene, parameters={"preload": x}) for x in (400.0, -400.0))
+    assert kept.notes == ()
+    (note,) = loose.notes
+    force = loose.output("cam_force")
+    assert note.startswith(
+        f"cam 'cam': the follower lifts off at t = {loose.t[force < 0][0]:.6g} s"
+    )
+    assert f"{force.min():.6g} N at least" in note
+    save(loose, tmp_path / "loose.h5")
+    assert load(tmp_path / "loose.h5").notes == loose.notes

@@ -403,6 +403,7 @@ def _outputs(made: Cam, cam: Joint, width: Expression | None, stiffness: float) 
     here, radius = _at(made.design, mechanism.coordinate(cam)), curvature(made.design)
     radius = ca.substitute(radius, made.design.angle, mechanism.coordinate(cam))
     mechanism.output(f"{name}_force", force, unit="N")
+    mechanism.one_way[f"{name}_force"] = f"cam '{name}': the follower lifts off"
     mechanism.output(f"{name}_pressure_angle", pressure_angle(here), unit="rad")
     mechanism.output(f"{name}_radius", radius, unit="m")
     if width is not None:
