@@ -6,7 +6,7 @@ They are made from the declared expressions alone. Nothing here comes from the d
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
@@ -59,12 +59,12 @@ class Touch:
     carrier: str
     centre: Triple
     reach: Triple
+    along: tuple[Triple, Triple]
+    apart: tuple[Triple, Triple]
+    braking: tuple[Triple, Triple]
     slack: float
     loss: tuple[float, float]
     rotations: tuple[tuple[int, str], ...]
-    along: tuple[Triple, Triple] = (ZERO, ZERO)
-    apart: tuple[Triple, Triple] = (ZERO, ZERO)
-    braking: tuple[Triple, Triple] = (ZERO, ZERO)
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,8 +83,8 @@ class Equation(Graphs):
 
     ``values(places, rates, accelerations, t, p)`` gives the equation and, of a constraint, its
     first and second total time derivative; ``slopes(places, rates, t, p)`` what it changes by an
-    entry: by its place, or of a row by its rate. ``wrenches(places, p)`` are those of the touches,
-    in a column.
+    entry: by its place, or of a row by its rate. ``wrenches(places, p)`` are those of the touches
+    in a column, where they depend on places; else the touches have them.
     """
 
     name: str
@@ -92,7 +92,7 @@ class Equation(Graphs):
     p: tuple[float, ...]
     entries: tuple[Entry, ...]
     touches: tuple[Touch, ...]
-    wrenches: ca.Function
+    wrenches: ca.Function | None
     values: ca.Function
     slopes: ca.Function
 
@@ -133,26 +133,32 @@ class Equation(Graphs):
         for _ in range(0 if row else 2):
             changes.append(ca.jtimes(changes[-1], moving, speed))
         slopes = ca.densify(ca.jacobian(expression, rates if row else places).T)
+        wrenches = ca.densify(_wrenches(transmission))
+        varying = ca.depends_on(wrenches, places)
         return cls(
             name=name,
             row=row,
             p=_parameters(mechanism),
             entries=tuple(one.entry for one in found),
-            touches=_touches(transmission),
-            wrenches=ca.Function("wrenches", [places, p], [ca.densify(_wrenches(transmission))]),
+            touches=_touches(transmission, varying=varying),
+            wrenches=ca.Function("wrenches", [places, p], [wrenches]) if varying else None,
             values=ca.Function(
                 "values", [places, rates, accelerations, t, p], [ca.densify(ca.vertcat(*changes))]
             ),
             slopes=ca.Function("slopes", [places, rates, t, p], [slopes]),
         )
 
-    def touching(self, places: Array) -> Iterator[Touch]:
-        """The touches with what acts there, over instants, from entries (entries, t)."""
-        if self.touches:
-            found = self.wrenches(places, list(self.p)).full()
-            each = found.reshape(len(self.touches), 3, 2, 3, -1)
-            for touch, (along, apart, braking) in zip(self.touches, each, strict=True):
-                yield replace(touch, along=along, apart=apart, braking=braking)
+    def touching(self, moved: Callable[[], tuple[Array, ...]]) -> Iterator[Touch]:
+        """The touches with what acts there; if it varies, by the places that entries ``moved``
+        to, (entries, t), the first of a tuple.
+        """
+        if self.wrenches is None:
+            yield from self.touches
+            return
+        found = self.wrenches(moved()[0], list(self.p)).full()
+        each = found.reshape(len(self.touches), 3, 2, 3, -1)
+        for touch, (along, apart, braking) in zip(self.touches, each, strict=True):
+            yield replace(touch, along=along, apart=apart, braking=braking)
 
     def at(self, places: Array, rates: Array, accelerations: Array, t: Array) -> Array:
         """The equation over instants and, of a constraint, its derivatives: a row each, from
@@ -304,8 +310,8 @@ def _kind_and_numbers(
     return ("force" if isinstance(load, Force) else "torque"), load.components
 
 
-def _touches(transmission: Transmission | None) -> tuple[Touch, ...]:
-    """The meshes of a transmission in expressions."""
+def _touches(transmission: Transmission | None, *, varying: bool) -> tuple[Touch, ...]:
+    """The meshes of a transmission in expressions; of ``varying`` wrenches nothing is known yet."""
     if transmission is None:
         return ()
     loss = transmission.loss
@@ -320,6 +326,9 @@ def _touches(transmission: Transmission | None) -> tuple[Touch, ...]:
             slack=transmission.slack,
             loss=(0.0, 0.0) if loss is None else (loss.arm, loss.lean),
             rotations=tuple((sign, joint.name) for sign, joint in rotations),
+            along=_pair(None if varying else mesh.along),
+            apart=_pair(None if varying else mesh.apart),
+            braking=_pair(None if varying else mesh.braking),
         )
         for mesh in transmission.meshes
     )
@@ -328,5 +337,9 @@ def _touches(transmission: Transmission | None) -> tuple[Touch, ...]:
 def _wrenches(transmission: Transmission | None) -> ca.SX:
     """The wrenches of a transmission's meshes, in a column."""
     meshes = () if transmission is None else transmission.meshes
-    each = (one or Wrench() for mesh in meshes for one in (mesh.along, mesh.apart, mesh.braking))
-    return column(value for one in each for value in (*one.force, *one.couple))
+    each = (_pair(one) for mesh in meshes for one in (mesh.along, mesh.apart, mesh.braking))
+    return column(value for force, couple in each for value in (*force, *couple))
+
+
+def _pair(wrench: Wrench | None) -> tuple[Any, Any]:
+    return (ZERO, ZERO) if wrench is None else (wrench.force, wrench.couple)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -193,14 +193,14 @@ def _held(placed: Placed, equation: Equation) -> Iterator[Action]:
     declared, reported = placed.declared, placed.reported
     output = Output("multiplier", equation.name)
     multiplier, name = reported.outputs[output], str(output)
-    places, moving, _ = stacked(placed, equation)
-    for touch in equation.touching(places):
+    for touch in equation.touching(partial(stacked, placed, equation)):
         for part in actions(
             touch, placed.bodies[touch.carrier], multiplier, sense(touch, declared, reported)
         ):
             yield Action(name, *part)
     if equation.touches:
         return
+    places, moving, _ = stacked(placed, equation)
     forces = multiplier * equation.slopes_at(places, moving, reported.t)
     axes = {
         axis.coordinate: (joint_name, axis)

@@ -5,6 +5,7 @@ they are said to be.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -146,7 +147,7 @@ def _of_equations(placed: Placed) -> Iterator[Scalar]:
     """Residuals of users' equations, over their slopes; and of the work of transmissions."""
     for equation in placed.stated.equations:
         yield _missed(placed, equation) * placed.declared.size
-        for touch in equation.touching(stacked(placed, equation)[0]):
+        for touch in equation.touching(partial(stacked, placed, equation)):
             yield idle(touch, placed.bodies, *placed.rates[:2]) * placed.declared.size
 
 
