@@ -33,7 +33,7 @@ FLAGS = (
         "--disable-extensions",
     ),
     *(
-        "--host-resolver-rules=MAP * ~NOTFOUND",
+        "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
         "--proxy-server=127.0.0.1:9",
         "--force-color-profile=srgb",
     ),

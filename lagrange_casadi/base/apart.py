@@ -113,16 +113,29 @@ def _limit(most: float, busy: float) -> None:
     """Let this process take so many bytes of memory and seconds of processor time at most, write no
     file, and leave no image of it behind, where the system can see to that.
     """
+    _take_at_most("CORE", 0)
+    _take_at_most("FSIZE", 0)
+    _take_at_most("CPU", math.ceil(busy))
+    limit_memory(most)
+
+
+def limit_memory(most: float) -> None:
+    """Let this process take half of the memory that is free, and at most so many bytes more than
+    now, where the system can see to that.
+    """
     with suppress(ImportError, OSError, ValueError):
         import resource  # there is none on Windows
 
-        def limit(kind: int, amount: float) -> None:
-            hard = resource.getrlimit(kind)[1]
-            there = sys.maxsize if hard == resource.RLIM_INFINITY else hard
-            resource.setrlimit(kind, (int(min(amount, there)), hard))
-
-        limit(resource.RLIMIT_CORE, 0)
-        limit(resource.RLIMIT_FSIZE, 0)
-        limit(resource.RLIMIT_CPU, math.ceil(busy))
         taken = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
-        limit(resource.RLIMIT_AS, taken + min(most, memory() / 2))
+        _take_at_most("AS", taken + min(most, memory() / 2))
+
+
+def _take_at_most(what: str, amount: float) -> None:
+    """Limit what this process may take of a resource, where the system can."""
+    with suppress(ImportError, OSError, ValueError):
+        import resource
+
+        kind = getattr(resource, f"RLIMIT_{what}")
+        hard = resource.getrlimit(kind)[1]
+        there = sys.maxsize if hard == resource.RLIM_INFINITY else hard
+        resource.setrlimit(kind, (int(min(amount, there)), hard))

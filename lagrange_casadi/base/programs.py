@@ -33,26 +33,36 @@ def run(
     process = None
     try:
         with uninterrupted():  # else one may have been started that nobody knows of
-            process = subprocess.Popen(
-                command,
-                cwd=folder,
-                env={**os.environ, **(variables or {})},
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.PIPE,
-                encoding="utf-8",
-                errors="replace",
-                start_new_session=True,
-            )
+            process = start(command, folder, variables, stderr=subprocess.PIPE)
         out, err = process.communicate(given, timeout=seconds)
     except BaseException:
         if process:
-            _end(process)
+            end(process)
         raise
     return subprocess.CompletedProcess(command, process.returncode, out, err)
 
 
-def _end(process: subprocess.Popen[str]) -> None:
+def start(
+    command: Sequence[str],
+    folder: Path | None = None,
+    variables: Mapping[str, str] | None = None,
+    stderr: int | None = None,
+) -> subprocess.Popen[str]:
+    """Start a program as the first of a session of its own, with pipes of UTF-8 to and from it."""
+    return subprocess.Popen(
+        command,
+        cwd=folder,
+        env={**os.environ, **(variables or {})},
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=stderr,
+        encoding="utf-8",
+        errors="replace",
+        start_new_session=True,
+    )
+
+
+def end(process: subprocess.Popen[str]) -> None:
     """End a program and what it started: a compiler's driver has others do its work, which hold its
     pipes open.
     """

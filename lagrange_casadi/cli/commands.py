@@ -13,7 +13,7 @@ GROUPS = {
     ),
     "Measurements": ("identify.identify",),
     "Other programs": ("export.export", "loads.loads"),
-    "Look": ("draw.draw", "plot.plot", "page.report", "animate.animate"),
+    "Look": ("draw.draw", "watch.watch", "plot.plot", "page.report", "animate.animate"),
     "Cache": ("cache.cache",),
 }
 

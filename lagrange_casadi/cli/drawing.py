@@ -15,6 +15,7 @@ from ..errors import LagrangeCasadiError, PostureError
 from ..model.scene import Scene
 from ..results.solution import Solution
 from ..results.store.specs import Spec
+from ..studies.case import name_of
 from ..views.shapes.index import write_index
 from .echo import echo
 from .progress import bar_of
@@ -93,5 +94,4 @@ def _beside(ending: str, asked: Mapping[str, object]) -> Path:
     targets = asked.get("targets")
     first = targets[0] if isinstance(targets, tuple) and targets else None
     place = Path(str(first or asked.get("case") or asked.get("target") or "case.py")).resolve()
-    name = place.parent.name if place.name == "case.py" else place.stem
-    return Path(str(asked.get("out") or ".")).parent / f"{name}_{ending}"
+    return Path(str(asked.get("out") or ".")).parent / f"{name_of(place)}_{ending}"

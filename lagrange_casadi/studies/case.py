@@ -54,11 +54,16 @@ class Case:
     @property
     def name(self) -> str:
         """The name of its folder, or of its file without the ending."""
-        return self.path.parent.name if self.path.name == "case.py" else self.path.stem
+        return name_of(self.path)
 
     def __reduce__(self) -> tuple[Callable[[Path], Case], tuple[Path]]:
         """Sent to another process, a case is loaded there from its file."""
         return load_case, (self.path,)
+
+
+def name_of(file: Path) -> str:
+    """The name of the case of a file."""
+    return file.parent.name if file.name == "case.py" else file.stem
 
 
 def reference(case: Case, folder: Path) -> str:
@@ -91,7 +96,7 @@ def load_case(path: str | os.PathLike[str]) -> Case:
         If the file is missing, fails, or has no ``scene``. Errors of a declaration pass unchanged.
     """
     given = Path(path)
-    file = _file(given)
+    file = case_file(given)
     if file.suffix != ".py":
         raise CaseError(
             f"case {given}: expected a folder with a case.py, or a Python file ending in .py"
@@ -125,13 +130,33 @@ def load_case(path: str | os.PathLike[str]) -> Case:
     return Case(file, scene, tuple(figures))
 
 
+def declared(file: Path, error: BaseException, kind: type[_Result]) -> _Result | None:
+    """The last object of a kind that a case had before an error of :func:`load_case`: that of the
+    innermost function of its file that had one, else of the file, else what its function
+    ``mechanism()`` or ``scene()`` returns. None where there is none.
+    """
+    raised = [one for one in (error, error.__cause__) if one]
+    frames = [frame for one in raised for frame, _ in traceback.walk_tb(one.__traceback__)]
+    own = [frame.f_locals for frame in frames if frame.f_code.co_filename == str(file)]
+    module = vars(sys.modules.get(f"case {file}", sys))
+    for names in (*reversed(own), module):
+        for value in reversed(names.values()):
+            if isinstance(value, kind):
+                return value
+    for name in ("mechanism", "scene"):
+        with suppress(Exception), _beside(file.parent):
+            if isinstance(made := module[name](), kind):
+                return made
+    return None
+
+
 def scene_of(given: Scene | Case) -> Scene:
     """Return the scene that a user hands over, or that of a case."""
     return given.scene if isinstance(given, Case) else given
 
 
-def _file(given: Path) -> Path:
-    """The file of a case."""
+def case_file(given: Path) -> Path:
+    """The file of a case: see :func:`load_case`."""
     try:
         file = given / "case.py" if given.is_dir() else given
         there = file.is_file()
@@ -152,7 +177,10 @@ def _file(given: Path) -> Path:
 def _call(given: Path, file: Path, module: ModuleType, name: str) -> object:
     function = getattr(module, name, None)
     if not callable(function):
-        raise CaseError(f"case {given}: has no function {name}()")
+        raise CaseError(
+            f"case {given}: has no function {name}(); a case's returns a lagrange_casadi.Scene of a"
+            " Mechanism, the motion of its driven joints and the instants"
+        )
     return _guard(given, file, function)
 
 

@@ -65,10 +65,10 @@ def draw_scene(
     return _drawn(place_scene(scene, t=t, values=parameters), path)
 
 
-def draw_error(error: LagrangeCasadiError, path: Path) -> None:
-    """Draw the placement of an error, with its message, into a file."""
+def draw_error(error: LagrangeCasadiError, path: Path | None = None) -> Drawing:
+    """Draw the placement of an error, with its message, see :meth:`.Mechanism.draw`."""
     assert isinstance(error.placement, Placement)
-    _drawn(error.placement, path, str(error))
+    return _drawn(error.placement, path, str(error))
 
 
 def face(mechanism: Mechanism) -> str:

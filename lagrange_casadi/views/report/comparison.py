@@ -85,7 +85,6 @@ def _page(solutions: tuple[Solution, Solution], names: Sequence[str]) -> str:
         f"{cases}: two runs",
         content,
         [script(name) for name in COMPARISON_SCRIPTS],
-        wasm=False,
         others=[page_digest()],
     )
 

@@ -141,24 +141,37 @@ def assembled(
     content: Mapping[str, Json],
     scripts: Sequence[str],
     *,
-    wasm: bool,
+    wasm: bool = False,
+    connect: bool = False,
     others: Sequence[str] = (),
 ) -> str:
-    """A page with ``content`` as JSON, which runs ``scripts``; with ``wasm`` it may compile that.
+    """A page with ``content`` as JSON, which runs ``scripts``; with ``wasm`` it may compile that,
+    and with ``connect`` ask its server.
 
     ``others`` are digests of scripts that pages within it run.
     """
-    text = _whole(scripts)
     data = json.dumps(content, allow_nan=False, separators=(",", ":"), ensure_ascii=True)
-    run = [f"'sha256-{one}'" for one in (_digest(text), *others)]
     return Template(_asset("page.html")).substitute(
         title=html.escape(title),
-        # A browser compiles WebAssembly only where a page says so.
-        run=" ".join([*run, *(["'wasm-unsafe-eval'"] if wasm else [])]),
+        policy=policy(scripts, wasm=wasm, connect=connect, others=others),
         style=_asset("page.css"),
-        script=text,
+        script=_whole(scripts),
         # No text in JSON can end the element that holds it, or begin a comment.
         data=data.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026"),
+    )
+
+
+def policy(
+    scripts: Sequence[str], *, wasm: bool = False, connect: bool = False, others: Sequence[str] = ()
+) -> str:
+    """The policy of content of a page that runs ``scripts``: see :func:`assembled`."""
+    run = [f"'sha256-{one}'" for one in (_digest(_whole(scripts)), *others)]
+    # A browser compiles WebAssembly only where a page says so.
+    run += ["'wasm-unsafe-eval'"] if wasm else []
+    asked = "; connect-src 'self'" if connect else ""
+    return (
+        f"default-src 'none'; script-src {' '.join(run)}; style-src 'unsafe-inline'; img-src data:"
+        f"{asked}"
     )
 
 

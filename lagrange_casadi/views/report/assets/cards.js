@@ -78,7 +78,8 @@ class MovingCard extends Card {
   }
 }
 
-function addCard(card, focus) {
+function addCard(kind, card, focus) {
+  card.kind = kind;
   deck.cards.push(card);
   deck.list.append(card.body);
   card.renew();
@@ -106,7 +107,7 @@ function chartCard(names, along = alongInstants, focus = false) {
     state.names.splice(k, 1);
     card.renew();
   };
-  return addCard(card, focus);
+  return addCard("chart", card, focus);
 }
 
 const linkEntries = (links) => links.map(({ link }) => [link, link]);
@@ -135,7 +136,7 @@ function sectionCard(section, ratio, focus = false) {
     deck.stage.draw();
   };
   card.choices.append(link, slider, described);
-  return addCard(card, focus);
+  return addCard("section", card, focus);
 }
 
 /** Show the section of a link at a ratio. */
@@ -176,22 +177,22 @@ function mapCard(link, name, focus = false) {
     offer(what, offered(), state.name);
   });
   card.choices.append(links, what);
-  return addCard(card, focus);
+  return addCard("map", card, focus);
 }
 
 /** N, V and M along a link, at the instant that governs it or at that which is shown. */
-function diagramCard(link, focus = false) {
-  const state = { link, when: "governs" };
+function diagramCard(link, focus = false, when = "governs") {
+  const state = { link, when };
   const card = new MovingCard("Diagrams", state, () => new Diagram(sectionByLink.get(state.link), state.when));
   card.choices.append(
     card.choose("link", "Link", linkEntries(diagramLinks())),
     card.choose("when", "Instant", [["governs", "at the instant that governs"], ["shown", "at the instant shown"]]),
   );
-  return addCard(card, focus);
+  return addCard("diagram", card, focus);
 }
 
-function polarCard(joint, focus = false) {
-  const state = { joint: joint.name, way: "0" };
+function polarCard(joint, focus = false, way = "0") {
+  const state = { joint: joint.name, way };
   const joints = polarJoints();
   const chosen = () => joints.find((one) => one.name === state.joint);
   const card = new MovingCard("Bearing load", state, () => new Polar(chosen(), polarWays(chosen())[state.way]));
@@ -202,7 +203,7 @@ function polarCard(joint, focus = false) {
     offer(ways, offered(), "0");
   });
   card.choices.append(list, ways);
-  return addCard(card, focus);
+  return addCard("polar", card, focus);
 }
 
 /** The first cards: efforts, what the joints bear, the section that bends most, and the bearing that bears most. */

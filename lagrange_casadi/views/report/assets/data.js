@@ -20,6 +20,9 @@ function array(number) {
   return decoded.get(number);
 }
 
+/** Ends what listens to the whole window, where a viewer of other contents takes the place of this one. */
+const ended = new AbortController();
+
 let largest = new WeakMap();
 
 /** The largest size among values, those that are no numbers left out. */

@@ -76,7 +76,7 @@ function headOf() {
   const described = element("p", { class: "subtitle" }, span());
   reading.watchers.add(() => say(described, span()));
   const themes = ["auto", "light", "dark"];
-  const theme = switchButton("◐ auto", "Light or dark", () => {
+  const theme = switchButton(`◐ ${document.documentElement.dataset.theme ?? "auto"}`, "Light or dark", () => {
     const next = themes[(themes.indexOf(document.documentElement.dataset.theme ?? "auto") + 1) % 3];
     if (next === "auto") delete document.documentElement.dataset.theme;
     else document.documentElement.dataset.theme = next;
@@ -210,7 +210,7 @@ function watch(stage, canvas) {
     stage.draw();
     for (const card of deck.cards) card.follow();
   });
-  const watcher = new ResizeObserver(() => stage.layOut());
+  const watcher = new ResizeObserver(() => canvas.isConnected && stage.layOut());
   // The sheet's own size too: it goes with the window's height, and with the controls below it.
   for (const element of [deck.list.parentElement.parentElement, stage.paper.canvas]) watcher.observe(element);
   drawWith(deck.list, repaint);
@@ -236,14 +236,14 @@ function listenToPrinter(stage) {
       card.seen = true;
       card.draw();
     }
-  });
+  }, { signal: ended.signal });
   window.addEventListener("afterprint", () => {
     if (!before) return;
     if (before.theme) document.documentElement.dataset.theme = before.theme;
     else delete document.documentElement.dataset.theme;
     repaint();
     if (before.playing) player.play();
-  });
+  }, { signal: ended.signal });
 }
 
 buildPage();

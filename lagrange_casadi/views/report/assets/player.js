@@ -130,7 +130,7 @@ function listenToKeys(stage) {
     if (!keys[event.key]) return;
     keys[event.key]();
     event.preventDefault();
-  });
+  }, { signal: ended.signal });
 }
 
 /** Standard views: their key, words and angles [deg]. */

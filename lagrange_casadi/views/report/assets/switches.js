@@ -27,9 +27,9 @@ function headWith(title, described, aside, ...switches) {
 function drawWith(body, draw) {
   let width = 0;
   new ResizeObserver(() => {
-    if (body.clientWidth === width) return;
+    if (body.clientWidth === width || !body.isConnected) return;
     width = body.clientWidth;
     draw();
   }).observe(body);
-  window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
+  window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw, { signal: ended.signal });
 }

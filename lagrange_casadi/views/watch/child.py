@@ -1,0 +1,119 @@
+"""The process that runs a case once, and says line by line what it finds: whatever the case does,
+an endless loop, a crash, too much memory, ends this process and no other.
+
+It imports the program before there is anything to run.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import threading
+import warnings
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from functools import partial
+from importlib.util import source_from_cache
+from pathlib import Path
+from typing import Any, TypeAlias
+
+from ...base.apart import limit_memory
+from ...errors import LagrangeCasadiError, one_line
+from ...model.mechanism import Mechanism
+from ...studies import solving  # noqa: F401 - which takes long to import
+from ...studies.case import case_file, declared, load_case
+from ...studies.evaluate import evaluate
+from ..drawing import draw_error
+from ..report.page import with_motion
+from ..report.page_contents import contents
+
+_MEMORY = 8e9
+"""Bytes that a case may take at most."""
+
+Say: TypeAlias = Callable[[str, object], None]
+
+
+def main() -> None:
+    """Read a case and how it is run from standard input, and write what is found to standard
+    output; what the case itself prints goes to standard error.
+
+    It ends with standard input, which is open as long as the program that wants to know.
+    """
+    with os.fdopen(os.dup(1), "w", encoding="utf-8") as out:
+        os.dup2(2, 1)
+        order = sys.stdin.readline()
+        if not order:
+            return
+        limit_memory(_MEMORY)
+        threading.Thread(target=_end_with_input, daemon=True).start()
+
+        def say(kind: str, value: object) -> None:
+            out.write(json.dumps([kind, value], allow_nan=False) + "\n")
+            out.flush()
+
+        say("error", _shown(json.loads(order), say))
+
+
+def _end_with_input() -> None:
+    os.read(0, 1)  # which holds no lock that Python waits for at its end
+    os._exit(1)
+
+
+def _shown(given: Mapping[str, Any], say: Say) -> str:
+    """Run a case; returns what is wrong with it, in words, else nothing."""
+    # A file that is saved twice within a second may have the same time and size for Python.
+    sys.dont_write_bytecode = True
+    warnings.simplefilter("always", UserWarning)
+    warnings.simplefilter("ignore", FutureWarning)
+    warnings.showwarning = lambda message, *_args, **_more: say("note", str(message))
+    try:
+        _show(Path(given["case"]), given, say)
+    except LagrangeCasadiError as error:
+        if error.placement is not None:
+            with suppress(LagrangeCasadiError):
+                say("drawing", draw_error(error).svg)
+        return str(error)
+    except MemoryError as error:
+        return f"out of memory: {str(error) or 'the case takes more than there is'}"
+    except BaseException as error:
+        return f"{type(error).__name__}: {one_line(error)}"
+    return ""
+
+
+def _show(case: Path, given: Mapping[str, Any], say: Say) -> None:
+    """Say what a case looks like, how it moves, and its forces."""
+    say("doing", "loading the case")
+    file = case_file(case).resolve()
+    opened = _opened_in(file.parent)
+    try:
+        scene = load_case(case).scene
+    except LagrangeCasadiError as error:
+        if mechanism := declared(file, error, Mechanism):
+            with suppress(LagrangeCasadiError):
+                say("drawing", mechanism.draw().svg)
+        raise
+    finally:
+        say("files", sorted(opened))
+    parameters, t, wanted = given["parameters"], given["t"], given["wanted"] or scene.wanted
+    say("doing", "drawing")
+    say("drawing", scene.draw(parameters=parameters).svg)
+    say("doing", "computing the motion")
+    run = partial(evaluate, scene, parameters=parameters, t=t, backend="vm")
+    say("motion", contents(run(wanted=["motion"], certificate=False)))
+    say("doing", "computing forces and peaks")
+    say("all", contents(run(wanted=with_motion(wanted))))
+
+
+def _opened_in(folder: Path) -> set[str]:
+    """The files in a folder that are opened from now on; of compiled modules their sources."""
+    opened: set[str] = set()
+
+    def hear(event: str, arguments: tuple[Any, ...]) -> None:
+        if event == "open" and isinstance(arguments[0], str):
+            path = os.path.abspath(arguments[0])
+            if path.startswith(f"{folder}{os.sep}"):
+                opened.add(source_from_cache(path) if path.endswith(".pyc") else path)
+
+    sys.addaudithook(hear)
+    return opened
