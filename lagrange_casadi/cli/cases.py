@@ -9,6 +9,7 @@ import os
 import re
 import shlex
 import shutil
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from ..base.folders import filling
@@ -65,6 +66,10 @@ def new(
     like: str | None = None,
     source: Path | None = None,
     accept_inertias: bool = False,
+    payload: Sequence[str] = (),
+    floating: bool = False,
+    posture: Mapping[str, float] | None = None,
+    contacts: Sequence[str] | None = None,
 ) -> None:
     """Begin a case of your own in a new FOLDER.
 
@@ -80,15 +85,30 @@ def new(
         Begin with a model of another program: .json, .asmt, .urdf, .sdf or .xml (MuJoCo).
     accept_inertias
         Take moments of inertia that no body has as FILE gives them.
+    payload : FRAME=MASS[@(X,Y,Z)]
+        Put a mass at a link or frame of FILE, at a place on its axes: tool0=3kg@(0,0,0.1).
+    floating
+        Let the base of the robot move freely, with its mass.
+    posture : NAME=VALUE
+        Let a coordinate have this value at the start.
+    contacts : NAME,...
+        Let the origins of these links or frames stay on the ground, where the posture puts them.
     """
     refuse(
         (like is not None and source, "--like and --from exclude each other"),
         (accept_inertias and not source, "--accept-inertias needs --from FILE"),
+        (payload and not source, "--payload needs --from FILE"),
+        (floating and not source, "--floating needs --from FILE"),
+        (posture and not source, "--posture needs --from FILE"),
+        (contacts and not source, "--contacts needs --from FILE"),
     )
     if source is not None:
         from ..interop.formats import case_of
+        from ..interop.formats.standing import Standing
 
-        files = {"case.py": case_of(source, accept_inertias=accept_inertias).encode()}
+        stands = Standing(floating, posture or {}, contacts or ())
+        text = case_of(source, accept_inertias=accept_inertias, payload=payload, stands=stands)
+        files = {"case.py": text.encode()}
     else:
         files = _copied(SIMPLE if like is None else like, folder)
     if os.path.lexists(folder):

@@ -16,7 +16,7 @@ from ..base.arrays import Array
 from ..base.files import check_writable
 from ..base.quantities import AVERAGED, Output
 from ..base.streams import is_standard_output
-from ..base.table_writers import TableFile
+from ..base.table_writers import TableFile, aligned
 from ..base.vocabulary import Backend
 from ..engine.instants.backends import peak_search
 from ..errors import CompilerError, DeclarationError
@@ -25,8 +25,9 @@ from ..model.scene import Scene
 from ..model.times import Timing
 from ..model.wanted_names import among
 from ..results.data_frames import TIME, columns
+from ..results.drive_use import Use
 from ..results.elastic.vibration import vibration
-from ..results.ordering import ordered
+from ..results.ordering import error_of, ordered
 from ..results.sensitivity.peak_derivatives import PeakKind
 from ..results.solution import Solution
 from ..results.store.runs import check_target, save
@@ -40,7 +41,7 @@ from ..views.shapes.index import MANIFEST
 from .drawing import draw_with_progress
 from .echo import echo
 from .options import HDF5, refuse, table_file, target
-from .report import Rows, card, ratio
+from .report import Rows, card, ratio, readable
 from .strength_lines import evaluated, not_evaluated_lines, strength_cards, strength_lines, worst
 
 _SCREEN = 39
@@ -154,6 +155,7 @@ def run(
     else:
         head += elastic_card(solution, shown)
         head += strength_cards(solution, shown, strength)
+    head += drive_lines(solution)
     rest = [*slope_lines(solution, scene, given["backend"]), *details, *rows.notes()]
     rest += _notes(scene, solution, scene.timing(given["t"], given["over"]))
     if folder and not loaded.figures:
@@ -227,6 +229,22 @@ def _notes(scene: Scene, solution: Solution, timing: Timing) -> Iterator[str]:
     values = np.array([list(solution.description.values.values())])
     turning = revolutions.note(scene.prescribed, solution.description.kinds, timing, values)
     yield from (f"note: {note}" for note in (*solution.notes, turning) if note)
+
+
+def drive_lines(solution: Solution) -> Iterator[str]:
+    """Write what is used of the limits of drives."""
+
+    def cells(use: Use | None) -> list[str]:
+        if use is None:
+            return ["", "", ""]
+        over = ", EXCEEDED" if use.share > 1.0 else ""
+        value = readable(use.value, error_of(solution, use.name), use.limit)
+        return [value, use.unit, f"{100.0 * float(value) / use.limit:.3g} %{over}"]
+
+    if found := solution.drives_used():
+        heads = ["drive", "effort", "", "of limit", "speed", "", "of limit"]
+        rows = [[name, *cells(one.effort), *cells(one.speed)] for name, one in found.items()]
+        yield from (f"  {line}" for line in aligned(heads, rows, left=(0, 2, 5)))
 
 
 _FROM = {"ends": "from the line between its ends", "base": "from its axis at the base"}

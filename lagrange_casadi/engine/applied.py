@@ -10,11 +10,12 @@ from ..base.arrays import Expression
 from ..base.frames import Velocities
 from ..base.vectors import AXES, ZERO, cross, dot, minus, nil, plus, times
 from ..model.declared_parts import Link, Point, Vector
+from ..model.drives import Drive
 from ..model.joints import Axis, Joint
 from ..model.loads import Force, Friction, LineLoad, Load, Spring, Torque
 from .growing import Grown
 from .joint_closure import carried, reaction, residual_motion
-from .multibody import Applied, LoopEquations, RowGraph
+from .multibody import Applied, LoopEquations, RowGraph, motion_along
 from .pressing import way_of
 
 
@@ -44,6 +45,20 @@ def applied_by(load: Load, resting: Grown) -> list[Applied]:
     tension = at(load.stiffness) * (distance - at(load.length)) + at(load.damping) * rate
     x, y, z = (tension * component / distance for component in apart)
     return _both(load.name, load.first, load.second, (x, y, z))
+
+
+def turned_by(drive: Drive, resting: Grown) -> Iterator[Applied]:
+    """Actions of a drive's rotor on the bodies of its joint, by its acceleration."""
+    joint, axis, spin = drive.joint, drive.axis, drive.spin
+    _, rate, acceleration = motion_along(joint, axis, resting.frames, resting.coordinates)
+    parent, about = resting.frames[joint.parent.body.name], resting.along(joint, axis)
+    taken = drive.reflected * acceleration
+    if not nil(spin) and joint.parent.body is not resting.mechanism.ground:
+        taken += spin * dot(about, parent.angular)
+        turning = plus(times(acceleration, about), times(rate, cross(parent.rate, about)))
+        yield Applied(drive.name, _under(resting, joint), couple=times(-spin, turning))
+    if not nil(taken):
+        yield from _along_coordinate(resting, drive.name, joint, axis, -taken)
 
 
 def _both(
@@ -175,12 +190,15 @@ def _along_coordinate(
     resting: Grown, name: str, joint: Joint, axis: Axis, force: Expression
 ) -> list[Applied]:
     """Action on its bodies of a force that works along a joint's coordinate."""
-    parent, child = resting.ends(joint)
-    along = times(force, resting.along(joint, axis))
-    under = joint.parent
-    if joint.slides:
-        x, y, z = carried(joint, parent, child)
-        under = Point(joint.parent.body, x, y, z=z)
+    along, under = times(force, resting.along(joint, axis)), _under(resting, joint)
     if axis.kind == "angle":
         return _both(name, joint.child, under, couple=along)
     return _both(name, joint.child, under, along)
+
+
+def _under(resting: Grown, joint: Joint) -> Point:
+    """The point of a joint's parent that bears its child."""
+    if not joint.slides:
+        return joint.parent
+    x, y, z = carried(joint, *resting.ends(joint))
+    return Point(joint.parent.body, x, y, z=z)

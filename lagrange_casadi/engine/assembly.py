@@ -27,7 +27,7 @@ from ..model.joints import Axis, Joint
 from ..model.link_density import Density
 from ..model.mass_properties import second_moments
 from ..model.mechanism import Mechanism
-from .applied import applied_by, held_by, push, work
+from .applied import applied_by, held_by, push, turned_by, work
 from .growing import Grown, coordinates_of
 from .joint_closure import loop_residuals
 from .mesh_forces import meshed_by
@@ -97,6 +97,7 @@ def assemble(
         )
     rows = tuple(_row(resting, row) for row in mechanism.rows.values())
     applied = tuple(part for load in mechanism.loads.values() for part in applied_by(load, resting))
+    applied += tuple(part for one in mechanism.drives.values() for part in turned_by(one, resting))
     held = [
         part
         for loop in loops

@@ -92,6 +92,7 @@ def _from(cell: Sequence[Expression], end: float, width: float) -> list[Expressi
 def _unnamed(mechanism: Mechanism, word: str) -> Iterator[str]:
     """Names that nothing that acts has: a word, and the word with numbers."""
     taken = {*mechanism.joints, *mechanism.loads, *mechanism.constraints, *mechanism.rows}
+    taken |= {*mechanism.drives}
     names = itertools.chain([word], (f"{word}_{k}" for k in itertools.count(2)))
     return (name for name in names if name not in taken)
 

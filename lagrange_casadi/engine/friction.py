@@ -179,6 +179,8 @@ class _Law:
         if not pressed:
             return cls(friction.name, [], 0.0, 0.0, steady, None)
         mu, lever = friction.mu, friction.radius if friction.axis.kind == "angle" else 1.0
+        if friction.coulomb is not None:
+            mu, lever = 1.0, 1.0
         if friction.static is not None:
             speed = v * lever / friction.stribeck
             squares = (

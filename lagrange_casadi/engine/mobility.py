@@ -363,7 +363,7 @@ def _loads_on(
             yield joint.name, (x, y, z), action if local else action.resolved(rotation)
     counts: dict[str, int] = {}
     m = multibody.mechanism
-    acting = {*m.joints, *m.loads, *m.constraints, *m.rows}
+    acting = {*m.joints, *m.loads, *m.constraints, *m.rows, *m.drives}
     for part in (*multibody.applied, *multibody.held):
         if part.point.body is link and part.distributed is None and not _at_base(part.point):
             x = None if part.point.end == "tip" else at_end(part.point)

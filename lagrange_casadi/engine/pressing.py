@@ -120,7 +120,9 @@ def joint_friction(
     else:
         _, rate, acceleration = multibody.motion_along(joint, friction.axis)
     contacts: tuple[Contact, ...] = ()
-    if friction.dry and multibody.mechanism.space:
+    if friction.coulomb is not None:
+        contacts = (Contact(1.0, (ca.SX(friction.coulomb),)),)
+    elif friction.dry and multibody.mechanism.space:
         contacts = _in_space(multibody, friction, force, couple)
     elif friction.dry and friction.axis.kind == "angle":
         contacts = (Contact(friction.radius, (force[0], force[1])),)

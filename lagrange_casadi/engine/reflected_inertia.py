@@ -15,6 +15,7 @@ import casadi as ca
 
 from ..base.quantities import Column, Output
 from ..base.scalars import column, entries, graph
+from ..base.vectors import dot
 from ..model.scene import Scene, Wanted
 from .assembly import assemble
 from .derive import derived
@@ -49,6 +50,12 @@ def reflected_inertia(scene: Scene, parameters: Mapping[str, float]) -> Reflecte
     energy = ca.substitute(
         ca.SX(body.kinetic), column(body.velocities.symbols), column(body.velocities.graphs)
     )
+    for drive in scene.guided.drives.values():
+        rate = body.motion_along(drive.joint, drive.axis)[1]
+        about = dot(
+            body.along[drive.axis.coordinate], body.frames[drive.joint.parent.body.name].rate
+        )
+        energy += (drive.reflected * rate / 2 + drive.spin * about) * rate
     still = body.mobility_rates
     energy = solved.evaluate(ca.substitute(energy, still, ca.SX.zeros(still.numel())))
     given = dict(zip(driven, entries(solved.driven_rate), strict=True))

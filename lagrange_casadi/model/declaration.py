@@ -28,6 +28,7 @@ from .declared_parts import (
     UserOutput,
     Vector,
 )
+from .drives import Drive
 from .expressions import check_name, value_of
 from .fitted import Fittings
 from .joints import Axis, Joint
@@ -56,10 +57,12 @@ class Declaration(Graphs):
     bodies: dict[str, Body] = field(default_factory=dict, init=False)
     joints: dict[str, Joint] = field(default_factory=dict, init=False)
     loads: dict[str, Load] = field(default_factory=dict, init=False)
+    drives: dict[str, Drive] = field(default_factory=dict, init=False)
     constraints: dict[str, Constraint] = field(default_factory=dict, init=False)
     rows: dict[str, Row] = field(default_factory=dict, init=False)
     outputs: dict[str, UserOutput] = field(default_factory=dict, init=False)
     paths: dict[str, Path] = field(default_factory=dict, init=False)
+    contacts: list[str] = field(default_factory=list, init=False)
     fitted: dict[str, Fittings] = field(default_factory=dict, init=False)
     turning: dict[str, str] = field(default_factory=dict, init=False)
     rough: dict[str, float] = field(default_factory=dict, init=False)

@@ -25,6 +25,7 @@ from .beams.material import Material
 from .beams.shape import Course, Shape
 from .declared_parts import Link, PitchCircles, Point, PointMass, RigidMass, Track
 from .declared_parts import Place as Place
+from .drives import Drive
 from .fitted import Fittings, Pin, Plain, Rolling
 from .guiding import kind_of
 from .joints import Joint, JointKind
@@ -183,13 +184,27 @@ class LoadNumbers:
     symbols: tuple[str, ...] = ()
 
 
+@dataclass(frozen=True)
+class DriveNumbers:
+    """A drive of a coordinate: the inertia that the coordinate sees, the rotor's ``spin`` for a
+    unit of its rate, and the largest effort and speed, see :class:`.Drive`.
+    """
+
+    coordinate: str
+    reflected: float
+    spin: float
+    effort: float | None = None
+    speed: float | None = None
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Description(Brief):
     """A mechanism, with expressions or numbers.
 
     ``rows`` have the drives that they replace. ``driven`` are the coordinates whose motion is
     given, those of guides too (:mod:`.guiding`), and their kinds; ``drives`` those whose efforts
-    make the motion. ``beside`` are the directions in ground axes that were declared for y axes of
+    make the motion; ``motors`` are the drives that were declared.
+    ``beside`` are the directions in ground axes that were declared for y axes of
     links. ``losses`` are transmissions with friction. ``unturned`` are the joints whose child is a
     slender link that slides in a direction that was not declared. ``snapped`` are the corrections
     of a rounded drawing [rad and m]; its loops may miss within ``rounding``, and ``missed`` says by
@@ -206,6 +221,8 @@ class Description(Brief):
     joints: Mapping[str, JointNumbers] = field(default_factory=dict)
     loads: Mapping[str, LoadNumbers] = field(default_factory=dict)
     rows: Mapping[str, str] = field(default_factory=dict)
+    motors: Mapping[str, DriveNumbers] = field(default_factory=dict)
+    contacts: tuple[str, ...] = ()
     constraints: tuple[str, ...] = ()
     driven: Mapping[str, CoordinateKind] = field(default_factory=dict)
     drives: tuple[str, ...] = ()
@@ -249,7 +266,9 @@ class Description(Brief):
             bodies={body.name: _body(mechanism, body) for body in mechanism.moving},
             joints={name: _joint(mechanism, one) for name, one in mechanism.joints.items()},
             loads={name: _load(load) for name, load in mechanism.loads.items()},
+            motors={name: _drive(one) for name, one in mechanism.drives.items()},
             rows=rows,
+            contacts=tuple(mechanism.contacts),
             constraints=tuple(mechanism.constraints),
             driven={name: kind_of(mechanism, name) for name in given},
             drives=tuple(
@@ -424,8 +443,8 @@ class Description(Brief):
 
 
 DESCRIBED = (
-    *(AxisNumbers, BodyNumbers, Description, JointNumbers, LoadNumbers, NumericDensity),
-    *(ParameterNumbers, PitchCircles, Place, RollerNumbers, Track),
+    *(AxisNumbers, BodyNumbers, Description, DriveNumbers, JointNumbers, LoadNumbers),
+    *(NumericDensity, ParameterNumbers, PitchCircles, Place, RollerNumbers, Track),
     *(Beam, Course, Shape, Material, Notch, Fittings, Pin, Plain, Rolling),
 )
 """Kinds of what a description is made of."""
@@ -495,6 +514,12 @@ def _load(load: Load) -> LoadNumbers:
     elif isinstance(load, Torque) and load.coiled:
         symbols = ("spring",)
     return LoadNumbers(*found, getattr(load, "turning", False), symbols=symbols)
+
+
+def _drive(drive: Drive) -> DriveNumbers:
+    limits = (None if one is None else _number(one) for one in (drive.effort, drive.speed))
+    inertia = _number(drive.reflected), _number(drive.spin)
+    return DriveNumbers(drive.axis.coordinate, *inertia, *limits)
 
 
 def _lies_by_default(joint: Joint) -> bool:

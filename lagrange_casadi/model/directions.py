@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import casadi as ca
 
 from ..base.rotation import Rotation, direction
-from ..base.vectors import AXES, ZERO, Vector, cross, dot, minus, norm, times
+from ..base.vectors import AXES, ZERO, Vector, cross, dot, minus, norm, plus, times
 from ..errors import DeclarationError
 from .declared_parts import Body, Expression, Link, Point
 from .joints import Triad
@@ -64,6 +64,10 @@ class Reference:
     def local(self, place: Vector) -> Vector:
         """The body's point at a place."""
         return self.rotation.resolve(minus(place, self.origin))
+
+    def place(self, point: Vector) -> Vector:
+        """The place of a point that is given on the body's axes."""
+        return plus(self.origin, self.rotation.apply(point))
 
     def directions(self, triad: Triad) -> Triad:
         """Directions in ground axes on the body's axes."""

@@ -1,4 +1,4 @@
-"""Arguments of loads that are more than numbers: friction in joints, and loads along a link."""
+"""Arguments that are more than numbers: friction and drives of joints, and loads along a link."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import casadi as ca
 
 from ..errors import DeclarationError
 from .declared_parts import Expression, Link
+from .drives import Drive
 from .expressions import expressed
 from .joints import Axis, Joint
 from .loads import POSITIVE, Friction, LineLoad
@@ -154,6 +155,8 @@ def friction(
         raise DeclarationError(
             f"{what}: stribeck needs static=, the friction coefficient at the start of sliding"
         )
+    if "coulomb" in numbers:
+        beside = None
     if beside is not None and "smooth" in numbers:
         raise DeclarationError(
             f"{what}: joint '{joint.name}' slides and turns at once, for which smooth= is not"
@@ -161,6 +164,36 @@ def friction(
         )
     symbol = ca.SX.sym(f"friction_{name}")
     return Friction(name, joint, axis, symbol, beside=beside, **numbers)
+
+
+def drive(
+    own: Ownership, name: str, joint: Joint, ratio: Expression, given: Mapping[str, Expression]
+) -> Drive:
+    """A drive of a joint of a mechanism, with the numbers ``given``.
+
+    Raises :class:`DeclarationError` for a joint that has not one coordinate, or has a drive, and
+    for numbers that no drive has.
+    """
+    own.free("drive", name, own.declared.drives)
+    what = f"drive '{name}'"
+    if len(own.joint(joint).axes) != 1:
+        raise DeclarationError(
+            f"{what}: expected a joint of one coordinate, got {joint.kind} joint '{joint.name}';"
+            " use a chain of joints of one coordinate each"
+        )
+    (axis,) = joint.axes
+    for other in own.declared.drives.values():
+        if other.joint is joint:
+            raise DeclarationError(f"{what}: joint '{joint.name}' has one already, '{other.name}'")
+    effort, speed = ("N m", "rad/s") if axis.kind == "angle" else ("N", "m/s")
+    units = {"effort": effort, "speed": speed, "rotor_inertia": "kg m^2"}
+    numbers = {
+        word: _number(own, what, word, value, units.get(word, "1"))
+        for word, value in given.items()
+        if value is not None
+    }
+    ratio = own.expression(f"{what}: ratio", ratio)
+    return Drive(name, joint, axis, ratio=ratio, **numbers)
 
 
 def _axes(own: Ownership, what: str, joint: Joint, along: str) -> tuple[Axis, Axis | None]:
@@ -205,15 +238,20 @@ def _axes(own: Ownership, what: str, joint: Joint, along: str) -> tuple[Axis, Ax
 
 def _require(what: str, joint: Joint, axis: Axis, numbers: Mapping[str, Expression]) -> None:
     """Raise for a length or radius that is missing, or that has no meaning."""
-    if "mu" not in numbers and "viscous" not in numbers:
-        raise DeclarationError(f"{what}: expected mu=, a friction coefficient, or viscous=")
+    if numbers.keys().isdisjoint(("mu", "coulomb", "viscous")):
+        raise DeclarationError(
+            f"{what}: expected mu=, a friction coefficient, coulomb= or viscous="
+        )
     if "mu" not in numbers:
-        needless = [
-            key for key in ("radius", "length", "static", "stribeck", "smooth") if key in numbers
-        ]
+        needless = [key for key in ("radius", "length", "static", "stribeck") if key in numbers]
+        needless += ["smooth"] if "smooth" in numbers and "coulomb" not in numbers else []
         if needless:
             raise DeclarationError(f"{what}: {needless[0]} needs mu=, a friction coefficient")
         return
+    if "coulomb" in numbers:
+        raise DeclarationError(
+            f"{what}: mu= and coulomb= exclude each other; declare two frictions"
+        )
     space, moment = not joint.planar, joint.bears_moment
     turns = axis.kind == "angle" or joint.kind == "cylindrical"
     bearings = space and moment and joint.kind in ("revolute", "cylindrical")

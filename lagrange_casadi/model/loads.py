@@ -115,8 +115,8 @@ class LineLoad(Brief):
         return (self.link.at(end / 2 if self.whole else (start + end) / 2),)
 
 
-POSITIVE = ("radius", "length", "stribeck", "smooth")
-"""Numbers of a friction that must not be zero."""
+POSITIVE = ("radius", "length", "stribeck", "smooth", "effort", "speed")
+"""Numbers of frictions and drives that must not be zero."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -131,6 +131,8 @@ class Friction(Brief):
         mu (|N/2 + M/length| + |N/2 - M/length|) - viscous v   in a guide that bears N across its
         line and the moment M.
 
+    With ``coulomb`` it is -sigma coulomb - viscous v, whatever the joint bears.
+
     A spherical joint rubs as a pin about the axis about which its child turns on its parent at the
     moment: v is the size of their relative angular velocity, which is never negative.
 
@@ -144,6 +146,7 @@ class Friction(Brief):
     axis: Axis
     symbol: ca.SX
     mu: Expression = 0.0
+    coulomb: Expression | None = None
     radius: Expression | None = None
     length: Expression | None = None
     viscous: Expression = 0.0
@@ -160,7 +163,7 @@ class Friction(Brief):
     @property
     def numbers(self) -> dict[str, Expression]:
         """Numbers of the friction, by the keywords of its declaration."""
-        words = ("mu", "radius", "length", "viscous", "static", "stribeck", "smooth")
+        words = ("mu", "coulomb", "radius", "length", "viscous", "static", "stribeck", "smooth")
         return {word: getattr(self, word) for word in words if getattr(self, word) is not None}
 
     @property

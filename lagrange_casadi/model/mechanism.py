@@ -38,11 +38,12 @@ from .declared_parts import (
     Vector,
 )
 from .directions import in_plane
+from .drives import Drive
 from .expressions import check_line
 from .joints import Joint, JointKind, check_ends
 from .limits import check_connected, parameter_values
 from .link_density import Density
-from .load_arguments import Between, LoadDensity, friction, line_load
+from .load_arguments import Between, LoadDensity, drive, friction, line_load
 from .loads import Force, Friction, LineLoad, Spring, Torque
 from .mass_properties import UNDECLARED, Rigid, beam_of, mass_properties_of
 from .ownership import Ownership
@@ -752,6 +753,7 @@ class Mechanism(Declaration):
         joint: Joint,
         *,
         mu: Expression | None = None,
+        coulomb: Expression | None = None,
         radius: Expression | None = None,
         length: Expression | None = None,
         viscous: Expression | None = None,
@@ -760,7 +762,7 @@ class Mechanism(Declaration):
         smooth: Expression | None = None,
         along: str = "",
     ) -> Friction:
-        """Declare friction in a joint, which depends on the joint's reaction.
+        """Declare friction in a joint, which may depend on the joint's reaction.
 
         Parameters
         ----------
@@ -770,6 +772,8 @@ class Mechanism(Declaration):
             A pin, a guide or a slot; in space also a screw, a spherical or a cylindrical joint.
         mu : float or casadi.SX, optional
             Friction coefficient.
+        coulomb : float or casadi.SX, optional
+            In place of ``mu``: friction that does not depend on the reaction [N m or N].
         radius : float or casadi.SX, optional
             Radius of the pin or ball, or mean radius of the thread [m].
         length : float or casadi.SX, optional
@@ -794,10 +798,60 @@ class Mechanism(Declaration):
         DeclarationError
             If the joint has no such friction, or a number that it needs is missing.
         """
-        numbers = {"mu": mu, "radius": radius, "length": length, "viscous": viscous}
-        numbers |= {"static": static, "stribeck": stribeck, "smooth": smooth}
+        numbers = {"mu": mu, "coulomb": coulomb, "radius": radius, "length": length}
+        numbers |= {"viscous": viscous, "static": static, "stribeck": stribeck, "smooth": smooth}
         self.loads[name] = load = friction(self.ownership, name, joint, along, numbers)
         return load
+
+    def drive(
+        self,
+        name: str,
+        joint: Joint,
+        *,
+        rotor_inertia: Expression = 0.0,
+        ratio: Expression = 1.0,
+        armature: Expression = 0.0,
+        effort: Expression | None = None,
+        speed: Expression | None = None,
+    ) -> Drive:
+        """Declare the drive of a joint: the inertia of its rotor, and what it can do.
+
+        Its effort is at the joint, behind the gear. The joint's parent carries the housing, and the
+        rotor's mass is among that of the parent. See :class:`.Drive` for the gyroscopic terms.
+
+        Parameters
+        ----------
+        name : str
+            Name of the drive.
+        joint : Joint
+            A joint of one coordinate.
+        rotor_inertia : float or casadi.SX
+            Moment of inertia of what turns with the rotor, about its axis, which is along that of
+            the joint [kg m^2].
+        ratio : float or casadi.SX
+            Turns of the rotor for one of the joint; of a slide [rad/m]. Negative for a rotor that
+            turns the other way.
+        armature : float or casadi.SX
+            Inertia that the joint sees, for a rotor whose ratio is not known, without gyroscopic
+            terms: as MuJoCo has it [kg m^2 or kg].
+        effort, speed : float or casadi.SX, optional
+            Largest effort [N m or N] and rate [rad/s or m/s] of the joint, for
+            :meth:`.Solution.drives_used`.
+
+        Returns
+        -------
+        Drive
+            The drive.
+
+        Raises
+        ------
+        DeclarationError
+            If the joint has no coordinate or several, or has a drive, or a number is negative.
+        """
+        numbers = {"rotor_inertia": rotor_inertia, "armature": armature}
+        numbers |= {"effort": effort, "speed": speed}
+        self.drives[name] = found = drive(self.ownership, name, joint, ratio, numbers)
+        return found
 
     def output(self, name: str, expression: Expression, *, unit: str = "1") -> UserOutput:
         """Declare an additional output ``output:NAME`` with a unit.

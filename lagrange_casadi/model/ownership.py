@@ -22,6 +22,7 @@ from .declared_parts import (
     PointMass,
     UserOutput,
 )
+from .drives import Drive
 from .expressions import check_name, scalar
 from .joints import Axis, Joint
 from .limits import along_link, on_link
@@ -29,6 +30,7 @@ from .loads import Load
 
 _WORDS: dict[type[object], str] = dict.fromkeys(get_args(Load), "a load") | {
     Constraint: "a constraint",
+    Drive: "a drive",
     Ground: "the ground",
     Joint: "a joint",
     Link: "a link",
@@ -45,7 +47,7 @@ def _by_name(parts: str, name: object, known: Mapping[str, object]) -> str:
     return f"; m.{parts}['{name}'] is the part" if isinstance(name, str) and name in known else ""
 
 
-Part = Parameter | Body | Joint | Load | Constraint | Row | UserOutput | Path
+Part = Parameter | Body | Joint | Load | Drive | Constraint | Row | UserOutput | Path
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,6 +164,7 @@ class Ownership:
         # Files and scenes know joints, loads, constraints, rows and paths by their names alone,
         # beside those of links.
         acting: tuple[Mapping[str, Part], ...] = (m.joints, m.loads, m.constraints, m.rows, m.paths)
+        acting += (m.drives,)
         check_name(kind, name)
         others = (m.bodies, *acting) if any(table is other for other in acting) else (table,)
         for part in (parts[name] for parts in others if name in parts):

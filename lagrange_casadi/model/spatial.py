@@ -7,10 +7,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
+import casadi as ca
+
 from ..base.arguments import public
 from ..base.rotation import Rotation
 from ..base.symbolic import symbolic
-from ..base.vectors import times
+from ..base.vectors import dot, minus, norm, times
 from ..errors import DeclarationError, check_kind
 from .beams.beam import Beam
 from .declared_parts import Body, Expression, Ground, Link, Point, PointMass, RigidMass, Vector
@@ -460,6 +462,67 @@ class SpatialMechanism(Mechanism):
             along them, and ``turn_1`` to ``turn_3`` [rad] of a spherical joint.
         """
         return self._spatial(name, "free", (parent, child), (axis, second), at, turned)
+
+    def contact(
+        self,
+        name: str,
+        point: Body | Point,
+        *,
+        friction: Expression,
+        normal: Vector = (0.0, 0.0, 1.0),
+        at: Expression = None,
+    ) -> Joint:
+        """Let a point of a body stand on the ground, where it stays over the scene and may turn.
+
+        Its reaction is the ground's force on the body. The outputs ``NAME_normal`` and
+        ``NAME_margin`` [N] are the part of the force along the normal, negative where the contact
+        pulls, and its distance from the cone of friction, (friction normal - tangential) /
+        sqrt(1 + friction^2), negative where the point slides or pulls. A note says where.
+
+        Parameters
+        ----------
+        name : str
+            Name of the contact, which is a spherical joint.
+        point : Link, PointMass or Point
+            The point; a link stands for its base.
+        friction : float or casadi.SX
+            Coefficient of friction.
+        normal : tuple
+            Direction (x, y, z) out of the ground.
+        at : tuple, optional
+            Place (x, y, z) of the point [m], by default that of the reference posture.
+
+        Returns
+        -------
+        Joint
+            The joint, from the ground to the body.
+
+        Raises
+        ------
+        DeclarationError
+            If the coefficient is negative, the normal has no length, or the body has no position
+            in the reference posture and ``at`` is missing.
+        """
+        what, own = f"contact '{name}'", self.ownership
+        foot, mu = own.point(what, point), own.expression(f"{what}: friction", friction)
+        if isinstance(mu, float) and mu < 0.0:
+            raise DeclarationError(f"{what}: friction must be at least 0, got {mu:g}")
+        if at is None and foot.body.name not in self.references:
+            raise DeclarationError(
+                f"{what}: '{foot.body.name}' has no position in the reference posture; expected"
+                " at=, the place of the point"
+            )
+        if at is None:
+            at = self._reference(what, foot.body).place(foot.place)
+        upward = triad_of(f"{what}: normal", normal, None, own)[0]
+        joint = self.spherical(name, self.ground.at(*self._vector(f"{what}: at", at, "m")), foot)
+        fx, fy, fz, *_ = self.results.reaction(joint)
+        pressing = dot(upward, (fx, fy, fz))
+        sliding = norm(minus((fx, fy, fz), times(pressing, upward)))
+        self.output(f"{name}_normal", pressing, unit="N")
+        self.output(f"{name}_margin", (mu * pressing - sliding) / ca.sqrt(1 + mu * mu), unit="N")
+        self.contacts.append(name)
+        return joint
 
     def force(
         self,

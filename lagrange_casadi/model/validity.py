@@ -7,7 +7,7 @@ from __future__ import annotations
 import functools
 import itertools
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -156,6 +156,8 @@ def _of(declared: Declaration, precision: Precision) -> ParameterConstraints:
                 stroke.closed, True, f"{stroke.what}: closed must be positive, got {{got}} m"
             )
         )
+    for drive in declared.drives.values():
+        found += _of_numbers(f"drive '{drive.name}'", drive.numbers)
     for constraint in declared.constraints.values():
         if constraint.transmission is not None:
             found += [
@@ -192,6 +194,8 @@ def _numbers(declared: Declaration) -> Iterator[tuple[str, list[Expression]]]:
         else:
             numbers = [number for point in load.points for number in point.place]
         yield f"load '{load.name}'", numbers
+    for drive in declared.drives.values():
+        yield f"drive '{drive.name}'", [drive.ratio, *drive.numbers.values()]
     yield "gravity", [*declared.gravity]
 
 
@@ -234,11 +238,7 @@ def _of_fit(name: str, fit: Fit, precision: Precision) -> Demand:
 def _of_friction(friction: Friction) -> Iterator[Demand]:
     """The numbers of a friction are not negative, and what it divides by is not zero."""
     what = f"friction '{friction.name}'"
-    for word, number in friction.numbers.items():
-        if isinstance(number, ca.SX):
-            positive = word in POSITIVE
-            least = "positive" if positive else "at least 0"
-            yield Demand.saying(number, positive, f"{what}: {word} must be {least}, got {{got}}")
+    yield from _of_numbers(what, friction.numbers)
     if friction.joint.kind == "screw" and friction.dry and friction.radius is not None:
         steep = (
             f"{what}: mu times the lead per radian must be less than the radius; otherwise no"
@@ -247,6 +247,14 @@ def _of_friction(friction: Friction) -> Iterator[Demand]:
         yield Demand.saying(
             friction.radius - friction.mu * ca.fabs(friction.joint.pitch), True, steep
         )
+
+
+def _of_numbers(what: str, numbers: Mapping[str, Expression]) -> Iterator[Demand]:
+    for word, number in numbers.items():
+        if isinstance(number, ca.SX):
+            positive = word in POSITIVE
+            least = "positive" if positive else "at least 0"
+            yield Demand.saying(number, positive, f"{what}: {word} must be {least}, got {{got}}")
 
 
 def _of_body(

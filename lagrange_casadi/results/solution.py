@@ -16,6 +16,7 @@ from ..engine.instants.beyond_equilibrium import Elasticity, Holding, held_notes
 from ..model.notes import notes
 from .data_frames import dataset, frame
 from .derivatives import Derivatives
+from .drive_use import DriveUse, drives_used
 from .histories import Histories
 
 if TYPE_CHECKING:
@@ -103,6 +104,12 @@ class Solution(Histories):
     def deflection(self, link: str, against: Literal["ends", "base"] | None = None) -> Deflection:
         """Return the deflection of a link: see :func:`.elastic.deflection.deflection`."""
         return cast("Deflection", method("Solution.deflection")(self, link, against))
+
+    def drives_used(self) -> dict[str, DriveUse]:
+        """Return how much of its largest effort and speed each drive uses that has limits, by the
+        names of drives: ``drives_used()["motor"].effort.share``.
+        """
+        return drives_used(self)
 
     @property
     def notes(self) -> tuple[str, ...]:

@@ -132,8 +132,11 @@ def space():
     O = m.revolute("O", m.ground.at(0.0, 0.02, 0.03), crank, axis=(0.1, 0.3, 1))
     m.spherical("A", crank.tip, rod)
     m.universal("B", slider, rod.tip, axis=(0, 0, 1), second=(0, 1, 0))
-    m.prismatic("G", m.ground, slider, axis=(1, 0, 0.1))
+    guide = m.prismatic("G", m.ground, slider, axis=(1, 0, 0.1))
     m.friction("main", O, mu=mu, radius=0.02, length=0.05)
+    m.friction("seal", guide, coulomb=30.0 * mu, viscous=2.0)
+    m.drive("motor", O, rotor_inertia=1e-4 * mu, ratio=30.0, effort=50.0)
+    m.drive("spindle", guide, rotor_inertia=1e-5, ratio=40.0)
     m.line_load("wind", rod, y=(30.0, 60.0), z=5.0, between=(0.1, 0.25))
     m.line_load("own", crank, z=lambda xi: m.rate(O) * (3 - 80 * xi), turning=True)
     m.force("pull", rod.at(0.2, 0.02, -0.03), x=3.0, y=-2.0, z=5.0)
@@ -173,7 +176,8 @@ def laws():
     outer = m.ground
     for name in driven:
         arm = m.link(f"{name}_arm", length=0.3, mass=0.4)
-        m.revolute(name, outer, arm)
+        joint = m.revolute(name, outer, arm)
+        m.drive(f"{name}_motor", joint, rotor_inertia=1e-4 * ratio, ratio=-20.0, armature=0.01)
         outer = arm.tip
     return Scene(m, driven, t=(0.0, 1.0, 57))
 

@@ -73,8 +73,7 @@ READ = {
     "urdf": (arm(P()), TURN + WEIGHT, []),
     "urdf damping": (
         arm(P(more='<dynamics damping="2" friction="3"/>')),
-        TURN + WEIGHT + 2.0 * 0.4,
-        ["Not read of joint/dynamics: friction= (p)."],
+        TURN + WEIGHT + 2.0 * 0.4 + 3.0, [],
     ),
     "urdf turnGravityOff": (
         arm(P(), '<gazebo reference="a"><turnGravityOff>1</turnGravityOff></gazebo>'), TURN, []
@@ -104,7 +103,7 @@ READ = {
         ["body 'f' has no inertia: its mass is a lump at its centre."],
     ),
     "urdf frame at the end": (
-        arm(P(), *frame("tool")), TURN + WEIGHT, ["Frames without mass are left out: tool."]
+        arm(P(), *frame("tool")), TURN + WEIGHT, ["tool = m.at(a, "]
     ),
     "urdf blanks": (
         arm(P()).replace('rpy="0 0 0"', 'rpy=""').replace('xyz="0 0 0"', 'xyz=" "').replace(
@@ -127,11 +126,10 @@ READ = {
     "sdf physics": (sdf_arm(before="<physics><gravity>0 0 0</gravity></physics>"), TURN, []),
     "sdf dynamics": (
         sdf_arm(dynamics=DRAGGED),
-        TURN + SDF_WEIGHT + 2.0 * 0.4 + 5.0 * (0.3 - 0.1),
-        ["Not read of world/model/joint/axis/dynamics: friction (p)."],
+        TURN + SDF_WEIGHT + 2.0 * 0.4 + 5.0 * (0.3 - 0.1) + 3.0, [],
     ),
     "sdf slide": (
-        sdf_arm(dynamics=DRAGGED, kind="prismatic"), 1.0 + 2.0 * 0.4 + 5.0 * (0.3 - 0.1), []
+        sdf_arm(dynamics=DRAGGED, kind="prismatic"), 1.0 + 2.0 * 0.4 + 5.0 * (0.3 - 0.1) + 3.0, []
     ),
     "sdf static": (
         sdf_arm(before='<model name="ground_plane"><static>true</static></model>'),
@@ -184,7 +182,7 @@ READ = {
              more='<option density="1000"/><actuator><motor joint="p"/></actuator>'),
         AT_REST,
         [f"{words}: not read." for words in (
-            "Friction of joints", "Armature, the inertia of motors at joints", "Limits of joints",
+            "Limits of joints",
             "Actuators, except which joints they drive", "Motion of mocap bodies",
             "Forces of a medium (density, viscosity, wind)")],
     ),

@@ -21,8 +21,6 @@ LEFT = {  # they say how the same model is written
     *("quat", "axisangle", "xyaxes", "zaxis", "euler", "mocap", "fluidcoef"),
 }
 WORDS = {
-    "Friction of joints": ("dof_frictionloss",),
-    "Armature, the inertia of motors at joints": ("dof_armature",),
     "Tendons": ("tendon_stiffness", "tendon_damping", "tendon_armature", "tendon_stiffnesspoly"),
     "Actuators, except which joints they drive": ("actuator_armature", "actuator_damping"),
     "Forces of a medium (density, viscosity, wind)": ("density", "viscosity", "wind"),
@@ -151,6 +149,9 @@ def inverse(model, notes, solution):
         if f"{words}: not read." in notes:
             model.opt.disableflags |= int(getattr(mujoco.mjtDisableBit, f"mjDSBL_{flag}"))
     model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_EQUALITY)
+    off = mujoco.mjtDisableBit.mjDSBL_FRICTIONLOSS | mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
+    rubs = model.dof_frictionloss * (0.0 if model.opt.disableflags & int(off) else 1.0)
+    model.dof_frictionloss[:] = 0.0  # which MuJoCo softens
     data = mujoco.MjData(model)
     mujoco.mj_setConst(model, data)
     mujoco.mj_resetData(model, data)
@@ -158,9 +159,12 @@ def inverse(model, notes, solution):
     for j in range(model.njnt):
         name, kind = model.joint(j).name, int(model.jnt_type[j])
         at, v = model.jnt_qposadr[j], model.jnt_dofadr[j]
+        every = slice(v, v + (6 if kind == 0 else 3))
         if f"Spring and damper of joint '{name}'" in notes:
             model.jnt_stiffness[j] = 0.0
-            model.dof_damping[v : v + (6 if kind == 0 else 3)] = 0.0
+            model.dof_damping[every] = 0.0
+        if f"Armature of joint '{name}'" in notes:
+            model.dof_armature[every] = 0.0
         if kind >= 2:
             motion = solution.motion(name)
             data.qpos[at] += motion.value[0]
@@ -181,6 +185,8 @@ def inverse(model, notes, solution):
         data.qvel[v : v + 3], data.qacc[v : v + 3] = rate, turning
     mujoco.mj_inverse(model, data)
     alone = {model.joint(j).name: model.jnt_dofadr[j] for j in np.flatnonzero(model.jnt_type >= 2)}
+    for v in alone.values():
+        data.qfrc_inverse[v] += rubs[v] * np.tanh(data.qvel[v] / 1e-3)
     efforts = {name: float(data.qfrc_inverse[v]) for name, v in alone.items()}
     return data.qfrc_inverse * data.qvel, efforts
 

@@ -151,7 +151,7 @@ RUBS = {"mu": 0.1, "radius": 0.01, "length": 0.1}
         ("pin", RUBS, "turns and has no guide length; expected radius="),
         ("pin", {"mu": -0.1, "radius": 0.01}, "mu must be at least 0, got -0.1"),
         ("pin", {"mu": 0.1, "radius": 0.0}, "radius must be positive, got 0"),
-        ("pin", {}, "expected mu=, a friction coefficient, or viscous="),
+        ("pin", {}, "expected mu=, a friction coefficient, coulomb= or viscous="),
         ("pin", {"viscous": 0.1, "radius": 0.1}, "radius needs mu="),
         ("pin", {"mu": 0.1, "radius": 0.01, "static": 0.2}, "static needs stribeck"),
         ("pin", {"mu": 0.1, "radius": 0.01, "stribeck": 0.2}, "stribeck needs static="),

@@ -110,3 +110,18 @@ def test_a_slider_beside_its_guide_hangs_on_its_pin():
     solution = evaluate(Scene(m, law, t=(0, 1, 9), posture=posture))
     assert solution.certified
     assert solution.reaction("B").mx == pytest.approx(-mass * 9.81 * side, rel=1e-12)
+
+
+def test_four_feet_bear_the_weight():
+    """At rest the normal forces add up to the weight, alike on both sides."""
+    case = load_case("quadruped").scene
+    at_rest = dict.fromkeys(case.motion, polynomial(0.0))
+    scene = Scene(case.mechanism, at_rest, t=(0, 0, 1), drives=list(case.drives))
+    solution = evaluate(scene, wanted=["effort", "output"], backend="vm")
+    normal = {
+        leg: solution.series[f"output:{leg}_foot_normal"][0] for leg in ("FL", "FR", "RL", "RR")
+    }
+    assert sum(normal.values()) == pytest.approx((8.0 + 2.0 + 4 * 1.7) * 9.81, rel=1e-12)
+    assert normal["FL"] == pytest.approx(normal["FR"], rel=1e-12)
+    assert solution.effort("RL_knee")[0] == pytest.approx(solution.effort("RR_knee")[0], rel=1e-11)
+    assert not any("foot" in note for note in solution.notes)

@@ -46,6 +46,7 @@ INSTANT = {
     "delta": 4560,
     "bricard": 2044,
     "v6": 8042,
+    "quadruped": 10133,
 }
 LOOPS = {"rrr3": 239, "beam_pump": 50, "cardan_shaft": 62}
 LOOPS |= {

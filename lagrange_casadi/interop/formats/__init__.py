@@ -9,12 +9,13 @@ from __future__ import annotations
 
 import os
 import stat
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from ...base.arguments import public
 from ...base.files import check_writable, writing
+from ...base.units import Number
 from ...errors import LagrangeCasadiError, ModelFileError, PathError
 from ...model.scene import Scene
 from . import asmt, json_model, mjcf, sdf, urdf
@@ -22,7 +23,8 @@ from .as_case import case_text
 from .checks import checked
 from .missing_drives import driven
 from .of_scene import model_of
-from .record import Model
+from .record import Model, Payload
+from .standing import Standing
 
 __all__ = ["FORMATS", "case_of", "read", "save_model"]
 
@@ -40,7 +42,15 @@ LARGEST = 64 * 2**20
 
 
 @public
-def read(path: str | os.PathLike[str], *, accept_inertias: bool = False) -> Scene:
+def read(
+    path: str | os.PathLike[str],
+    *,
+    accept_inertias: bool = False,
+    payload: Sequence[str] = (),
+    floating: bool = False,
+    posture: Mapping[str, Number] | None = None,
+    contacts: Sequence[str] = (),
+) -> Scene:
     """Read a mechanism from a file of another program.
 
     Parameters
@@ -49,6 +59,15 @@ def read(path: str | os.PathLike[str], *, accept_inertias: bool = False) -> Scen
         The file; its ending is the format, see the page on models of other programs.
     accept_inertias
         True for moments of inertia as the file gives them, also those that no body has.
+    payload
+        Masses at links or frames of the file, as ``["tool0=3kg@(0,0,0.1)"]``.
+    floating
+        True for a base that is free, with its mass, of a robot that is not fixed to the ground.
+    posture
+        Coordinates in which the robot stands [rad or m], by their names in the case; others are
+        zero.
+    contacts
+        Links or frames of the file whose origins stay where they are in that posture.
 
     Returns
     -------
@@ -61,7 +80,8 @@ def read(path: str | os.PathLike[str], *, accept_inertias: bool = False) -> Scen
         For what the package does not support, with file, line and element.
     """
     name: dict[str, Any] = {"__name__": "lagrange_casadi_case"}
-    text = case_of(path, accept_inertias=accept_inertias)
+    stands = Standing(floating, posture or {}, contacts)
+    text = case_of(path, accept_inertias=accept_inertias, payload=payload, stands=stands)
     exec(compile(text, f"<{Path(path).name}>", "exec"), name)  # our own text, see as_case
     try:
         scene: Scene = name["scene"]()
@@ -70,10 +90,23 @@ def read(path: str | os.PathLike[str], *, accept_inertias: bool = False) -> Scen
     return scene
 
 
-def case_of(path: str | os.PathLike[str], *, accept_inertias: bool = False) -> str:
-    """Return the text of a case for a file of another program."""
-    model = checked(_model(Path(path)), accept_inertias=accept_inertias)
-    return case_text(driven(model))
+def case_of(
+    path: str | os.PathLike[str],
+    *,
+    accept_inertias: bool = False,
+    payload: Sequence[str] = (),
+    stands: Standing | None = None,
+) -> str:
+    """Return the text of a case for a file of another program, as of :func:`read`."""
+    stands = stands or Standing()
+    loads, model = [Payload.of(text) for text in payload], _model(Path(path), stands.floating)
+    if stands.floating and model.file.suffix.lower() in (".json", ".asmt"):
+        raise model.refuse("", "only a URDF, SDF or MJCF has a base that floating= can free")
+    for load in loads:
+        model.load(load)
+    model = checked(model, accept_inertias=accept_inertias)
+    driven(stands.placed(model))
+    return case_text(model)
 
 
 @public
@@ -109,7 +142,7 @@ def save_model(
         draft.write(text.encode())
 
 
-def _model(path: Path) -> Model:
+def _model(path: Path, floating: bool) -> Model:
     if (reader := FORMATS.get(path.suffix.lower())) is None:
         if path.suffix.lower() == ".xacro":
             raise ModelFileError(
@@ -130,6 +163,6 @@ def _model(path: Path) -> Model:
         raise PathError(f"cannot read {path}: {error.strerror}") from None
     except UnicodeDecodeError:
         raise ModelFileError(f"{path.name}: no text in UTF-8") from None
-    model = Model(path.stem, path)
+    model = Model(path.stem, path, floating=floating)
     reader(model, text)
     return model

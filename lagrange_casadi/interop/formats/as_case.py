@@ -38,6 +38,9 @@ def turned(angle, cosine, sine):
     return angle + sine * ca.cos(angle) - cosine * ca.sin(angle)
 '''
 
+_SMOOTH = "smooth=0.001"
+"""The rate within which dry friction grows, so that a joint at rest has a definite effort."""
+
 _OWN = f"""
 from math import pi
 
@@ -76,7 +79,7 @@ class _Case:
         ends = (model.joints.get(name) or model.ties[name] for name in turned)
         self.turned = {name for one in ends for name in (one.parent, one.child)}
         self.used = {end for one in model.couplings.values() for end in (one.first, one.second)}
-        self.used |= {one.joint for one in model.springs}
+        self.used |= {*model.motors, *(one.joint for one in model.springs)}
         self.stated = {
             here: stated
             for (kind, stated), here in model.named.items()
@@ -97,6 +100,7 @@ class _Case:
         for coupling in model.couplings.values():
             self.coupling(coupling)
         self.loads()
+        self.drives()
         for tie in model.ties.values():
             self.called(tie.name)
             self.lines += _tie_lines(self.places, tie)
@@ -136,7 +140,7 @@ class _Case:
         """Declare a body as a link between two places, all in ground axes."""
         name = self.variables[body.name] = self.places.variable(body.name)
         self.called(body.name)
-        mass = self.places.masses.get(body.mass) or text_of(body.mass)
+        mass = self.places.mass(body)
         if body.point:
             self.lines.append(f"{name} = m.point_mass({json.dumps(body.name)}, {mass})")
             return
@@ -170,6 +174,11 @@ class _Case:
         name = self.variables[f"joint {joint.name}"] = self.places.variable(joint.name)
         near, far = self.model.frames(joint)
         arguments: list[object] = [json.dumps(joint.name)]
+        if joint.name in self.model.contacts:
+            foot, at = self.places.point(joint.child, far.place), self.short.place(near.place)
+            mu = f"friction={self.places.mu}"
+            self.call("m.contact", *arguments, foot, mu, vector(at, "at"))
+            return
         if joint.name in self.open:
             gap, angle = self.open[joint.name]
             if gap or angle:
@@ -230,9 +239,12 @@ class _Case:
         """
         for one in self.model.springs:
             joint, rest = self.variables[f"joint {one.joint}"], self.motions.offset(one.joint)
-            if one.damping:
-                name = json.dumps(self.load(f"{one.joint}_damping"))
-                self.call("m.friction", name, joint, f"viscous={text_of(one.damping)}")
+            losses = [f"viscous={text_of(one.damping)}"] if one.damping else []
+            losses += [f"coulomb={text_of(one.friction)}", _SMOOTH] if one.friction else []
+            if losses:
+                word = "friction" if one.friction else "damping"
+                name = json.dumps(self.load(f"{one.joint}_{word}"))
+                self.call("m.friction", name, joint, *losses)
             if one.stiffness and self.model.joints[one.joint].kind == "prismatic":
                 self.pull(one, f"m.coordinate({joint}){signed(rest - one.rest)}")
             elif one.stiffness:
@@ -243,13 +255,24 @@ class _Case:
             lift = (body.weight - 1.0) * self.model.gravity
             if body.mass and np.any(lift):
                 point = self.places.point(body.name, body.frame.at(body.centre))
-                mass = self.places.masses.get(body.mass) or text_of(body.mass)
+                mass = self.places.mass(body)
                 force = [
                     f"{key}={text_of(one)} * {mass}"
                     for key, one in zip("xyz", lift.tolist(), strict=True)
                     if one
                 ]
                 self.call("m.force", json.dumps(self.load(f"{body.name}_lift")), point, *force)
+
+    def drives(self) -> None:
+        """Declare what is known of drives, and name frames without mass."""
+        for joint, numbers in self.model.motors.items():
+            given = [f"{word}={text_of(number)}" for word, number in numbers.items()]
+            name = json.dumps(self.load(f"{joint}_drive"))
+            self.call("m.drive", name, self.variables[f"joint {joint}"], *given)
+        for stated, (body, frame) in self.model.spots.items():
+            point = self.places.point(body, self.model.frame_of(body).then(frame).place)
+            name = self.places.variable(stated)
+            self.lines.append(f"{name} = {point}")
 
     def pull(self, one: Spring, stretched: str) -> None:
         """Declare the spring of a joint that slides, as a force on its child along the axis, and

@@ -42,11 +42,12 @@ a path have together.
 _FOLDERS = ("assetdir", "meshdir", "texturedir")
 _BLANK = b"\xef\xbb\xbf \t\r\n"
 _UPRIGHT = np.array([1.0, 0.0, 0.0, 0.0])
-_SWITCHES = ("gravity", "equality", "constraint", "spring", "damper", "passive")
+_SWITCHES = ("gravity", "equality", "constraint", "spring", "damper", "passive", "frictionloss")
 _READ = (
     *("body_parentid", "body_mass", "body_inertia", "body_ipos", "body_iquat", "body_jntadr"),
     *("body_jntnum", "body_gravcomp", "jnt_type", "jnt_pos", "jnt_axis", "jnt_qposadr"),
-    *("jnt_dofadr", "jnt_stiffness", "dof_damping", "qpos0", "qpos_spring", "eq_active0"),
+    *("jnt_dofadr", "jnt_stiffness", "dof_damping", "dof_armature", "dof_frictionloss"),
+    *("jnt_actfrclimited", "jnt_actfrcrange", "qpos0", "qpos_spring", "eq_active0"),
     *("eq_obj1id", "eq_obj2id", "eq_data", "site_bodyid", "site_pos", "site_quat"),
     *("actuator_trnid", "geom_contype", "opt.gravity"),
     *(f"disable {name}" for name in _SWITCHES),
@@ -65,7 +66,7 @@ _IDLE = "|".join(
         # Contacts, and how MuJoCo goes on in time.
         r"opt\.((ccd|sdf|ls|noslip|o)_\w+|iterations|tolerance|solver|jacobian|cone|impratio)",
         r"opt\.(integrator|timestep|apirate|magnetic|sleep_tolerance|\w+flags|disableactuator)",
-        r"disable (limit|contact|frictionloss|clampctrl|warmstart|filterparent|actuation|refsafe)",
+        r"disable (limit|contact|clampctrl|warmstart|filterparent|actuation|refsafe)",
         r"disable (sensor|midphase|eulerdamp|autoreset|nativeccd|island|multiccd)",
         r"enable (override|energy|fwdinv|invdiscrete|sleep|diagexact|ipc|speculative|multiccd)",
         r"enable (island)",
@@ -76,12 +77,11 @@ addresses, what contacts are computed with.
 """
 
 _WORDS = {
-    r"dof_frictionloss": "Friction of joints",
     r"\w+_armature": "Armature, the inertia of motors at joints",
     r"jnt_(limited|range)": "Limits of joints",
     r"pair_\w+|geom_(adhesion|surfacevel)": "Contacts",
     r"(tendon|ten|wrap)_\w+": "Tendons",
-    r"actuator_\w+|jnt_actfrc\w+": "Actuators, except which joints they drive",
+    r"actuator_\w+|jnt_actfrcgravcomp": "Actuators, except which joints they drive",
     r"flex\w+": "Deformable bodies",
     r"n?plugin\w*|\w+_plugin": "Plugins",
     r"nkey|key_\w+": "Keyframes",
@@ -217,6 +217,10 @@ class _Reader:
         for kind, (j, *_) in zip(self.kinds["actuator_trntype"], m.actuator_trnid, strict=True):
             if kind in ("JOINT", "JOINTINPARENT") and int(j) in self.joints:
                 model.preferred.append(self.joints[int(j)])
+        for k, body in enumerate(m.site_bodyid.tolist()):
+            if stated := self.names["site"][k]:
+                frame = self.frame(f"site {shown(stated)}", m.site_pos[k], m.site_quat[k])
+                model.spots[stated] = self.bodies[body], frame
         self.left_out()
 
     def called(self, kind: str, k: int) -> str:
@@ -241,7 +245,9 @@ class _Reader:
         )
         self.bodies[k], above = name, self.bodies[int(m.body_parentid[k])]
         first, count = int(m.body_jntadr[k]), int(m.body_jntnum[k])
-        if not count:
+        if not count and above == GROUND:
+            model.base(name, where)
+        elif not count:
             model.attach(name, above, "weld", where)
         for j in range(first, first + count):
             below = name
@@ -263,16 +269,26 @@ class _Reader:
         near = model.frame_of(above).relative(frame.then(far))
         name = self.joints[j] = model.add(Joint, stated, where, kind, above, below, near, far)
         stiffness = 0.0 if "spring" in self.off else m.jnt_stiffness[j]
-        damping = 0.0 if "damper" in self.off else m.dof_damping[m.jnt_dofadr[j]]
-        if not stiffness and not damping:
-            return
+        at, v = m.jnt_qposadr[j], m.jnt_dofadr[j]
+        damping = 0.0 if "damper" in self.off else m.dof_damping[v]
+        friction = 0.0 if self.off & {"frictionloss", "constraint"} else m.dof_frictionloss[v]
+        largest = np.abs(m.jnt_actfrcrange[j]).max() if m.jnt_actfrclimited[j] else 0.0
+        numbers = damping, stiffness, m.qpos_spring[at] - m.qpos0[at], friction
+        spring = model.numbers(where, [float(one) for one in numbers], "spring and damper", 4)
+        motor = model.numbers(where, [float(m.dof_armature[v]), float(largest)], "armature", 2)
         if kind not in ("prismatic", "revolute"):
-            model.notes.append(f"Spring and damper of {where}, which has no axis: not read.")
+            for words, given in (
+                ("Spring and damper", spring[:2]),
+                ("Friction", spring[3]),
+                ("Armature", motor),
+            ):
+                if np.any(given):
+                    model.notes.append(f"{words} of {where}, which has no axis: not read.")
             return
-        at = m.jnt_qposadr[j]
-        numbers = damping, stiffness, m.qpos_spring[at] - m.qpos0[at]
-        spring = model.numbers(where, [float(one) for one in numbers], "spring and damper")
-        model.springs.append(Spring(name, *spring.tolist()))
+        if np.any(spring[[0, 1, 3]]):
+            model.springs.append(Spring(name, *spring.tolist()))
+        armature, effort = motor.tolist()
+        model.motor(name, armature=armature, effort=effort)
 
     def equality(self, k: int) -> None:
         """Declare an equality: connect and weld close loops, joint couples two of them."""

@@ -78,6 +78,7 @@ def compiled(file: str, fields: list[str], usual: str) -> dict[str, object]:
             ("body", mujoco.mjtObj.mjOBJ_BODY, model.nbody),
             ("joint", mujoco.mjtObj.mjOBJ_JOINT, model.njnt),
             ("equality", mujoco.mjtObj.mjOBJ_EQUALITY, model.neq),
+            ("site", mujoco.mjtObj.mjOBJ_SITE, model.nsite),
         )
     }
     return {

@@ -40,7 +40,9 @@ class Places:
         }
         self._named: dict[Place, str] = {}
         self._lengths: dict[tuple[int, float], str] = {}
-        self.masses: dict[float, str] = {}
+        self._masses: dict[float, str] = {}
+        self._loaded: dict[str, str] = {}
+        self.mu = ""
 
     def _ends(self, body: Body, mine: list[Joint]) -> tuple[Place, Place]:
         """Return two places that a link lies between: a joint, and the place farthest from it."""
@@ -65,11 +67,18 @@ class Places:
         """Yield lines that declare what repeats: masses of several bodies, and components of
         several places.
         """
-        masses = Counter(body.mass for body in self.model.bodies.values() if body.mass > 0.0)
-        first = {body.mass: body.name for body in reversed(self.model.bodies.values())}
+        own = [one for one in self.model.bodies.values() if one.name not in self.model.payloads]
+        masses = Counter(body.mass for body in own if body.mass > 0.0)
+        first = {body.mass: body.name for body in reversed(own)}
         for mass in (mass for mass, count in masses.items() if count > 1):
-            name = self.masses[mass] = self._parameter(f"mass_{first[mass]}")
+            name = self._masses[mass] = self._parameter(f"mass_{first[mass]}")
             yield f'{name} = m.parameter("{name}", {text_of(mass)}, "kg", low=0.0)'
+        for body in map(self.model.bodies.__getitem__, self.model.payloads):
+            name = self._loaded[body.name] = self._parameter(f"mass_{body.name}")
+            yield f'{name} = m.parameter("{name}", {text_of(body.mass)}, "kg", low=0.0)'
+        if self.model.contacts:
+            self.mu = self._parameter("friction")
+            yield f'{self.mu} = m.parameter("{self.mu}", 0.6, low=0.0)'
         for joint, place in self.at.items():
             if place not in self._named and any(place):
                 self._named[place] = self.variable(f"at_{joint}")
@@ -81,6 +90,10 @@ class Places:
             owner = owners[k, size]
             name = self._lengths[k, size] = self._parameter(f"{joint_at[owner]}_{'xyz'[k]}")
             yield f'{name} = m.parameter("{name}", {text_of(size)}, "m")'
+
+    def mass(self, body: Body) -> str:
+        """Return a body's mass, as a parameter where it is one."""
+        return self._loaded.get(body.name) or self._masses.get(body.mass) or text_of(body.mass)
 
     def named(self) -> Iterator[str]:
         """Yield lines that name the places of joints."""

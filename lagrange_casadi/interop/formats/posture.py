@@ -5,7 +5,7 @@ how bodies are moved to close them.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from heapq import heapify, heappop, heappush
 from typing import Any, TypeVar
@@ -70,6 +70,24 @@ def outward(closures: Sequence[Closure], reached: set[str]) -> Iterator[Closure]
             reached.add(body)
             for other in on.pop(body, ()):
                 heappush(waiting, other)
+
+
+def posed(model: Model, posture: Mapping[str, float]) -> Model:
+    """Return a model whose bodies are where coordinates of its tree of joints, zero in the
+    reference posture, put them.
+    """
+    found, bodies = {GROUND: Frame()}, dict(model.bodies)
+    for joint in outward([*model.joints.values()], {GROUND}):
+        if joint.parent not in found or joint.child in found:
+            continue
+        frame = found[joint.parent].then(joint.on_parent)
+        for name, (_, move, axis) in zip(joint.coordinates, MOVES[joint.kind], strict=True):
+            along, q = np.eye(3)["xyz".index(axis)], posture.get(name, 0.0)
+            step = Frame(q * along) if move == "slide" else Frame(axes=turned(along, q))
+            frame = frame.then(step)
+        found[joint.child] = frame.then(joint.on_child.inverse())
+        bodies[joint.child] = replace(bodies[joint.child], frame=found[joint.child])
+    return replace(model, bodies=bodies)
 
 
 def _axes(kind: str, *moves: str) -> str:

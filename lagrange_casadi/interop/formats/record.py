@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,9 @@ from typing import Any
 import numpy as np
 
 from ...base.arrays import Array
-from ...errors import ModelFileError, shown
+from ...base.numerals import real
+from ...base.units import quantity
+from ...errors import DeclarationError, ModelFileError, shown
 from ...model.joints import IN_SPACE
 from .file_frames import Frame, right_angled
 
@@ -135,14 +138,48 @@ class Coupling:
 
 @dataclass(frozen=True, eq=False)
 class Spring:
-    """A damper and a spring of a joint of one coordinate: damping and stiffness in SI units, and
-    the coordinate where the spring has no force.
+    """A damper, a spring and dry friction of a joint of one coordinate, in SI units, and the
+    coordinate where the spring has no force.
     """
 
     joint: str
     damping: float = 0.0
     stiffness: float = 0.0
     rest: float = 0.0
+    friction: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Payload:
+    """A mass [kg] at a place on the axes of a link or frame that the file names [m]."""
+
+    on: str
+    mass: float
+    place: Array
+
+    @classmethod
+    def of(cls, text: str) -> Payload:
+        """Read ``FRAME=MASS`` or ``FRAME=MASS@(X,Y,Z)``; numbers may have units.
+
+        Raises :class:`.DeclarationError` for any other text.
+        """
+        found = re.fullmatch(r"(.+?)=([^@]+)(?:@\(([^,]+),([^,]+),([^,]+)\))?", text)
+        if found is None:
+            raise DeclarationError(
+                f"payload {shown(text)}: expected FRAME=MASS or FRAME=MASS@(X,Y,Z), as in"
+                " tool0=3kg@(0,0,100mm)"
+            )
+        what, place = f"payload '{found[1]}'", [one or "0" for one in found.groups()[2:]]
+        mass = _amount(f"{what}: mass", found[2], "kg")
+        if not mass > 0.0:
+            raise DeclarationError(f"{what}: mass must be positive, got {mass:g} kg")
+        return cls(found[1], mass, np.array([_amount(what, one, "m") for one in place]))
+
+
+def _amount(what: str, text: str, unit: str) -> float:
+    with suppress(ValueError):
+        return real(text)
+    return quantity(what, text, unit)
 
 
 @dataclass(frozen=True, eq=False)
@@ -199,7 +236,11 @@ class Model:
     coordinates at the start, from which loops that are open in the reference posture are assembled;
     bodies that are only ``drawn`` are moved instead. ``drives`` are the joints whose efforts make
     the motion, where these are not those that have one; ``preferred`` are joints that are driven
-    first. ``named`` are the names here by the kind of a part and its name of the file, ``repeated``
+    first. ``motors`` are what drives are made of by the names of joints, with the keywords of
+    :meth:`.Mechanism.drive`. ``spots`` are what has a name and no mass, by its name of the file:
+    its body, and where it is on that. ``payloads`` are bodies whose masses are parameters. Of one
+    that is ``floating`` the base is free; ``contacts`` are joints that hold points on the ground.
+    ``named`` are the names here by the kind of a part and its name of the file, ``repeated``
     how often a name was wanted once more. ``usual`` are numbers that are the format's, with the
     parts that do not give them. ``rounded`` is by how much axes are off right angles, and where.
     """
@@ -211,6 +252,11 @@ class Model:
     couplings: dict[str, Coupling] = field(default_factory=dict)
     ties: dict[str, Tie] = field(default_factory=dict)
     springs: list[Spring] = field(default_factory=list)
+    motors: dict[str, dict[str, float]] = field(default_factory=dict)
+    spots: dict[str, tuple[str, Frame]] = field(default_factory=dict)
+    payloads: list[str] = field(default_factory=list)
+    floating: bool = False
+    contacts: list[str] = field(default_factory=list)
     motions: dict[str, Law] = field(default_factory=dict)
     gravity: Array = field(default_factory=lambda: np.array([0.0, 0.0, -9.81]))
     span: tuple[float, float, int] = (0.0, 1.0, 101)
@@ -333,6 +379,38 @@ class Model:
             self.notes.append(f"{words} is no joint of the file: it is free.")
         else:
             self.notes.append(f"Joint {shown(stated)} is fixed, and follows no other one.")
+
+    def motor(self, joint: str, **numbers: float) -> bool:
+        """Add numbers of a joint's drive, those that are not zero; false for a joint that has not
+        one coordinate.
+        """
+        if len(self.joints[joint].coordinates) != 1:
+            return False
+        if given := {word: number for word, number in numbers.items() if number}:
+            self.motors[joint] = self.motors.get(joint, {}) | given
+        return True
+
+    def load(self, payload: Payload) -> None:
+        """Add a mass at a link or frame. Raises :class:`.ModelFileError` for an unknown one."""
+        on, frame = self.spot(payload.on)
+        place = self.frame_of(on).then(frame).then(Frame(payload.place))
+        words = f"{payload.on}_payload"
+        name = self.add(Body, words, "", payload.mass, np.zeros(3), None, place, point=True)
+        self.attach(name, on, "weld", "")
+        self.payloads.append(name)
+
+    def spot(self, stated: str) -> tuple[str, Frame]:
+        """Return the body of a link or frame of the file, and where it is on that.
+
+        Raises :class:`.ModelFileError` for an unknown one.
+        """
+        bodies = {stated: here for (kind, stated), here in self.named.items() if kind == "body"}
+        valid = {stated: (here, Frame()) for stated, here in bodies.items()} | self.spots
+        return valid[self.known("", "link or frame", stated, valid)]
+
+    def base(self, body: str, where: str) -> None:
+        """Attach the first body to the ground: free if the model is floating."""
+        self.attach(body, GROUND, "free" if self.floating else "weld", where)
 
     def attach(self, body: str, parent: str, kind: str, where: str) -> None:
         """Attach a body as it is: by a ``weld``, or by a ``free`` joint."""

@@ -26,8 +26,8 @@ KINDS: dict[str, str] = {
 }
 """Types of joints; a gearbox couples two others."""
 
-_DYNAMICS = ("damping", "spring_stiffness", "spring_reference")
-"""Numbers of the spring and the damper that a revolute or prismatic joint can have."""
+_DYNAMICS = ("damping", "spring_stiffness", "spring_reference", "friction")
+"""Numbers of what resists the motion of a revolute or prismatic joint."""
 
 _DEEPEST = 200
 
@@ -57,11 +57,16 @@ def read(model: Model, text: str) -> None:
     for name, link in ((name, one) for name, one in named.items() if one.name == "link"):
         joints.on[name] = _body(model, link, joints.frame(name, ()))
     joints.read()
+    for name, one in named.items():
+        if one.name == "frame" and (body := joints.body_of(name)):
+            frame = joints.frame(name, ())
+            model.spots[name] = body, model.frame_of(body).relative(frame)
     hung = {name for one in model.joints.values() for name in (one.parent, one.child)}
     if GROUND not in hung and model.bodies:
         first = next(iter(model.bodies.values()))
-        model.attach(first.name, GROUND, "weld", first.where)
-        model.notes.append(f"No joint leads to the world: '{first.name}' is fixed.")
+        model.base(first.name, first.where)
+        if not model.floating:
+            model.notes.append(f"No joint leads to the world: '{first.name}' is fixed.")
     for one in line.all("model", "include"):
         raise one.refuse("is not supported; put its links into the model itself")
     note_unread(model, root)
@@ -113,6 +118,8 @@ class Joints:
             if (axis := line.first(key)) is not None:
                 losses = axis.optional("dynamics")
                 resist(model, name, losses, losses.inner, first=key == "axis")
+                bounds = axis.optional("limit")
+                limit(model, name, bounds, bounds.inner, ("effort", "velocity"))
 
     def couplings(self, line: Element, on: dict[str, list[str]]) -> None:
         """Declare what ties a joint to another one, a mimic or a gearbox, by the joints on each
@@ -158,7 +165,12 @@ class Joints:
     def end(self, line: Element, key: str) -> str:
         """Return the body of a joint's parent or child, which may be given by a frame on it."""
         data = line.needed(key)
-        name = data.text
+        if not (body := self.body_of(data.text)):
+            raise data.refuse(f"unknown link {shown(data.text)}; valid: {', '.join(self.on)}")
+        return body
+
+    def body_of(self, name: str) -> str:
+        """Return the body that a link or frame is on; empty where there is none."""
         for _ in range(len(self.named) + 1):
             if name in self.on:
                 return self.on[name][0]
@@ -166,7 +178,7 @@ class Joints:
             if frame is None or frame.name != "frame":
                 break
             frame.seen, name = True, str(frame.stated("attached_to", ""))
-        raise data.refuse(f"unknown link {shown(data.text)}; valid: {', '.join(self.on)}")
+        return ""
 
     def frame(self, name: str, above: tuple[str, ...]) -> Frame:
         """Return where a link, frame or joint is; poses may be given relative to each other."""
@@ -210,21 +222,35 @@ def _body(model: Model, link: Element, frame: Frame) -> tuple[str, Frame]:
 def resist(
     model: Model, joint: str, line: Element, number: Callable[[str, float], float], *, first: bool
 ) -> None:
-    """Read the spring and the damper of a joint's first axis or second one, as far as its kind can
-    have these; what else has a number there is left.
+    """Read what resists a joint's motion about its first axis or second one, as far as its kind can
+    have this; what else has a number there is left.
     """
     single = first and model.joints[joint].kind in ("revolute", "prismatic")
-    able, found = _DYNAMICS if single else (), [0.0, 0.0, 0.0]
-    for k, key in enumerate((*_DYNAMICS, "friction")):
+    found = [0.0] * len(_DYNAMICS)
+    for k, key in enumerate(_DYNAMICS):
         value = number(key, 0.0)
-        if key in able and (value >= 0.0 or key != "damping"):
+        if single and (value >= 0.0 or key not in ("damping", "friction")):
             found[k] = value
         elif value:
             line.leave(key)
     if found[2] and not found[1]:
         line.leave("spring_reference")
-    if found[0] or found[1]:
+    if found[0] or found[1] or found[3]:
         model.springs.append(Spring(joint, *found))
+
+
+def limit(
+    model: Model,
+    joint: str,
+    line: Element,
+    number: Callable[[str, float], float],
+    names: tuple[str, str],
+) -> None:
+    """Read the largest effort and speed of a joint; a number that is not positive is none."""
+    effort, speed = (max(number(name, 0.0), 0.0) for name in names)
+    if not model.motor(joint, effort=effort, speed=speed):
+        for name in names:
+            line.leave(name)
 
 
 def _pose(line: Element | None) -> Frame:

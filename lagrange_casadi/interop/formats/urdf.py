@@ -18,7 +18,7 @@ from ...errors import shown
 from .file_elements import Element, note_unread, parsed, six_moments
 from .file_frames import Frame
 from .record import GROUND, Body, Joint, Model
-from .sdf import Joints, resist
+from .sdf import Joints, limit, resist
 
 KINDS: dict[str, str] = {
     "revolute": "revolute",
@@ -58,7 +58,6 @@ class _Robot:
         self.model, self.root = model, root
         self.links, self.joints = root.by_name("link"), list(root.all("joint"))
         self.on: dict[str, tuple[str, Frame]] = {}
-        self.frames: list[str] = []
 
     def read(self) -> None:
         """Read the robot."""
@@ -70,6 +69,9 @@ class _Robot:
             found = ", ".join(map(repr, roots)) or none
             raise self.root.refuse(f"expected one root link, found {found}")
         self.on[roots[0]] = (GROUND, Frame())
+        if self.model.floating:
+            self.on[roots[0]] = (name := self.body(roots[0], Frame()), Frame())
+            self.model.base(name, self.links[roots[0]].where)
         hung: dict[str, list[int]] = {}
         for k, (parent, _) in enumerate(ends):
             hung.setdefault(parent, []).append(k)
@@ -95,8 +97,6 @@ class _Robot:
             self.coupling(coupling, above)
         self.gazebo()
         self.actuators()
-        if self.frames:
-            self.model.notes.append(f"Frames without mass are left out: {', '.join(self.frames)}.")
 
     def grow(self, line: Element) -> None:
         """Read a joint: its link is placed by it, or closes a loop."""
@@ -107,7 +107,7 @@ class _Robot:
             body, frame = self.on[parent]
             if kind == "weld" and self.links[child].first("inertial") is None:
                 self.on[child] = (body, frame.then(origin))
-                self.frames += [child] if body != GROUND else []
+                self.model.spots[child] = self.on[child]
                 self.model.named["joint", stated] = ""
                 return
             self.on[child] = (self.body(child, self.placed(parent).then(origin)), Frame())
@@ -115,6 +115,8 @@ class _Robot:
         name = self.add(line, kind, (parent, origin.then(axes)), (child, axes))
         if (losses := line.first("dynamics")) is not None:
             resist(self.model, name, losses, losses.amount, first=True)
+        if (bounds := line.first("limit")) is not None:
+            limit(self.model, name, bounds, bounds.amount, ("effort", "velocity"))
 
     def placed(self, link: str) -> Frame:
         """Return where a link is in the zero posture."""
@@ -179,18 +181,33 @@ class _Robot:
         Joints(model, more.by_name("joint"), {"world": (GROUND, Frame()), **on}).read()
 
     def actuators(self) -> None:
-        """Read which joints have a drive."""
-        model, fixed = self.model, []
-        for group in self.root.all("transmission", "ros2_control"):
+        """Read which joints have a drive, its ratio, and the inertia of its rotor."""
+        model, fixed, own = self.model, [], list(self.root.all("transmission", "ros2_control"))
+        for group in (line for one in own for line in (one, *one.all("transmission"))):
+            parts = [group, *group.all("joint", "actuator")]
             for joint in group.all("joint"):
                 if group.name == "transmission" or joint.first("command_interface") is not None:
                     if name := model.moving(stated := joint.attribute("name")):
                         model.preferred.append(name)
+                        self.rotor(name, parts)
                     else:
                         fixed.append(stated)
         if fixed:
             words = f"Drives of joints that are fixed or not in the file: {listed(fixed)}."
             model.notes.append(words)
+
+    def rotor(self, joint: str, parts: list[Element]) -> None:
+        """Read the ratio and the rotor's inertia of a joint's transmission, from any of its
+        ``parts``.
+        """
+        found = {"ratio": 0.0, "rotor_inertia": 0.0}
+        for part in parts:
+            for key in ("mechanicalReduction", "mechanical_reduction"):
+                found["ratio"] = part.inner(key) or found["ratio"]
+            for key, word in (("gear_ratio", "ratio"), ("rotor_inertia", "rotor_inertia")):
+                if (line := part.first(f"drake:{key}")) is not None:
+                    found[word] = line.amount("value", what=key)
+        self.model.motor(joint, **found)
 
     def body(self, stated: str, frame: Frame) -> str:
         """Declare a link as a body."""

@@ -13,7 +13,7 @@ from functools import cached_property, partial
 import numpy as np
 
 from ...base.quantities import Output
-from ...model.description import Description
+from ...model.description import Description, DriveNumbers
 from ...model.stated import Equation
 from .closure import Residuals
 from .contacts import actions, sense
@@ -182,8 +182,23 @@ def all_actions(placed: Placed) -> Iterator[Action]:
             place = load.points[0] if load.friction is not None else point
             at = placed.bodies[place.body].point(Vector(*place.at))[0]
             yield Action(f"load:{name}", point.body, at, sign * force, sign * couple)
+    for name, motor in declared.motors.items():
+        yield from _of_rotor(placed, f"drive:{name}", motor)
     for equation in placed.stated.equations:
         yield from _held(placed, equation)
+
+
+def _of_rotor(placed: Placed, name: str, motor: DriveNumbers) -> Iterator[Action]:
+    """Action of a drive's rotor on the bodies of its joint, by its acceleration."""
+    joint = placed.declared.joints[motor.coordinate]
+    at, near = placed.pins[joint.name][0], placed.bodies[joint.parent.body]
+    rate, change = (f(joint.name) for f in (placed.reported.rate, placed.reported.acceleration))
+    about = near.axes.turn(Vector(*joint.axes[0].direction))
+    taken = motor.reflected * change + motor.spin * about.dot(near.acceleration)
+    acts = placed.along(joint.name, joint.axes[0], -taken)
+    yield Action(name, joint.child.body, at, *acts, joint.parent.body)
+    turning = change * about + rate * near.rate.cross(about)
+    yield Action(name, joint.parent.body, at, NIL, -motor.spin * turning)
 
 
 def _held(placed: Placed, equation: Equation) -> Iterator[Action]:

@@ -86,16 +86,17 @@ def _of_laws(placed: Placed) -> Array | None:
         if numbers is None or value is None or Output("reaction", holder, "fx") not in outputs:
             continue
         worst = np.zeros_like(value) if worst is None else worst
+        constant = numbers.get("coulomb")
         lever = numbers.get("radius", 1.0) if rotates else 1.0
         speed, share = np.abs(rate) * lever, None
-        if (other := _beside(load.coordinate)) is not None:
+        if constant is None and (other := _beside(load.coordinate)) is not None:
             beside = outputs.get(Output("motion", other, "rate"))
             if beside is None:
                 continue
             speed = np.hypot(speed, beside * (1.0 if rotates else numbers.get("radius", 1.0)))
             share = np.divide(rate * lever, speed, out=np.zeros_like(rate), where=speed > 0.0)
         pressing = _pressing(placed, holder, numbers, rotates)
-        mu = np.full_like(rate, numbers.get("mu", 0.0))
+        mu = np.full_like(rate, numbers.get("mu", 0.0) if constant is None else constant)
         if "static" in numbers:
             mu += (numbers["static"] - mu) * np.exp(-((speed / numbers["stribeck"]) ** 2))
         steady = -numbers.get("viscous", 0.0) * rate
@@ -128,7 +129,8 @@ def _of_laws(placed: Placed) -> Array | None:
                 else np.maximum(residual, _aside(placed.reported, name, value, spin)),
                 slow,
             )
-        scale = float(np.max(mu)) * lever * _most(outputs, numbers) + float(np.max(np.abs(steady)))
+        most_pressing = lever * _most(outputs, numbers) if constant is None else 1.0
+        scale = float(np.max(mu)) * most_pressing + float(np.max(np.abs(steady)))
         worst = np.fmax(worst, np.divide(residual, scale, out=residual.copy(), where=scale > 0.0))
     return worst
 
@@ -177,6 +179,8 @@ def _most(outputs: Mapping[Output, Array], numbers: Mapping[str, float]) -> floa
 def _pressing(placed: Placed, name: str, numbers: Mapping[str, float], rotates: bool) -> Pressing:
     """Normal force in a joint, from its reaction on its own axes, the joint's axis first."""
     joint, reported = placed.declared.joints[name], placed.reported
+    if "coulomb" in numbers:
+        return lambda _: 1.0
     axes = placed.ends(name)[0].axes.carry(Axes.of(joint.triad))
     force, moment = (axes.resolve(reported.force("reaction", name, letter)) for letter in "fm")
     radius = numbers.get("radius", 0.0)

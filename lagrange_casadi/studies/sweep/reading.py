@@ -26,6 +26,7 @@ from ...errors import (
     PathError,
     StoreError,
     UnknownNameError,
+    check_kind,
     one_line,
     shown,
 )
@@ -259,6 +260,7 @@ class Sweep:
         """
         if axis not in self.dimensions:
             raise UnknownNameError("axis of designs", axis, self.dimensions)
+        check_kind("places", places, "a slice", slice)
         numbers = self.chosen.get(axis, np.arange(self.dimensions[axis]))
         return replace(self, chosen={**self.chosen, axis: numbers[places]})
 

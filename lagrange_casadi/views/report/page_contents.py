@@ -107,6 +107,7 @@ def contents(solution: Solution, live: Live | None = None) -> dict[str, Json]:
         "groups": GROUPS,
         "rows": [asdict(row) for row in _rows(solution)],
         "strength": list(_strength(solution)),
+        "drives": [{"name": name} | asdict(use) for name, use in solution.drives_used().items()],
         "parameters": list(_parameters(description)),
         "certificate": _certificate(solution),
         "notes": [*solution.notes, *(live.notes if live else ())],

@@ -9,7 +9,7 @@ function buildPage() {
   const left = element("div", { class: "left" }, frame);
   root.append(
     element("a", { class: "skip", href: "#tables" }, "Skip to the tables"), headOf(), glanceOf(), element("div", { class: "desk" }, left, element("div", { class: "right" }, linksTable(), deck.list, addingBar())),
-    element("div", { class: "tables", id: "tables" }, strengthTables(), resultTables(showRow)), element("div", { class: "facts" }, factSections()), tip, said,
+    element("div", { class: "tables", id: "tables" }, strengthTables(), driveTables(), resultTables(showRow)), element("div", { class: "facts" }, factSections()), tip, said,
   );
   const stage = new Stage(canvas);
   deck.stage = stage;

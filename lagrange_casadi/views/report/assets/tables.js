@@ -109,6 +109,16 @@ function strengthTables() {
   return [sortedTable("Strength", heads, () => contents.strength, { aside: ofFile, plain }).body];
 }
 
+/** What is used of the efforts and speeds that drives can do. */
+function driveTables() {
+  if (!contents.drives.length) return [];
+  const share = (use) => (use ? use.value / use.limit : -1);
+  const words = (use) => (use ? `${format(100 * share(use), 3)} % of ${shown(use.limit, use.unit)}${share(use) > 1 ? ", EXCEEDED" : ""}` : "");
+  const heads = [["drive", (row) => row.name], ...["effort", "speed"].map((word) => [`${word} used`, (row) => words(row[word]), (row) => share(row[word])])];
+  const plain = [["drive", (row) => row.name], ...["effort", "speed"].flatMap((word) => [[`${word} used`, (row) => row[word] && share(row[word])], [`largest ${word}`, (row) => row[word]?.value]])];
+  return [sortedTable("Drives", heads, () => contents.drives, { aside: element("span", { class: "fine" }, "of all instants of the file's design"), plain }).body];
+}
+
 /** The smaller tables and texts: parameters, parts, the certificate, what is open, how the numbers were made. */
 function factSections() {
   const range = ({ low, high, unit }) => (low === null && high === null ? "" : `${low === null ? "−∞" : shown(low, unit)} to ${high === null ? "∞" : shown(high, unit)}`);
