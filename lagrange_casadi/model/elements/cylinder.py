@@ -98,6 +98,7 @@ def cylinder(
     cap_area = math.pi / 4.0 * bore * bore
     rod_area = cap_area - math.pi / 4.0 * rod * rod
     barrel = mechanism.link(f"{name}_barrel", length=closed, mass=barrel_mass)
+    closed = barrel.length
     piston = mechanism.link(f"{name}_rod", length=closed, mass=rod_mass)
     mechanism.outlines[barrel.name] = [_box(0.1 * closed, 0.95 * closed, bore)]
     thick = 0.4 * bore if isinstance(rod, float) and rod == 0.0 else rod
@@ -116,9 +117,9 @@ def cylinder(
     mechanism.output(f"{name}_flow", cap_area * rate, unit="m^3/s")
     mechanism.output(f"{name}_power", push * rate, unit="W")
     # Of two ways to assemble it, that with the rod on the front's side of the barrel.
-    mechanism.rough[name] = ownership.at_defaults(barrel.length) / 2
+    mechanism.rough[name] = ownership.at_defaults(closed) / 2
     if open is not None:
-        reach = barrel.length + mechanism.coordinate(slide)
+        reach = closed + mechanism.coordinate(slide)
         stroke(mechanism, "cylinder", name, reach, closed, open)
     return Cylinder(barrel, piston, slide, cap_area, rod_area)
 
