@@ -54,6 +54,7 @@ UNLISTED = [
         "Listed",
         "Operand",
         "Over",
+        "Placement",
         "Progress",
         "Quantity",
     ),
