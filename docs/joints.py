@@ -7,7 +7,7 @@ from lagrange_casadi.animation import Film, write_animation
 from lagrange_casadi.motion import harmonic, polynomial
 
 FOLDER = Path(__file__).parent / "joints"
-FILM = Film(width=200, rate=8, seconds=3.0, names=False)
+FILM = Film(width=400, rate=8, seconds=3.0, names=False)
 SLIDE, TURN = 0.08, 0.5
 """How far coordinates swing [m and rad]."""
 ACROSS = {"axis": (0, 0, 1), "second": (1, 0, 0)}
