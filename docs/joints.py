@@ -1,5 +1,6 @@
 """Pictures of the joints in motion: ``python docs/joints.py`` writes them to ``docs/joints``."""
 
+import re
 from pathlib import Path
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate
@@ -13,8 +14,8 @@ SLIDE, TURN = 0.08, 0.5
 ACROSS = {"axis": (0, 0, 1), "second": (1, 0, 0)}
 JOINTS = {
     ("revolute", "plane"): ({}, [TURN]),
-    ("prismatic", "plane"): ({"axis": (1, 0), "angle": 1.0}, [SLIDE]),
-    ("weld", "plane"): ({"angle": 1.0}, []),
+    ("prismatic", "plane"): ({"axis": (1, 0), "angle": 0.6}, [SLIDE]),
+    ("weld", "plane"): ({"angle": 0.6}, []),
     ("revolute", "space"): ({"axis": (0, 0, 1)}, [TURN]),
     ("prismatic", "space"): ({"axis": (1, 0, 0)}, [SLIDE]),
     ("cylindrical", "space"): ({"axis": (1, 0, 0)}, [SLIDE, TURN]),
@@ -64,9 +65,22 @@ def slot():
     )
 
 
+def closer(svg):
+    """The picture without the ends of its bodies, as wide as before."""
+    width, height = map(int, re.search(r'viewBox="0 0 (\d+) (\d+)"', svg).groups())
+    box = 0.2 * width, 0.15 * height, 0.6 * width, 0.77 * height
+    size = f'width="{width}" height="{width * box[3] / box[2]:.0f}"'
+    seen = f'viewBox="{" ".join(f"{number:g}" for number in box)}"'
+    return re.sub(
+        r'width="\d+" height="\d+" viewBox="[^"]*"', f"{size} {seen}", svg, count=1
+    )
+
+
 made = {
     f"{kind}_{where}": scene(kind, where, *how) for (kind, where), how in JOINTS.items()
 }
 for name, moving in (made | {"slot_plane": slot()}).items():
     solution = evaluate(moving, wanted=["motion"], backend="vm")
-    write_animation(solution, FOLDER / f"{name}.svg", FILM)
+    picture = FOLDER / f"{name}.svg"
+    write_animation(solution, picture, FILM)
+    picture.write_text(closer(picture.read_text()))
