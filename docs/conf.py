@@ -47,6 +47,7 @@ UNLISTED = [
         "Deflection",
         "Derivatives",
         "Drawing",
+        "Drive",
         "Design",
         "Executor",
         "Expression",
