@@ -104,7 +104,7 @@ _KINDS: dict[str, tuple[str, str]] = {
 """Kinds of quantities by their units of SI: what they are called, and a text that gives one."""
 
 _DIGITS = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
-_TEXT = re.compile(rf"\s*(?=({_DIGITS}))\1\s*((?:1\s*/|[^\s.0-9]).*?)\s*")
+_TEXT = re.compile(rf"\s*(?=({_DIGITS}))\1\s*((?:1\s*/|[^\s.,0-9]).*?)\s*")
 _FACTOR = re.compile(r"([A-Za-z%]+)(?:\^?(-?[1-9][0-9]?))?")
 _UNCLEAR = re.compile(r"m\s+([A-Za-z]+)(\^?[1-9])?(?![\^\-0-9A-Za-z]).*")
 _SIGNS = str.maketrans("¹²³⁴⁻µμ·⋅", "1234-uu**") | str.maketrans({"°": "deg"})

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 
 from ..base.units import Number
-from ..studies.case import load_case
+from ..errors import LagrangeCasadiError
+from ..model.mechanism import Mechanism
+from ..studies.case import case_file, declared, load_case, name_of
 from .echo import echo
 from .options import target
 
@@ -21,7 +24,8 @@ def draw(
     """Draw a CASE as it is declared, whether its loops close or not.
 
     The drawing shows bodies, joints and loads with their names, and what is driven. A loop that
-    does not close is drawn with its gap in red.
+    does not close is drawn with its gap in red. Of a case that fails, the drawing shows what
+    was declared until then.
 
     Parameters
     ----------
@@ -33,8 +37,16 @@ def draw(
     parameters
         As of :func:`.studies.evaluate.evaluate`.
     """
-    found = load_case(case)
-    path = target("--out", out, f"{found.name}.svg", (".svg", ".png"))
+    file = case_file(case).resolve()
+    path = target("--out", out, f"{name_of(file)}.svg", (".svg", ".png"))
+    try:
+        found = load_case(case)
+    except LagrangeCasadiError as error:
+        if mechanism := declared(file, error, Mechanism):
+            with suppress(LagrangeCasadiError):
+                mechanism.draw(path, parameters=parameters)
+                echo(f"wrote {path}: what was declared before the error")
+        raise
     drawing = found.scene.draw(path, t=t, parameters=parameters)
     echo(*(f"note: {gap}" for gap in drawing.gaps), err=True)
     echo(f"wrote {path}")

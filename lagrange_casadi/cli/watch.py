@@ -57,7 +57,7 @@ def watch(
     except OSError as error:
         raise StoreError(f"--port {port}: {error.strerror}") from None
     with server:
-        echo(f"following {file} at {server.address}; Ctrl-C ends it")
+        echo(f"{server.address} follows {file}; Ctrl-C ends it")
         if not no_browser:
             webbrowser.open(server.address)
         follow(case, given, news, time_limit)

@@ -19,6 +19,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.compensated import ROUNDING
 from ..base.scalars import column, graph
 from ..base.vectors import AXES, Vector
 from ..errors import AssemblyError, DeclarationError, MobilityError
@@ -40,6 +41,9 @@ _WAYS = 32
 """Largest number of ways to close open loops that are tried if the first does not close the
 others.
 """
+
+_DEAD = 64.0 * ROUNDING["double"]
+"""Closure of a loop, the square of a sine, that is zero within rounding: see :mod:`.verdicts`."""
 
 _READ = {"angle": 12, "slide": 15}
 """Decimals of what is said of a coordinate [rad or m]."""
@@ -286,7 +290,7 @@ class _Solver:
         if not values:
             what = (
                 "is at a dead centre"
-                if any(closure == 0.0 for closure, *_ in every.values())
+                if any(abs(closure) <= _DEAD for closure, *_ in every.values())
                 else "cannot be closed"
             )
             raise AssemblyError(

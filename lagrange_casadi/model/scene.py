@@ -334,7 +334,7 @@ class Scene(Graphs):
     def __repr__(self) -> str:
         start, stop = self.t[:2]
         asked = (
-            f"from {start} to {stop} s"
+            f"from {start} to {stop}{'' if isinstance(stop, str) else ' s'}"
             if self.over is None
             else f"over {self.over[0]} from {self.over[1]} to {self.over[2]}"
         )

@@ -87,6 +87,7 @@ def test_what_is_shown_is_a_line(solution, slider_crank):
             "<Mechanism slider_crank: crank, rod, slider; joints: O, A, B, guide>",
         ),
         (slider_crank.scene, scene),
+        (replace(slider_crank.scene, t=(0, "80 ms", 801)), scene.replace("0.08 s", "80 ms")),
         (slider_crank, f"<Case slider_crank: {scene}>"),
         (Mechanism("new"), "<Mechanism new: no body yet; joints: none yet>"),
     ):

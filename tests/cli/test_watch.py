@@ -98,7 +98,7 @@ def test_only_this_machine_reads_only_the_page(followed):
 ENDS = {
     "import os; os._exit(7)": "the process that ran the case has ended: status 7",
     "import os; os.kill(os.getpid(), 11)": "has ended: Segmentation fault",
-    "held = bytearray(10**10)": "MemoryError",
+    "held = bytearray(10**10)": "out of memory: the case takes more than there is (case ",
     "import sys; sys.exit(3)": "line 1: SystemExit: 3",
     "": "has no function scene()",
     "def scene(:": "line 1: SyntaxError",

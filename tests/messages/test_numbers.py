@@ -327,6 +327,7 @@ POSTURES = {
     r"-12\.6 rad is -721\.927 deg, more than two turns; '-12\.6 deg' is": -12.6,
     r"13\.9626 rad is 800 deg, more than two turns$": "800 deg",
     f"{A_NUMBER}'north'": "north",
+    f"{A_NUMBER}'1,5 deg'$": "1,5 deg",
     "expected a finite number": math.nan,
 }
 

@@ -100,6 +100,11 @@ REFUSED = {
         lambda: four_bar(lengths=(0.1, 0.1, 0.1), frame=(1.0, 0.0)),
         r"closed by joint 'B' cannot be closed at the start of the motion, where O = 1\.46 rad",
     ),
+    "stretched at the start, but for rounding": (
+        AssemblyError,
+        lambda: four_bar(lengths=(0.1, 0.15 - 1e-16, 0.25), frame=(0.0, 0.0)),
+        r"closed by joint 'B' is at a dead centre at the start of the motion",
+    ),
     "no number": (
         DeclarationError,
         never("slider_crank"),

@@ -253,6 +253,17 @@ def test_a_cylinder_turns_back_at_its_dead_centre(scene, where):
         evaluate(scene())
 
 
+def test_a_guide_on_the_ground_is_no_cylinder():
+    m = Mechanism("press")
+    m.revolute("O", m.ground, crank := m.link("crank", length=0.1, mass=1.0))
+    m.revolute("A", crank.tip, rod := m.link("rod", length=0.3, mass=1.0))
+    m.revolute("B", rod.tip, ram := m.point_mass("ram", 2.0))
+    m.prismatic("guide", m.ground, ram, axis=(1, 0))
+    law = {"guide": polynomial(0.35, 0.1)}  # stretched at 0.5 s
+    with pytest.raises(AssemblyError, match=r"dead centre at t = 0.5 s(?!.*cylinder)"):
+        evaluate(Scene(m, law, t=(0, 1, 9), posture={"crank": 1.0}))
+
+
 @pytest.mark.parametrize(
     ("says", "given"),
     {

@@ -125,8 +125,8 @@ def words_of(program: Program, number: int, out: Array, most: Sequence[float], a
 
 
 def _cylinders(description: Description, parts: Collection[str]) -> Iterator[str]:
-    """The slides that drive, between two bodies with a pin each, which are among ``parts`` or
-    whose pins are.
+    """The slides that drive, between two moving bodies with a pin each, which are among ``parts``
+    or whose pins are.
     """
     joints = description.joints
     for name in description.drives:
@@ -138,7 +138,8 @@ def _cylinders(description: Description, parts: Collection[str]) -> Iterator[str
                 for joint in joints.values()
                 if joint is not slide and ends & {place.body for place in joint.ends}
             ]
-            pinned = [joint.kind for joint in pins] == ["revolute", "revolute"]
+            kinds = [joint.kind for joint in pins]
+            pinned = "ground" not in ends and kinds == ["revolute", "revolute"]
             if pinned and any(joint.name in parts for joint in (slide, *pins)):
                 yield name
 

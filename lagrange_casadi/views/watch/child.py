@@ -73,6 +73,8 @@ def _shown(given: Mapping[str, Any], say: Say) -> str:
         if error.placement is not None:
             with suppress(LagrangeCasadiError):
                 say("drawing", draw_error(error).svg)
+        if isinstance(error.__cause__, MemoryError):
+            return f"out of memory: the case takes more than there is ({error})"
         return str(error)
     except MemoryError as error:
         return f"out of memory: {str(error) or 'the case takes more than there is'}"
