@@ -395,6 +395,135 @@ def test_a_design_that_cannot_be_assembled_says_so_in_place_of_numbers(crank):
     assert one.complaints == []
 
 
+ON_SCREEN = """(([x, y]) => {{
+  const box = page.deck.stage.paper.canvas.getBoundingClientRect();
+  return [box.left + x, box.top + y];
+}})(page.deck.stage.paper.on([{}, {}, 0]))"""
+"""Where a place of the plane is in the browser's window."""
+
+
+def shift(one, start, by):
+    """Drag what is at a place of the window, with the button held at the end; returns that end."""
+    one.point(*start)
+    one.point(*start, "mousePressed", button="left", buttons=1, clickCount=1)
+    for part in np.linspace(0.1, 1.0, 10):
+        end = start + part * np.asarray(by)
+        one.point(*end, buttons=1)
+        one.run("new Promise((done) => requestAnimationFrame(() => setTimeout(done, 0)))")
+    return end
+
+
+def loose(one, end):
+    one.point(*end, "mouseReleased", button="left", clickCount=1)
+    one.run("new Promise((done) => setTimeout(done, 300))")
+
+
+VALUE = "page.contents.parameters.find((one) => one.name === '{}').value"
+
+
+@pytest.fixture(scope="module")
+def held_crank(chromium, tmp_path_factory):
+    """A live page of which inner parts can be read, at an instant; and where a joint is on it."""
+    folder = tmp_path_factory.mktemp("dragged")
+    assert command("report CASE --live --t 0:0.08:41 --out", folder / "crank.html") == 0
+
+    def opened(instant):
+        text = (folder / "crank.html").read_text()
+        alive.opened(chromium, folder / "opened.html", text)
+        chromium.run(
+            f"page.player.seek({instant}); navigator.clipboard.writeText = (text) =>"
+            " { window.copied = text; return Promise.resolve(); }"
+        )
+        return chromium
+
+    return opened
+
+
+def test_a_joint_is_dragged_and_the_parameters_of_its_place_follow(held_crank):
+    """The crank's pin along the crank: r, forces, and what is copied; Escape goes back."""
+    one, angle = held_crank(4), 25 * np.pi * 0.008 + np.pi / 200
+    way = np.array([np.cos(angle), np.sin(angle)])
+    start = np.array(one.run(ON_SCREEN.format(*(0.1 * way))))
+    scale = one.run("page.deck.stage.paper.camera.scale")
+    end = shift(one, start, 0.03 * scale * way * [1, -1])
+    r = one.run(VALUE.format("r"))
+    assert r == pytest.approx(0.13, abs=1 / scale)
+    assert one.run(ON_SCREEN.format(*(r * way))) == pytest.approx(end, abs=1.0)
+    assert [one.run(VALUE.format(name)) for name in ("l", "m1")] == [0.2, 0.1]
+    loose(one, end)
+    true = evaluate(
+        load_case("slider_crank").scene, parameters={"r": r}, t=(0, 0.08, 41), backend="vm"
+    )
+    assert float(peaks(one)["effort:O"]) == pytest.approx(true.peak("effort:O").value, rel=1e-12)
+    for words, copy in zip(
+        (f"--set r={r}", f'm.parameter("r", {r}, "m", low=0)'), (0, 1), strict=True
+    ):
+        one.run(f"document.querySelectorAll('.alive .copy')[{copy}].click()")
+        assert one.run("window.copied").endswith(words)
+    one.press("Escape")
+    alive.wait(one, f"{VALUE.format('r')} === 0.1")
+    quiet(one)
+
+
+def test_a_drag_keeps_to_bounds_and_to_designs_that_close(held_crank):
+    """The crank outgrows its rod: the last design that closes stays; what is ticked follows too."""
+    one, angle = held_crank(4), 25 * np.pi * 0.008 + np.pi / 200
+    way = np.array([np.cos(angle), np.sin(angle)])
+    start = np.array(one.run(ON_SCREEN.format(*(0.1 * way))))
+    scale = one.run("page.deck.stage.paper.camera.scale")
+    told = "document.querySelector('.alive .alarm').textContent"
+    end = shift(one, start, 0.15 * scale * way * [1, -1])
+    assert 0.17 < one.run(VALUE.format("r")) < 0.2
+    assert one.run(told).startswith("The drag stops here: a loop cannot be closed")
+    one.press("Escape")
+    loose(one, end)
+    start = np.array(one.run(ON_SCREEN.format(*(0.1 * way))))
+    end = shift(one, start, -0.15 * scale * way * [1, -1])
+    assert 0.0 <= one.run(VALUE.format("r")) < 0.01
+    one.press("Escape")
+    loose(one, end)
+    one.run("document.querySelector('.sliders [type=checkbox]').click()")
+    tip = way[0] * 0.1 + np.sqrt(0.2**2 - (0.1 * way[1]) ** 2)
+    start = np.array(one.run(ON_SCREEN.format(tip, 0.0)))
+    loose(one, shift(one, start, [20, 0]))
+    assert all(one.run(VALUE.format(name)) > value for name, value in (("r", 0.1), ("l", 0.2)))
+    quiet(one)
+
+
+def test_a_joint_on_ground_goes_where_it_is_dragged(chromium, tmp_path):
+    """By two parameters, in two directions, to the bound of one of them."""
+    m = Mechanism("four_bar")
+    x, y = m.parameter("x", 0.3, "m", low=0.2, high=0.35), m.parameter("y", 0.05, "m")
+    crank, coupler, rocker = (
+        m.link(name, length=length, mass=1.0)
+        for name, length in (("crank", 0.1), ("coupler", 0.35), ("rocker", 0.25))
+    )
+    m.revolute("O", m.ground, crank)
+    m.revolute("A", crank.tip, coupler)
+    m.revolute("B", coupler.tip, rocker.tip)
+    m.revolute("C", m.ground.at(x, y), rocker)
+    motion = {"O": polynomial(0, 20 * np.pi)}
+    Scene(m, motion=motion, t=(0, 0.1, 41), posture={"rocker": 1.5}).report(
+        tmp_path / "held.html", live=True
+    )
+    alive.opened(chromium, tmp_path / "opened.html", (tmp_path / "held.html").read_text())
+    scale = chromium.run("page.deck.stage.paper.camera.scale")
+    place = [f"page.contents.parameters[{k}].value" for k in (0, 1)]
+    start = np.array(chromium.run(ON_SCREEN.format(0.3, 0.05)))
+    chromium.point(*start)
+    assert chromium.run("page.deck.stage.paper.canvas.style.cursor") == "move"
+    end = shift(chromium, start, scale * np.array([0.03, -0.02]))
+    assert chromium.run(ON_SCREEN.format(*place)) == pytest.approx(end, abs=1.0)
+    loose(chromium, end)
+    scale = chromium.run("page.deck.stage.paper.camera.scale")
+    start = np.array(chromium.run(ON_SCREEN.format(*place)))
+    end = shift(chromium, start, scale * np.array([0.1, 0.02]))
+    assert chromium.run(place[0]) == 0.35
+    assert chromium.run(ON_SCREEN.format(*place))[1] == pytest.approx(end[1], abs=1.0)
+    loose(chromium, end)
+    quiet(chromium)
+
+
 def test_what_cannot_come_alive_is_told_in_one_line(tmp_path, capsys, monkeypatch):
     m = Mechanism("fixed")
     m.revolute("O", m.ground, m.link("bar", length=1.0, mass=1.0))

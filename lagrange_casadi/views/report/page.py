@@ -64,7 +64,7 @@ SCRIPTS = (
 )
 """The viewer's sources, in the order in which they stand in a page."""
 
-LIVE_SCRIPTS = ("bernstein", "along", "shapes", "alive")
+LIVE_SCRIPTS = ("bernstein", "along", "shapes", "alive", "drag")
 """Scripts of a live page before the others, after the engine's own wrapper."""
 
 SWEEP_SCRIPTS = (

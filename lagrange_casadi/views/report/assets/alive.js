@@ -163,47 +163,55 @@ class Alive {
 
   /** The times of the instants: equal steps, or when the drive's coordinate takes equal steps. */
   times(start, stop) {
-    const { count, joint, coordinate } = this.live.timing;
+    const { count, joint } = this.live.timing;
     if (!(Number.isFinite(start) && Number.isFinite(stop)) || (joint ? start === stop : stop < start)) throw new NoResult("there are no instants between the ends that these parameters give");
-    const even = Float64Array.from({ length: count }, (_, i) => (i === count - 1 ? stop : start + i * ((stop - start) / (count - 1))));
+    const even = Float64Array.from({ length: count }, (_, i) => evenly(start, stop, count)(i));
     this.coordinates = joint ? even : null;
     if (!joint) return even;
     const found = new Float64Array(count);
     const scale = Math.max(Math.abs(start), Math.abs(stop));
-    const { engine } = this;
-    const at = (t) => {
-      this.check(engine.motion(t), t);
-      return [engine.inputs[coordinate], engine.inputs[coordinate + 1]];
-    };
-    engine.fit(1);
     let t = this.file.t[0];
     for (let i = 0; i < count; i += 1) {
-      let [best, least] = [t, Infinity];
-      for (let k = 0; k < 60; k += 1) {
-        const [d, rate] = at(t);
-        const miss = Math.abs(d - even[i]);
-        if (miss < least) [best, least] = [t, miss];
-        else if (k > 0) break;
-        if (miss === 0) break;
-        t -= (d - even[i]) / rate;
-      }
+      const [best, least] = this.meet(even[i], t);
       if (!(least <= 1e-13 * scale) || (i > 0 && !(best > found[i - 1]))) throw new NoResult(`the motion of ${joint} does not cover the range from ${format(start)} to ${format(stop)}`);
       found[i] = best;
-      t = best + (i + 1 < count ? (even[i + 1] - even[i]) / at(best)[1] : 0);
+      t = best + (i + 1 < count ? (even[i + 1] - even[i]) / this.drive(best)[1] : 0);
     }
     return found;
   }
 
+  /** The coordinate of the drive that takes equal steps, and its rate, at a time. */
+  drive(t) {
+    const { engine, live } = this;
+    const { coordinate } = live.timing;
+    engine.fit(1);
+    this.check(engine.motion(t), t);
+    return [engine.inputs[coordinate], engine.inputs[coordinate + 1]];
+  }
+
+  /** The time at which that coordinate has a value, sought from a time; and how far it is off there. */
+  meet(value, from) {
+    let [t, best, least] = [from, from, Infinity];
+    for (let k = 0; k < 60; k += 1) {
+      const [d, rate] = this.drive(t);
+      const miss = Math.abs(d - value);
+      if (miss < least) [best, least] = [t, miss];
+      else if (k > 0) break;
+      if (miss === 0) break;
+      t -= (d - value) / rate;
+    }
+    return [best, least];
+  }
+
   /** Have iterated loops begin where they stand in this design: from that of the file in steps, the fewer the better. */
   close(time) {
-    const { engine, live, file } = this;
-    const loops = () => new Float64Array(engine.calls.memory.buffer, engine.model + live.loops[0], live.loops[1]);
+    const { engine, file } = this;
+    const loops = () => this.loops();
     const closes = (values, from) => {
       const status = engine.prepare(values);
       if (status) return status;
       if (from) loops().set(from);
-      engine.fit(1);
-      return engine.motion(time) || engine.evaluate(1);
+      return this.step(time);
     };
     let status = closes(this.values, null);
     for (let many = 4; status && many <= 64; many *= 4) {
@@ -219,11 +227,75 @@ class Alive {
     loops().set(found);
   }
 
-  /** Evaluate lengths, places and axes, and put them into the picture's parts; returns all numbers of the design. */
-  place() {
+  numbersNow() {
     const { engine, live } = this;
     engine.calls.live_numbers(engine.given, engine.more);
-    const numbers = new Float64Array(engine.calls.memory.buffer, engine.more, live.numbers).slice();
+    return new Float64Array(engine.calls.memory.buffer, engine.more, live.numbers).slice();
+  }
+
+  /** The ends of the instants, lengths, places and axes of a design. */
+  numbers(values) {
+    this.engine.prepare(values);
+    return this.numbersNow();
+  }
+
+  /** The time of an instant that is shown: see times. */
+  timeAt([start, stop], instant) {
+    const { count, joint } = this.live.timing;
+    const value = evenly(start, stop, count)(this.numberOf(instant));
+    return joint ? this.meet(value, instants.t[instant])[0] : value;
+  }
+
+  /** The number of an instant that is shown, among all. */
+  numberOf(instant) {
+    return this.live.shown ? this.live.shown[instant] : instant;
+  }
+
+  /** Where iterated loops stand at an instant that is shown, which they reach one instant after another; null where there are none. */
+  loopsAt(values, instant) {
+    if (!this.live.loops) return null;
+    const [start, stop] = this.numbers(values);
+    const all = this.times(start, stop);
+    this.close(all[0]);
+    for (const time of all.slice(0, this.numberOf(instant) + 1)) this.step(time);
+    return this.loops().slice();
+  }
+
+  /** Evaluate one instant; returns its status. */
+  step(time) {
+    const { engine } = this;
+    engine.fit(1);
+    return engine.motion(time) || engine.evaluate(1);
+  }
+
+  /** The place of a spot for a design, at an instant that is shown, whose loops are near some; null where parts do not close there. */
+  placeAt(values, spot, instant, loops) {
+    const { engine, live } = this;
+    if (engine.prepare(values)) return null;
+    const numbers = this.numbersNow();
+    if (loops) this.loops().set(loops);
+    const time = this.timeAt(numbers, instant);
+    if (!Number.isFinite(time) || this.step(time)) return null;
+    const { inputs: given } = live.layout;
+    const body = bodies.get(spot.body);
+    const pose = body?.pose.map((column, k) => {
+      const source = live.poses[spot.body][k];
+      return [source < 0 ? column[instant] : source < given ? engine.inputs[source] : engine.outputs[source - given]];
+    });
+    if (pose && live.poses[spot.body].slice(6).some((source) => source < 0)) complete(pose);
+    const own = contents.joints.findIndex((joint) => joint.child === spot);
+    const at = live.picture.joints[own].child.map((place) => (place < 0 ? 0 : numbers[place]));
+    return placeIn(pose ? frameFrom(pose.flat()) : GROUND, at);
+  }
+
+  loops() {
+    return new Float64Array(this.engine.calls.memory.buffer, this.engine.model + this.live.loops[0], this.live.loops[1]);
+  }
+
+  /** Evaluate lengths, places and axes, and put them into the picture's parts; returns all numbers of the design. */
+  place() {
+    const { live } = this;
+    const numbers = this.numbersNow();
     const at = (places) => places.map((place) => (place < 0 ? 0 : numbers[place]));
     const { picture } = live;
     this.lengths = {};
@@ -258,6 +330,9 @@ class Alive {
     if (status) throw new NoResult(`${this.engine.message(status)}${t === null ? "" : `, at t = ${shown(t, "s")}`}`);
   }
 }
+
+/** The values of equal steps between two ends, by their numbers. */
+const evenly = (start, stop, count) => (i) => (i === count - 1 ? stop : start + i * ((stop - start) / (count - 1)));
 
 /** Why a design has no numbers. */
 class NoResult extends Error {}

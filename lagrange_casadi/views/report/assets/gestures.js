@@ -43,12 +43,18 @@ function listenTo(stage, { point, pin }) {
     canvas.setPointerCapture(event.pointerId);
     pointers.set(event.pointerId, at(event));
     moved = 0;
+    if (pointers.size === 1 && event.button === 0) live.drag?.start(at(event));
   });
 
   canvas.addEventListener("pointermove", (event) => {
     const now = at(event);
     const before = pointers.get(event.pointerId);
+    if (live.drag?.moving) {
+      live.drag.move(now);
+      return;
+    }
     if (!before) {
+      live.drag?.seek(now);
       point(sectionUnder(paper, stage.instant, ...now), event);
       return;
     }
@@ -65,7 +71,9 @@ function listenTo(stage, { point, pin }) {
   });
 
   const leave = (event) => {
-    if (pointers.has(event.pointerId) && event.type === "pointerup" && moved < 5) {
+    const dragged = live.drag?.moving;
+    live.drag?.end();
+    if (!dragged && pointers.has(event.pointerId) && event.type === "pointerup" && moved < 5) {
       const found = sectionUnder(paper, stage.instant, ...at(event));
       if (found) pin(found);
     }
@@ -94,6 +102,11 @@ function listenTo(stage, { point, pin }) {
       ArrowLeft: () => event.altKey && (contents.space ? orbit(20, 0) : pan(30, 0)),
       ArrowRight: () => event.altKey && (contents.space ? orbit(-20, 0) : pan(-30, 0)),
       ArrowUp: () => (contents.space ? orbit(0, 20) : pan(0, 30)),
+      Escape: () => {
+        const undone = live.drag?.undo() ?? false;
+        if (undone) pointers.clear();
+        return undone;
+      },
       ArrowDown: () => (contents.space ? orbit(0, -20) : pan(0, -30)),
     };
     if (keys[event.key] && keys[event.key]() !== false) event.preventDefault();

@@ -19,7 +19,7 @@ function buildPage() {
   if (contents.live) {
     const panel = element("section", { class: "alive", "aria-label": "Parameters" });
     frame.before(panel);
-    comeAlive(panel);
+    comeAlive(panel, stage);
   }
   stage.layOut();
   firstCards();

@@ -22,7 +22,11 @@ const GROUND = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]];
 function worked(name, instant) {
   const body = bodies.get(name);
   if (!body) return GROUND;
-  const at = body.pose.map((column) => column[instant]);
+  return frameFrom(body.pose.map((column) => column[instant]));
+}
+
+/** Place and axes of the numbers of a pose. */
+function frameFrom(at) {
   if (at.length === 3) {
     const [x, y, angle] = at;
     const c = Math.cos(angle);
@@ -34,7 +38,10 @@ function worked(name, instant) {
 
 /** A place of a body in ground axes. */
 function placeOf(body, at, instant) {
-  const [origin, x, y, z] = frameOf(body, instant);
+  return placeIn(frameOf(body, instant), at);
+}
+
+function placeIn([origin, x, y, z], at) {
   return [0, 1, 2].map((k) => origin[k] + at[0] * x[k] + at[1] * y[k] + at[2] * z[k]);
 }
 

@@ -18,11 +18,12 @@ const C = {
 };
 
 /** Start the engine of a live page, and put its sliders under the picture; says so where a browser has none. */
-async function comeAlive(panel) {
+async function comeAlive(panel, stage) {
   try {
     const text = atob(contents.live.module);
     const { instance } = await WebAssembly.instantiate(Uint8Array.from(text, (letter) => letter.charCodeAt(0)), { Math, C });
     live.engine = new Alive(instance);
+    live.drag = new Drag(live.engine, stage);
     panel.append(...slidersOf(live.engine));
     if (window.parent !== window) listenToPage();
   } catch (error) {
@@ -31,7 +32,7 @@ async function comeAlive(panel) {
   }
 }
 
-const live = { engine: null, alarm: null, asked: null, moving: false, late: 0, fields: [], turn: 0 };
+const live = { engine: null, drag: null, alarm: null, stopped: null, asked: null, moving: false, late: 0, fields: [], turn: 0 };
 
 const LATE = 150; // After so many milliseconds without a change, what is slow follows: tables, fine maps, what is out of sight.
 
@@ -57,6 +58,7 @@ function slidersOf(engine) {
     const [low, high] = rangeOf(one);
     const set = (value, from) => {
       for (const other of [slider, field]) if (other !== from) other.value = value;
+      live.drag.before = null;
       ask(engine.values.map((before, n) => (n === k ? value : (live.asked ?? engine.values)[n])));
     };
     const words = { "aria-label": `${one.name}${one.unit === "1" ? "" : `, ${one.unit}`}` };
@@ -69,12 +71,15 @@ function slidersOf(engine) {
     live.fields.push([slider, field]);
     describe();
     reading.watchers.add(describe);
-    return element("label", {}, element("span", { class: "name" }, one.name), slider, field, reads);
+    const freed = `${one.name} follows whatever joint is dragged`;
+    const free = element("input", { type: "checkbox", title: freed, "aria-label": freed, change: () => (live.drag.freed[k] = free.checked) });
+    return element("label", {}, element("span", { class: "name" }, one.name), slider, field, reads, free);
   });
   const own = signButton("↺", "The design of the file", () => setAll(engine.file.values));
   const copy = copyButton("copy as --set", () => commandOf(engine), "command line");
+  const python = copyButton("copy as Python", () => linesOf(engine), "Python");
   live.alarm = element("p", { class: "alarm", role: "alert", hidden: true });
-  return [element("header", {}, element("h3", {}, "Parameters"), own, copy), element("div", { class: "sliders" }, rows), live.alarm];
+  return [element("header", {}, element("h3", {}, "Parameters"), own, copy, python), element("div", { class: "sliders" }, rows), live.alarm];
 }
 
 /** A value of a slider with no more digits than it can be set to. */
@@ -101,13 +106,28 @@ function listenToPage() {
 /** The command line that evaluates the design. */
 function commandOf(engine) {
   const quoted = (word) => (/^[\w@%+=:,./-]+$/.test(word) ? word : `'${word.replaceAll("'", `'"'"'`)}'`);
-  const changed = contents.parameters.filter((_, k) => engine.values[k] !== engine.file.defaults[k]);
-  return [contents.live.command, ...changed.map((one) => `--set ${quoted(`${one.name}=${one.value}`)}`)].join(" ");
+  return [contents.live.command, ...changedIn(engine).map((one) => `--set ${quoted(`${one.name}=${one.value}`)}`)].join(" ");
+}
+
+/** The declarations of the parameters that are not as the case declares them. */
+function linesOf(engine) {
+  const end = (name, value) => (value === null ? "" : `, ${name}=${value}`);
+  const line = (one) => `m.parameter("${one.name}", ${one.value}, "${one.unit}"${end("low", one.low)}${end("high", one.high)})`;
+  return changedIn(engine).map(line).join("\n") || "# All parameters are as the case declares them.";
+}
+
+function changedIn(engine) {
+  return contents.parameters.filter((_, k) => engine.values[k] !== engine.file.defaults[k]);
+}
+
+function fillFields(values) {
+  values.forEach((value, k) => live.fields[k].forEach((field) => (field.value = value)));
 }
 
 /** Have a design shown, and its values in all fields. */
 function setAll(values) {
-  values.forEach((value, k) => live.fields[k].forEach((field) => (field.value = value)));
+  fillFields(values);
+  live.drag.before = null;
   ask(values);
   settle();
 }
@@ -124,7 +144,11 @@ function answer() {
   live.asked = null;
   live.moving = true;
   document.documentElement.classList.add("moving");
-  live.engine.show(values, chartsPlaces());
+  if (live.drag.pointer) live.stopped = live.drag.show(chartsPlaces());
+  else {
+    live.stopped = null;
+    live.engine.show(values, chartsPlaces());
+  }
   renewAll();
   follow(end);
   clearTimeout(live.late);
@@ -163,8 +187,8 @@ function renewAll() {
   framesOf = -1;
   deck.stage.trace();
   player.renew();
-  live.alarm.hidden = !why;
-  live.alarm.textContent = why ? `There is no such design: ${outOfRange().join("; ") || why}.` : "";
+  live.alarm.hidden = !why && !live.stopped;
+  live.alarm.textContent = why ? `There is no such design: ${outOfRange().join("; ") || why}.` : live.stopped ? `The drag stops here: ${live.stopped}.` : "";
   for (const watcher of reading.watchers) watcher();
 }
 

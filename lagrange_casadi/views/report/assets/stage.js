@@ -125,6 +125,7 @@ class Stage {
     for (const path of contents.paths) drawPoint(paper, spotOf(path, instant));
     drawActions(paper, instant, shows, this.scale, shows.values);
     if (shows.names) drawNames(paper, instant);
+    live.drag?.draw(paper);
     for (const section of [this.pinned, this.pointed]) if (section) drawSection(paper, section, instant, section === this.pinned);
   }
 }

@@ -1,0 +1,221 @@
+// Joints of a live page that are dragged: the parameters of their places follow the pointer, and all else follows the parameters.
+
+const WITHIN = 14; // Points of the screen, from a joint to the pointer that takes it.
+
+const STEP = 1e-5; // Of a parameter's range: half the difference by which a derivative is found.
+
+const STILL = 0.1; // Points of the screen: what moves a joint no more than this in its whole range does not move the joint.
+
+const DAMPING = 1e-3; // Of the square of the derivative: what keeps a step small where a place hardly moves.
+
+class Drag {
+  constructor(engine, stage) {
+    Object.assign(this, { engine, stage, joint: null, moving: false, pointer: null, before: null, last: null });
+    this.ranges = contents.parameters.map((one) => rangeOf(one));
+    this.freed = contents.parameters.map(() => false);
+    this.own = this.ownParameters();
+  }
+
+  /** For each joint, which parameters its place on its bodies is made of. */
+  ownParameters() {
+    const { values } = this.engine.file;
+    const numbers = this.engine.numbers(values);
+    const changed = values.reduce((all, _, n) => {
+      const others = [-1, 1].map((way) => this.engine.numbers(this.beside(values, n, way)));
+      return [...all, (place) => place >= 0 && others.some((other) => other[place] !== numbers[place])];
+    }, []);
+    return this.engine.live.picture.joints.map(({ parent, child }) => changed.map((by) => [...parent, ...child].some(by)));
+  }
+
+  beside(values, n, way) {
+    const [low, high] = this.ranges[n];
+    return values.map((value, k) => (k === n ? value + way * STEP * (high - low) : value));
+  }
+
+  /** Mark the joint under the pointer whose place can follow, if there is one. */
+  seek(pointer) {
+    const { stage, joint } = this;
+    const away = (one) => Math.hypot(...this.missOf(spotOf(one.child, stage.instant), pointer));
+    const near = contents.joints.filter((one) => away(one) < WITHIN).sort((a, b) => away(a) - away(b));
+    this.joint = near.find((one) => this.take(one)) ?? null;
+    stage.paper.canvas.style.cursor = this.joint ? "move" : "";
+    if (joint !== this.joint && !player.playing) stage.draw();
+    return this.joint;
+  }
+
+  /** Take a joint, with the others at its place; returns whether a parameter moves it. */
+  take(joint) {
+    const { engine, stage } = this;
+    if (engine.why) return false;
+    this.spot = joint.child;
+    const at = spotOf(joint.child, stage.instant);
+    const together = contents.joints.map((other) => sizeOf(less(spotOf(other.child, stage.instant), at)) < 1e-9 * extent.size);
+    this.active = contents.parameters.map((_, n) => this.freed[n] || this.own.some((own, k) => together[k] && own[n]));
+    if (!this.active.some(Boolean)) return false;
+    const place = this.begin();
+    return Boolean(place) && this.columns(engine.values, place).some(([x, y]) => x || y);
+  }
+
+  /** Have the engine stand at the instant that is shown; returns the joint's place. */
+  begin() {
+    const { engine, stage } = this;
+    this.loops = engine.loopsAt(engine.values, stage.instant);
+    return this.placeAt(engine.values);
+  }
+
+  /** The joint's place for a design, where it has one. */
+  placeAt(values) {
+    try {
+      return this.engine.placeAt(values, this.spot, this.stage.instant, this.loops);
+    } catch (error) {
+      if (!(error instanceof NoResult)) throw error;
+      return null;
+    }
+  }
+
+  missOf(place, pointer) {
+    const [x, y] = this.stage.paper.on(place);
+    return [pointer[0] - x, pointer[1] - y];
+  }
+
+  /** How far the joint moves on the sheet for the range of each parameter: a central difference, one-sided where a side does not close. */
+  columns(values, place) {
+    return contents.parameters.map((_, n) => {
+      if (!this.active[n]) return [0, 0];
+      const [back, on] = [-1, 1].map((way) => this.placeAt(this.beside(values, n, way)));
+      if (!back && !on) return [0, 0];
+      const way = this.stage.paper.along(times(less(on ?? place, back ?? place), 1 / (STEP * (Boolean(back) + Boolean(on)))));
+      return Math.hypot(...way) > STILL ? way : [0, 0];
+    });
+  }
+
+  /** The step of the parameters, over their ranges, that brings the joint nearest to the pointer within the bounds: the least of all such. */
+  step(values, columns, miss) {
+    const ends = contents.parameters.map(({ low, high }, n) => {
+      const wide = this.ranges[n][1] - this.ranges[n][0];
+      return [low === null ? -Infinity : (low - values[n]) / wide, high === null ? Infinity : (high - values[n]) / wide];
+    });
+    const found = columns.map(() => 0);
+    const free = columns.map(([x, y]) => Boolean(x || y));
+    let rest = miss;
+    for (let left = free.filter(Boolean).length; left > 0; ) {
+      const asked = leastStep(columns.map((column, n) => (free[n] ? column : [0, 0])), rest);
+      const held = asked.map((value, n) => Math.max(ends[n][0], Math.min(ends[n][1], value)));
+      const over = free.map((is, n) => is && held[n] !== asked[n]);
+      if (!over.some(Boolean)) return found.map((value, n) => (free[n] ? asked[n] : value));
+      // What would leave its bounds stays at their end, and the others go on from there.
+      over.forEach((is, n) => {
+        if (!is) return;
+        [found[n], free[n], left] = [held[n], false, left - 1];
+        rest = rest.map((value, k) => value - columns[n][k] * held[n]);
+      });
+    }
+    return found;
+  }
+
+  /** The parameters that bring the joint nearest to the pointer, by steps of Gauss and Newton that become shorter where parts do not close. */
+  nearest() {
+    const { engine, pointer } = this;
+    let values = [...engine.values];
+    let place = this.begin();
+    for (let k = 0; k < 8 && place; k += 1) {
+      const miss = this.missOf(place, pointer);
+      const columns = this.columns(values, place);
+      const step = this.step(values, columns, miss);
+      let next = null;
+      let [nextPlace, nextMiss] = [null, Infinity];
+      for (let part = 1; part > 0.02; part /= 2) {
+        next = values.map((value, n) => this.rounded(value + part * step[n] * (this.ranges[n][1] - this.ranges[n][0]), n, columns[n]));
+        nextPlace = this.placeAt(next);
+        nextMiss = nextPlace ? Math.hypot(...this.missOf(nextPlace, pointer)) : Infinity;
+        if (nextMiss < Math.hypot(...miss)) break;
+      }
+      if (!(nextMiss < Math.hypot(...miss))) break;
+      [values, place] = [next, nextPlace];
+      if (engine.live.loops) this.loops = engine.loops().slice();
+    }
+    return values;
+  }
+
+  /** A value within its bounds, with digits as far as a tenth of a point of the screen. */
+  rounded(value, n, column) {
+    const { low, high } = contents.parameters[n];
+    const size = Math.hypot(...column);
+    if (!size) return value;
+    const wide = (this.ranges[n][1] - this.ranges[n][0]) * Math.min(1, 100 / size);
+    return Math.max(low ?? -Infinity, Math.min(high ?? Infinity, shortest(value, wide)));
+  }
+
+  start(pointer) {
+    if (!this.seek(pointer)) return false;
+    player.pause();
+    this.moving = true;
+    this.before = this.last = [...this.engine.values];
+    const at = this.stage.paper.on(spotOf(this.spot, this.stage.instant));
+    this.grip = [at[0] - pointer[0], at[1] - pointer[1]];
+    return true;
+  }
+
+  move(pointer) {
+    this.pointer = [pointer[0] + this.grip[0], pointer[1] + this.grip[1]];
+    // One design for each picture of the screen: what was asked for is shown first.
+    if (!live.asked) ask(this.engine.values);
+  }
+
+  end() {
+    if (!this.moving) return;
+    this.moving = false;
+    // What is asked for is still to be shown.
+    if (!live.asked) this.pointer = null;
+    settle();
+  }
+
+  /** Put the parameters back to where the last drag began, unless they were changed otherwise since. */
+  undo() {
+    if (!this.before) return false;
+    [this.moving, this.pointer] = [false, null];
+    setAll(this.before);
+    return true;
+  }
+
+  /** Show the design that the pointer asks for; where that has no result, the farthest on the way there that has one. Returns why then. */
+  show(whole) {
+    const { engine, last } = this;
+    const wanted = this.pointer ? this.nearest() : last;
+    let why = null;
+    for (const part of [1, 0.5, 0.25, 0.125, 0]) {
+      engine.show(part === 1 ? wanted : last.map((value, n) => value + part * (wanted[n] - value)), whole);
+      why ??= engine.why;
+      if (!engine.why) break;
+    }
+    this.last = [...engine.values];
+    fillFields(this.last);
+    if (!this.moving) this.pointer = null;
+    return why;
+  }
+
+  /** The ring around a joint that can be dragged, and how far it stays behind the pointer. */
+  draw(paper) {
+    if (!this.joint) return;
+    const [x, y] = paper.on(spotOf(this.joint.child, this.stage.instant));
+    paper.put(ORDER.names, -1, (context) => {
+      circleAround(context, x, y, pinSize(paper) + 5);
+      strokeWith(context, paper.inks.accent, 2);
+      if (!this.pointer) return;
+      context.setLineDash([4, 4]);
+      lineThrough(context, [[x, y], this.pointer]);
+      strokeWith(context, paper.inks.accent, 1.5);
+    });
+  }
+}
+
+/** Of all steps that lead nearest to a place of the sheet, the least one: z = Jᵀ (J Jᵀ + c)⁻¹ r for the columns of J. */
+function leastStep(columns, rest) {
+  let [xx, xy, yy] = [0, 0, 0];
+  for (const [x, y] of columns) [xx, xy, yy] = [xx + x * x, xy + x * y, yy + y * y];
+  const damping = DAMPING * (xx + yy);
+  [xx, yy] = [xx + damping, yy + damping];
+  const all = xx * yy - xy * xy;
+  const [a, b] = [(yy * rest[0] - xy * rest[1]) / all, (xx * rest[1] - xy * rest[0]) / all];
+  return columns.map(([x, y]) => x * a + y * b);
+}
