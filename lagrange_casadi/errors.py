@@ -9,8 +9,10 @@ from __future__ import annotations
 
 import difflib
 import errno
+import linecache
 import re
 import sys
+import traceback
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from pickle import PicklingError
@@ -108,6 +110,15 @@ class LagrangeCasadiError(Exception):
 
     def __str__(self) -> str:
         return _line(super().__str__())
+
+    def _render_traceback_(self) -> list[str]:
+        """Lines that a notebook shows: that of the cell which led here, and the message."""
+        cells = [
+            f"line {n}: {escaped(linecache.getline(frame.f_code.co_filename, n).strip())}"
+            for frame, n in traceback.walk_tb(self.__traceback__)
+            if frame.f_globals.get("__name__") == "__main__"
+        ]
+        return [*cells[-1:], f"{type(self).__name__}: {self}"]
 
 
 class DeclarationError(LagrangeCasadiError):

@@ -73,8 +73,8 @@ def new(
 ) -> None:
     """Begin a case of your own in a new FOLDER.
 
-    It is a copy of one that comes with the package, under the folder's name, or a model of another
-    program that is written as a case.
+    It is a copy of one that comes with the package, under the folder's name, or a script or a model
+    of another program that is written as a case.
 
     Parameters
     ----------
@@ -82,7 +82,8 @@ def new(
     like : NAME
         Copy this case; the command cases lists all.
     source : FILE
-        Begin with a model of another program: .json, .asmt, .urdf, .sdf or .xml (MuJoCo).
+        Begin with a script that makes a Scene, .py, or a model of another program: .json, .asmt,
+        .urdf, .sdf or .xml (MuJoCo).
     accept_inertias
         Take moments of inertia that no body has as FILE gives them.
     payload : FRAME=MASS[@(X,Y,Z)]
@@ -94,31 +95,39 @@ def new(
     contacts : NAME,...
         Let the origins of these links or frames stay on the ground, where the posture puts them.
     """
+    model = source is not None and source.suffix != ".py"
     refuse(
         (like is not None and source, "--like and --from exclude each other"),
-        (accept_inertias and not source, "--accept-inertias needs --from FILE"),
-        (payload and not source, "--payload needs --from FILE"),
-        (floating and not source, "--floating needs --from FILE"),
-        (posture and not source, "--posture needs --from FILE"),
-        (contacts and not source, "--contacts needs --from FILE"),
+        (accept_inertias and not model, "--accept-inertias needs --from FILE of a model"),
+        (payload and not model, "--payload needs --from FILE of a model"),
+        (floating and not model, "--floating needs --from FILE of a model"),
+        (posture and not model, "--posture needs --from FILE of a model"),
+        (contacts and not model, "--contacts needs --from FILE of a model"),
     )
-    if source is not None:
+    notes: list[str] = []
+    if source is None:
+        files = _copied(SIMPLE if like is None else like, folder)
+    elif not model:
+        from ..studies.script import case_of_script
+
+        text, left = case_of_script(source)
+        files = {"case.py": text.encode()}
+        if left:
+            notes = [f"left out, as it prints or follows the scene: lines {', '.join(left)}"]
+    else:
         from ..interop.formats import case_of
         from ..interop.formats.standing import Standing
 
         stands = Standing(floating, posture or {}, contacts or ())
         text = case_of(source, accept_inertias=accept_inertias, payload=payload, stands=stands)
         files = {"case.py": text.encode()}
-    else:
-        files = _copied(SIMPLE if like is None else like, folder)
+        notes = [line[2:] for line in text.splitlines() if line.startswith("# ")]
     if os.path.lexists(folder):
         raise PathError(f"{folder} exists: expected a new folder")
     with filling(folder) as draft:
         for name, content in files.items():
             (draft / name).write_bytes(content)
-    case = files["case.py"].decode()
-    if source is not None:
-        echo(*(line[2:] for line in case.splitlines() if line.startswith("# ")))
+    echo(*notes)
     echo(
         f"wrote {folder / 'case.py'}: {'change' if source is None else 'read'} it, then"
         f" lagrange-casadi run {shlex.quote(str(folder))}"

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from contextlib import suppress
 from pathlib import Path
 
 from ..base.units import Number
 from ..errors import LagrangeCasadiError
-from ..model.mechanism import Mechanism
-from ..studies.case import case_file, declared, load_case, name_of
+from ..studies.case import case_file, load_case, name_of
+from ..views.drawing import draw_declared
 from .echo import echo
 from .options import target
 
@@ -42,10 +41,8 @@ def draw(
     try:
         found = load_case(case)
     except LagrangeCasadiError as error:
-        if mechanism := declared(file, error, Mechanism):
-            with suppress(LagrangeCasadiError):
-                mechanism.draw(path, parameters=parameters)
-                echo(f"wrote {path}: what was declared before the error")
+        if draw_declared(file, error, path, parameters):
+            echo(f"wrote {path}: what was declared before the error")
         raise
     drawing = found.scene.draw(path, t=t, parameters=parameters)
     echo(*(f"note: {gap}" for gap in drawing.gaps), err=True)

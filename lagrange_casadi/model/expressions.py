@@ -4,17 +4,36 @@ from __future__ import annotations
 
 import math
 import re
+import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from types import ModuleType
 
 import casadi as ca
 
 from ..base.interpret import written_out
 from ..base.scalars import column
 from ..base.units import number, typed
-from ..errors import DeclarationError, NumberError, one_line, shown
+from ..errors import DeclarationError, NumberError, UnknownNameError, one_line, shown
 from .declared_parts import Expression
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+
+_INSTEAD = {
+    "truth value of a CasADi": (
+        "a symbol has no truth value: use casadi.if_else(condition, a, b) for 'if',"
+        " casadi.logic_and and logic_or for 'and' and 'or', casadi.fmin and fmax for 'min' and"
+        " 'max'"
+    ),
+    r"'SX' and 'str'|'str' and 'SX'|str \(not \"SX\"\)|non-int of type 'SX'": (
+        "a text with a unit goes into no formula: write its number in SI units, as 0.1 for"
+        " '100 mm'; the entries of a list are multiplied one by one"
+    ),
+    "to_int not defined for SymbolicSX": "a symbol has no number while a mechanism is declared",
+    "'(SX|Link|Point|Ground|PointMass|Mechanism|Scene)' object is not callable": (
+        r"'\1' is no function: leave out the ()"
+    ),
+}
+"""Words on what can be done, by those of Python and CasADi about a symbol or a part."""
 
 
 def check_name(kind: str, name: str) -> None:
@@ -140,16 +159,18 @@ def expressed(
 
 
 def error_text(error: BaseException) -> str:
-    """Message of an error in a line; for a choice that Python cannot make for a symbol, the
-    function that makes it.
+    """Message of an error in a line; for what Python cannot do with a symbol, what can be done, and
+    for a name that a module lacks, the nearest.
     """
     text = one_line(error)
-    if "truth value of a CasADi" in text:
-        return (
-            "a symbol has no truth value: use casadi.if_else(condition, a, b) for 'if',"
-            " casadi.logic_and and logic_or for 'and' and 'or', casadi.fmin and fmax for 'min' and"
-            " 'max'"
-        )
+    for words, instead in _INSTEAD.items():
+        if found := re.search(words, text):
+            return found.expand(instead)
+    module = getattr(error, "obj", None) or sys.modules.get(str(getattr(error, "name", "")))
+    lacking = re.search(r"(?:import name|attribute) '?(\w+)", text)
+    if isinstance(module, ModuleType) and lacking:
+        place, names = module.__name__, [name for name in dir(module) if name[0] != "_"]
+        return str(UnknownNameError(f"name in {place}", lacking[1], names, f"dir({place})"))
     return f"{type(error).__name__}{text and ': '}{text}"
 
 

@@ -8,7 +8,7 @@ import itertools
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, NoReturn
 
 import numpy as np
 import numpy.typing as npt
@@ -106,6 +106,12 @@ class Histories:
     def undetermined(self) -> tuple[str, ...]:
         """The full names of what equilibrium does not determine."""
         return tuple(map(str, self.indeterminate))
+
+    def __getitem__(self, name: object) -> NoReturn:
+        """Refuse brackets, and say what takes a name."""
+        raise DeclarationError(
+            f"{self._known_as} takes no brackets: expected .array({shown(name)})"
+        )
 
     def effort(self, joint: str) -> Array:
         """Return the effort of the drive at a joint.

@@ -18,6 +18,7 @@ from ..engine.placement import Placement, place, place_scene
 from ..errors import LagrangeCasadiError
 from ..model.mechanism import Mechanism
 from ..model.scene import Scene
+from ..studies.case import declared
 from .shapes.declared import (
     body_names,
     driven_marks,
@@ -69,6 +70,21 @@ def draw_error(error: LagrangeCasadiError, path: Path | None = None) -> Drawing:
     """Draw the placement of an error, with its message, see :meth:`.Mechanism.draw`."""
     assert isinstance(error.placement, Placement)
     return _drawn(error.placement, path, str(error))
+
+
+def draw_declared(
+    file: Path,
+    error: BaseException,
+    path: Path | None = None,
+    parameters: Mapping[str, float] | None = None,
+) -> Drawing | None:
+    """Draw the mechanism that a case's file had declared before an error of :func:`.load_case`;
+    None where none can be drawn.
+    """
+    with suppress(LagrangeCasadiError):
+        if mechanism := declared(file, error, Mechanism):
+            return draw_mechanism(mechanism, path, parameters=parameters)
+    return None
 
 
 def face(mechanism: Mechanism) -> str:

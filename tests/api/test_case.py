@@ -1,8 +1,10 @@
 """Loading cases: what a case may be, and what is said of one that is broken."""
 
+import linecache
+
 import pytest
 
-from lagrange_casadi import load_case
+from lagrange_casadi import Mechanism, load_case
 from lagrange_casadi.errors import CaseError, DeclarationError
 
 pytestmark = pytest.mark.quick
@@ -51,6 +53,15 @@ from lagrange_casadi.figures import TimePlot
 def figures():
     return [TimePlot("f", ("effort:O",), factor={})]
 """
+SLIPS = {
+    "'100 mm' * m.parameter('p', 1)": "line 7: a text with a unit goes into no formula",
+    "m.parameter('p', 1) - '5 mm'": "write its number in SI units, as 0.1 for '100 mm'",
+    "int(m.parameter('p', 1))": "a symbol has no number while a mechanism is declared",
+    "m.ground.at(1, 0)()": "line 7: 'Point' is no function: leave out the ()",
+    "motion.polynomail": r"in lagrange_casadi\.motion 'polynomail' \(did you mean 'polynomial'",
+    "from lagrange_casadi.elements import geers": r"'geers' \(did you mean 'gears'\?\)",
+    "import lagrange_casadi; lagrange_casadi.evalute": r"'evalute' \(did you mean 'evaluate'",
+}
 STRANGE = ("casadi.SX.sym('x')", "1j", "b'1'", "len", "numpy.ones(2)", "{(1, 2): 3}", "{1}")
 
 
@@ -88,6 +99,10 @@ def test_the_paper_says_what_it_wants_drawn(slider_crank):
             r"line 4: Odd$",
         ),
         *(
+            (GOOD.replace("    return", f"    {line}\n    return"), CaseError, says)
+            for line, says in SLIPS.items()
+        ),
+        *(
             (
                 GOOD + DRAWN.format(value),
                 DeclarationError,
@@ -107,6 +122,17 @@ def test_broken_cases_are_one_line(tmp_path, text, error, says):
     path.write_text(text)
     with pytest.raises(error, match=says):
         load_case(path)
+
+
+def test_a_notebook_shows_the_cell_and_the_message(monkeypatch):
+    cell = "m = Mechanism('x')\n\ndef arm():\n    m.link('a', length='5 kN')\n\narm()\n"
+    monkeypatch.setitem(linecache.cache, "<cell>", (len(cell), None, cell.splitlines(), "<cell>"))
+    with pytest.raises(DeclarationError) as raised:
+        exec(compile(cell, "<cell>", "exec"), {"__name__": "__main__", "Mechanism": Mechanism})
+    assert raised.value._render_traceback_() == [
+        "line 4: m.link('a', length='5 kN')",
+        "DeclarationError: link 'a': length: '5 kN' is a force; expected a length [m]",
+    ]
 
 
 @pytest.mark.parametrize(

@@ -497,7 +497,7 @@ def test_inertias_that_no_body_has_can_be_accepted(file, tmp_path, capfd):
     )] == [2, 2, 0]  # fmt: skip
     out, err = capfd.readouterr()
     assert "take them as they are by --accept-inertias" in err
-    assert "--accept-inertias needs --from FILE" in err
+    assert "--accept-inertias needs --from FILE of a model" in err
     words = " ".join(out.split())
     end = ": no body has such principal moments of inertia; they are as in the file."
     assert f"{BAD_BODIES[0]}{end} body" in words

@@ -8,7 +8,7 @@ from mechanisms import bracket, pins_of
 from spatial_scenes import beams
 
 from lagrange_casadi import Mechanism, Scene, evaluate, load, save
-from lagrange_casadi.errors import UnknownNameError
+from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import polynomial
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
@@ -60,6 +60,7 @@ def test_units(solution, name, unit):
 @pytest.mark.parametrize(
     ("asked", "says"),
     [
+        (lambda s: s["effort:O"], r"a Solution takes no brackets: expected \.array\('effort:O'\)"),
         (lambda s: s.section("sider"), "unknown link with sections 'sider'; valid: crank, rod"),
         (lambda s: s.reaction("gide"), r"joint with a reaction 'gide' \(did you mean 'guide'\?\)"),
         (lambda s: s.effort("A"), "unknown drive 'A'; valid: O"),
@@ -69,7 +70,7 @@ def test_units(solution, name, unit):
     ],
 )
 def test_unknown_names_list_the_valid(solution, asked, says):
-    with pytest.raises(UnknownNameError, match=says):
+    with pytest.raises(DeclarationError, match=says):
         asked(solution)
 
 

@@ -6,7 +6,9 @@ import filecmp
 import math
 import os
 import re
+import runpy
 import shlex
+import textwrap
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -47,6 +49,20 @@ def test_a_command_prints_what_its_transcript_has(here, capfd, title):
             path.write_text(re.sub(r"^    ", "", text, flags=re.MULTILINE))
         elif head:
             play(head.removeprefix("$ "), text, here, capfd)
+
+
+def test_a_case_has_the_numbers_of_its_script(here, capfd):
+    script = re.split(r"^file press.py$|^\$ ", TRANSCRIPTS["a script becomes a case"], flags=re.M)[
+        1
+    ]
+    Path("press.py").write_text(textwrap.dedent(script).replace("# [m]", '# µ\nnote = """1\n2"""'))
+    assert command("new mine --from press.py") == 0
+    stated = runpy.run_path("press.py")["solution"]
+    found = evaluate(load_case("mine").scene, backend="vm")
+    assert np.array_equal(found.effort("O"), stated.effort("O"))
+    assert re.search(
+        '    note = """1\\n2"""\n.*    # a turn\n', Path("mine/case.py").read_text(), re.S
+    )
 
 
 CRANK = """

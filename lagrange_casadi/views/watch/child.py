@@ -20,11 +20,10 @@ from typing import Any, TypeAlias
 
 from ...base.apart import limit_memory
 from ...errors import LagrangeCasadiError, one_line
-from ...model.mechanism import Mechanism
 from ...studies import solving  # noqa: F401 - which takes long to import
-from ...studies.case import case_file, declared, load_case
+from ...studies.case import case_file, load_case
 from ...studies.evaluate import evaluate
-from ..drawing import draw_error
+from ..drawing import draw_declared, draw_error
 from ..report.page import with_motion
 from ..report.page_contents import contents
 
@@ -91,9 +90,8 @@ def _show(case: Path, given: Mapping[str, Any], say: Say) -> None:
     try:
         scene = load_case(case).scene
     except LagrangeCasadiError as error:
-        if mechanism := declared(file, error, Mechanism):
-            with suppress(LagrangeCasadiError):
-                say("drawing", mechanism.draw().svg)
+        if drawing := draw_declared(file, error):
+            say("drawing", drawing.svg)
         raise
     finally:
         say("files", sorted(opened))
