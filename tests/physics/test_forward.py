@@ -266,7 +266,7 @@ def arm():
     ("ask", "message"),
     [
         (lambda: free(arm()), "one degree of freedom, but in 'arm' 2 motions are given: O, A"),
-        (lambda: free(rotor(), drive="fast"), "drive: expected a Law or a number"),
+        (lambda: free(rotor(), drive="fast"), "drive: expected a law of forward, or a number"),
         (
             lambda: free(rotor(), drive=forward.Law(lambda t, a: t)),
             "cannot be made as an expression",
