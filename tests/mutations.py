@@ -191,8 +191,8 @@ class Map:
         if module not in self.lines:
             path = Path(module)
             near = sorted(self.lines, key=lambda one: (Path(one).parent != path.parent, one))
-            named = (one for one in near if f'"{path.name}"' in (PACKAGE / one).read_text())
-            module = next(named, near[0])
+            quoted = re.compile(f"""["']{re.escape(path.name)}["']""")
+            module = next(one for one in near if quoted.search((PACKAGE / one).read_text()))
         lines = self.lines[module]
         own = [lines[k] for k in range(mutation.first, mutation.line + 1) if k in lines]
         if module != mutation.file or (own and not any(own)):
@@ -221,8 +221,9 @@ class Map:
 
         Each function is asked once before any is asked again, those first that take little time
         and reach few other lines; of the functions that draw random mechanisms one mechanism
-        follows every two other tests. For C those are asked first that reach much of the module
-        and ask whether all ways agree: what they compile is small.
+        follows every two other tests. Those that hold C alone to drawn inputs come before all. For
+        C those are asked next that reach much of the module and ask whether all ways agree: what
+        they compile is small.
         """
         found, compiled = self.reaching(mutation), not mutation.file.endswith(".py")
         there = [test for test in found if test in self.collected]
@@ -239,9 +240,9 @@ class Map:
             turns[test] = compiled and "tests/agree/" not in test, asked[function]
             asked[function] += 1
         ordered = sorted(turns, key=turns.__getitem__)
+        mixed = [test for test in ordered if "_alone.py" in test]
         drawn = [test for test in ordered if "test_random" in test]
-        others = [test for test in ordered if "test_random" not in test]
-        mixed: list[str] = []
+        others = [test for test in ordered if test not in {*mixed, *drawn}]
         while others or drawn:
             mixed += [*others[:2], *drawn[:1]]
             others, drawn = others[2:], drawn[1:]
