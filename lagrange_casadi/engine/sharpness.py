@@ -157,7 +157,7 @@ def bent(program: Program, sharpness: Sharpness, t: Array, p: Array) -> Flags:
     allowed = np.maximum(bends[:, :-1], bends[:, 1:]) / 2 + _ROUNDING * np.abs(here).max(
         axis=1, keepdims=True
     )
-    place = np.clip(np.searchsorted(t, knots, side="right") - 1, 0, t.size - 2)
+    place = np.searchsorted(t, knots, side="right") - 1
     chord = np.array([np.interp(knots, t, row) for row in here])
     np.logical_or.at(found, place, (np.abs(there - chord) > allowed[:, place]).any(axis=0))
     return found

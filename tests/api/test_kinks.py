@@ -91,6 +91,7 @@ BROKEN = {
     "a cut just off the instants": (Y - ca.atan2(ca.sin(X - 1.2e-9), ca.cos(X - 1.2e-9)), "value"),
     "a size by its sign": (Y - ca.copysign(ca.sin(X), 2 + ca.cos(X)), "slope"),
     "a sine's size": (Y - ca.fabs(ca.sin(X)), "slope"),
+    "two sizes in 0.45 of a step": (Y - ca.fabs((X - 0.0045) ** 2 - 1e-8), "slope"),
 }
 
 

@@ -124,6 +124,14 @@ def test_where_equilibrium_leaves_bearings_open_so_is_their_friction():
     )
 
 
+def test_what_an_open_friction_presses_is_open_too():
+    """How hard the guide is pressed is open: so is its friction, which loads the thread."""
+    m = jack(0.004, 0.1)
+    m.friction("way", m.joints["guide"], mu=0.2, radius=0.02, length=0.1)
+    solution = evaluate(Scene(m, {"O": polynomial(0, 3.0)}, t=(0, 1, 3), posture={"thread": 0.0}))
+    assert {"friction:way:along", "friction:flanks:along"} <= set(solution.undetermined)
+
+
 def joints_of(space):
     m = (SpatialMechanism if space else Mechanism)("bad")
     a, b, c = (m.link(name, length=0.1, mass=1.0) for name in "abc")

@@ -270,10 +270,10 @@ class Drive:
         return dead_steps(self.program, angles, out, np.isfinite(angles), most, self.p, place)
 
     def _refuse(self, angles: Array, values: Array) -> None:
-        program, still = self.program, np.zeros(angles.size)
+        program = self.program
         most = program.limits("double", None, program.extent(self.p))
-        sizes = np.array([still + (bound.beside == "ROW") for bound in program.bounds])
-        broken = first_broken(program, values[0], most, sizes.reshape(-1, still.size), still)
+        beside = np.zeros((len(program.bounds), angles.size))
+        broken = first_broken(program, values[0], most, beside, np.zeros(angles.size))
         for i in np.flatnonzero(broken):
             bound = program.bounds[program.rules[broken[i] - 1][1] or 0]
             if bound.kind in ("closure", "branch", "gap"):
