@@ -342,3 +342,27 @@ def test_steps_beside_a_rest_are_left_out(kind):
         assert size >= sizes.max() * (1 - 1e-12)
         assert size >= np.nanmax(np.abs(resting.at(T)))
         assert size <= largest(resting) * (1 + 1e-9)
+
+
+@pytest.mark.quick
+def test_a_jump_that_is_no_number_hides_neither_side():
+    draw = np.random.default_rng(11)
+    for _ in range(40):
+        curve = switch(draw)
+        at, c = curve.at, curve.places[2]
+        hole = curve._replace(
+            at=lambda t, at=at, c=c: np.where(np.abs(t - c) <= 1e-13, np.nan, at(t))
+        )
+        peaks, _ = searched([hole])
+        assert largest(hole) * (1 - 1e-11) <= abs(peaks.value[0]) <= largest(hole) * (1 + 1e-9)
+
+
+def test_what_zigzags_by_rounding_is_not_searched():
+    sizes = np.random.default_rng(0).uniform(0.5e-16, 1e-16, 1009)
+
+    def zigzag(t):
+        return sizes[(1e9 * (t + 1)).astype(int) % sizes.size] * (-1) ** np.rint((t + 1) / STEP)
+
+    peaks, work = searched([Curve(zigzag)])
+    assert peaks.resolved.all()
+    assert work < 20
