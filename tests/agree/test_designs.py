@@ -87,12 +87,12 @@ def test_a_row_has_the_same_bytes_whatever_stands_beside_it(made, method, monkey
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("backend", ["lanes", "c"])
-def test_a_design_without_a_result_has_no_number_and_all_others_have(backend):
+@pytest.mark.parametrize(("backend", "precision"), [("lanes", "single"), ("c", "double")])
+def test_a_design_without_a_result_has_no_number_and_all_others_have(backend, precision):
     scene = slider_crank()
     p = around(scene, 5)
     p[2, 1] = 0.05
-    designs = prepare(scene, backend=backend)
+    designs = prepare(scene, backend=backend, precision=precision)
     for _ in range(2):  # the second time where numbers were
         found, good = designs.designs(p, histories=True), np.arange(5) != 2
         assert ((found.status == Status.OK) == good).all()

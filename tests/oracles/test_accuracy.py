@@ -177,6 +177,12 @@ def test_half_a_turn_is_as_good_as_less_half_a_turn():
     assert solution.errors["pose:rod:angle"] < 1e-13
 
 
+def test_a_remainder_is_as_good_as_one_less_by_its_period():
+    """3 * 0.1 is the period in doubles, and less than that in longer numbers."""
+    scene = replace(arm(lambda angle: ca.fmod(angle, 3 * 0.1)), motion={"J": polynomial(0.0, 0.1)})
+    assert evaluate(scene, t=(0, 3, 4), backend="vm").errors["load:t:mz"] < 1e-13
+
+
 def test_the_instant_nearest_to_a_dead_centre_is_looked_at():
     """One of twenty thousand: between those that are evenly spread, errors are less than a
     hundredth of those there.
