@@ -17,7 +17,7 @@ from mechanisms import (
     sprung,
 )
 
-from lagrange_casadi import Mechanism, Scene, derive, evaluate
+from lagrange_casadi import Mechanism, Scene, derive, evaluate, prepare
 from lagrange_casadi.errors import AssemblyError, DeclarationError
 from lagrange_casadi.motion import harmonic, polynomial
 
@@ -120,3 +120,5 @@ def test_an_angle_whose_turns_nothing_tells_is_refused():
     ):
         evaluate(led(1.5))
     evaluate(led(1.5), wanted=["motion"])
+    for count, told in ((65, True), (2, False)):
+        assert (prepare(led(0.8), t=(0.0, 0.8, count)).designs([[]]).status[0] == 0) is told
