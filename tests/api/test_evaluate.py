@@ -183,7 +183,7 @@ def test_values_by_name_and_in_mappings_and_of_threads():
 
 VALUES = [
     ({"length": 0.2}, UnknownNameError, "unknown parameter 'length'"),
-    ({"l": "long"}, ParameterError, "parameter 'l' must be a number"),
+    ({"l": "long"}, ParameterError, "parameter 'l': expected a number"),
     ({"l": math.nan}, ParameterError, "finite"),
     ({"l": -1.0}, ParameterError, "length must be positive, got -1 m"),
     ({"r": 0.5}, AssemblyError, "cannot be closed at t = "),

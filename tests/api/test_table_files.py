@@ -149,7 +149,7 @@ PROFILES = {
     "": "it has no rows; expected a head and a line for every profile",
     "name,d\n": "line 1: expected a line for every profile below this head",
     "d,e\n1,2\n": "expected a column 'name' and one for each dimension, got d, e",
-    "name,d [ft]\nx,1\n": "column 'd [ft]': expected a name, and m, cm or mm as its unit",
+    "name,d [ft]\nx,1\n": "column 'd' is in 'ft'; expected a length [m]",
     "name,d\nx,1\nx,2\n": "line 3: profile 'x' is listed twice",
     "name,d\n ,1\n": "line 2: it has no name",
     "name,d\nx,-1\n": "line 2: d: expected a positive number, got '-1'",

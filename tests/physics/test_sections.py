@@ -95,7 +95,7 @@ FOREIGN = ca.SX.sym("foreign")
         ({"place": "ground"}, "expected a link for a line load, got 'ground'; use a force"),
         ({"y": (1.0, 2.0, 3.0)}, ONE),
         ({"y": ()}, ONE),
-        ({"y": "strong"}, "must be a number or an expression"),
+        ({"y": "strong"}, r"expected a finite number \[N/m\]"),
         ({"y": FOREIGN}, "depends on 'foreign'"),
         ({"y": lambda xi: xi * FOREIGN}, "depends on 'foreign'"),
         ({"y": ca.sin}, DEGREE),
