@@ -19,7 +19,7 @@ from ..errors import LagrangeCasadiError
 from ..model.mechanism import Mechanism
 from ..model.scene import Scene
 from ..studies.case import declared
-from .shapes.declared import (
+from .shapes.marks import (
     body_names,
     driven_marks,
     gap_marks,

@@ -14,8 +14,8 @@ import numpy as np
 from ...base.arrays import Array, every
 from ...results.solution import Solution
 from ...results.store.specs import MechanismDrawing
-from ..shapes.declared import ground_axes
 from ..shapes.labels import apart, label_bodies, placed
+from ..shapes.marks import ground_axes
 from ..shapes.orthographic import View, page, views
 from ..shapes.picture_sheet import filling, together, view_of
 from ..shapes.poses import Poses

@@ -19,7 +19,7 @@ from ...model.scene import Scene
 from ...model.scene_arguments import posture_entry
 from ...results.solution import Solution
 from ...studies.evaluate import evaluate
-from ..shapes.declared import body_names
+from ..shapes.marks import body_names
 from ..shapes.picture_sheet import Picture, picture, sheet, view_of
 from ..shapes.pixels import frames
 from ..shapes.poses import Poses
