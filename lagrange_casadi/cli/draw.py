@@ -8,7 +8,7 @@ from pathlib import Path
 from ..base.units import Number
 from ..errors import LagrangeCasadiError
 from ..studies.case import case_file, load_case, name_of
-from ..views.drawing import draw_declared
+from ..views.drawing import ENDINGS, draw_declared
 from .echo import echo
 from .options import target
 
@@ -37,7 +37,7 @@ def draw(
         As of :func:`.studies.evaluate.evaluate`.
     """
     file = case_file(case).resolve()
-    path = target("--out", out, f"{name_of(file)}.svg", (".svg", ".png"))
+    path = target("--out", out, f"{name_of(file)}.svg", ENDINGS)
     try:
         found = load_case(case)
     except LagrangeCasadiError as error:

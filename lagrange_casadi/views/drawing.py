@@ -33,7 +33,8 @@ from .shapes.poses import Poses
 from .shapes.primitives import Primitive, cloud, drawing, seen, size_of
 from .shapes.vector import svg
 
-_ENDINGS = (".svg", ".png")
+ENDINGS = (".svg", ".png")
+"""Kinds of drawings, by the name's ending."""
 
 _WIDE, _TALLEST, _FINE = 720, 0.85, 2
 """The width of a picture [points], its largest height over the width, and pixels of a PNG for a
@@ -111,7 +112,7 @@ def _drawn(
 
     still = shown(1)
     if path is not None:
-        check_picture(path, _ENDINGS)
+        check_picture(path, ENDINGS)
         with writing(Path(path)) as file:
             if Path(path).suffix == ".svg":
                 file.write(svg(still).encode())

@@ -41,8 +41,9 @@ def reference(
 
     Times and parameters are doubles, taken as exact, or mpmath numbers. Iterated loops start from
     ``z`` (k, n), and are closed to all digits. A motion by samples is read in doubles.
-    Raises :class:`AssemblyError` where a loop does not close, and :class:`DeclarationError` for
-    graphs that call functions of their own.
+    ``following`` has the last word on the arithmetic of an instant. Raises :class:`AssemblyError`
+    where a loop does not close, and :class:`DeclarationError` for graphs that call functions of
+    their own.
     """
     from mpmath import mp  # takes its time
 
