@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 import ast
+import functools
 import os
 import random
 import re
@@ -346,6 +347,16 @@ def draw(seed: int, count: int, seconds: float, reached: Map) -> None:
     print(f"seed {seed}: {figures['noticed']} of {judged} are noticed; {dict(figures)}")
 
 
+def pytest_runtest_setup() -> None:
+    """Forget what functions of the package keep, so that the map has all that a test reaches."""
+    for module in [sys.modules[name] for name in sys.modules if name.startswith(PACKAGE.name)]:
+        members = [*vars(module).values()]
+        inner = [part for one in members if isinstance(one, type) for part in vars(one).values()]
+        for part in members + inner:
+            if isinstance(part, functools._lru_cache_wrapper):
+                part.cache_clear()
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     commands = parser.add_subparsers(dest="task", required=True)
@@ -361,7 +372,8 @@ def main() -> None:
         return
     options = [f"--cov={PACKAGE.name}", "--cov-branch", "--cov-context=test", "--cov-report="]
     options += ["--cov-append", f"--junitxml={place().with_suffix('.xml')}"]
-    environment = os.environ | {"COVERAGE_FILE": str(place())}
+    options += ["-p", Path(__file__).stem]
+    environment = os.environ | {"COVERAGE_FILE": str(place()), "PYTHONPATH": str(TESTS)}
     command = [sys.executable, "-m", "pytest", *options, *more]
     sys.exit(subprocess.run(command, cwd=ROOT, env=environment).returncode)
 
