@@ -59,7 +59,7 @@ class Alive {
   }
 
   /** Show a design. What it is without, as where it cannot be assembled, is then said by `why`. Unless `whole`, series of what is
-   *  largest along a link are left as they are, which is quicker; all peaks are the same. */
+   *  largest along a link, and rows but for their peaks, are left as they are there, which is quicker. */
   show(values, whole = true) {
     this.values = Float64Array.from(values);
     contents.parameters.forEach((one, k) => (one.value = this.values[k]));
@@ -98,7 +98,7 @@ class Alive {
     this.put(instants.t, times, 0, times.length);
     if (over) this.put(array(over.values), this.coordinates, 0, times.length);
     for (const curve of this.curves) this.along(curve, times.length, whole, (row) => tallyOf(row, true));
-    for (const [row, tally] of tallies) Object.assign(row, tally.described(times, this.coordinates));
+    for (const [row, tally] of tallies) Object.assign(row, tally.described(times, this.coordinates, whole));
     for (const bar of this.bars) complete(bar);
     for (const values of this.unknown) values.fill(NaN);
     for (const row of this.untold) lose(row);
@@ -107,10 +107,11 @@ class Alive {
   /** Put values of instants, the first of which has a number, where they are shown. */
   put(into, values, from, count) {
     const { position } = this;
-    for (let i = 0; i < count; i += 1) {
-      const place = position ? position[from + i] : from + i;
-      if (place >= 0) into[place] = values[i];
+    if (!position) {
+      into.set(values.subarray(0, count), from);
+      return;
     }
+    for (let i = 0; i < count; i += 1) if (position[from + i] >= 0) into[position[from + i]] = values[i];
   }
 
   block(times, weights, from, count) {
@@ -158,7 +159,7 @@ class Alive {
         if (tally) tally.reach(ends, i);
       }
     });
-    for (const [, tally] of rows) for (const end of tally ? [tally.low, tally.high] : []) curve.ends.add(end[1]);
+    for (const [, tally] of rows) if (tally) curve.peaks.add(tally.most[1]);
   }
 
   /** The times of the instants: equal steps, or when the drive's coordinate takes equal steps. */
@@ -365,9 +366,12 @@ class Tally {
     if (this.most[2] === null || Math.abs(ends[4]) > Math.abs(this.most[0])) this.most = [ends[4], instant, ends[5]];
   }
 
-  described(times, coordinates) {
+  /** What a row says; of what is along a link its peak alone, unless it was looked at as a `whole`. */
+  described(times, coordinates, whole) {
     const mark = ([value, instant, xi]) => ({ value, t: times[instant], xi, over: coordinates ? coordinates[instant] : null });
-    const ends = { peak: mark(this.most), smallest: mark(this.low), largest: mark(this.high), error: null };
+    const peak = { peak: mark(this.most), error: null };
+    if (this.along && !whole) return peak;
+    const ends = { ...peak, smallest: mark(this.low), largest: mark(this.high) };
     return this.along ? ends : { ...ends, mean: this.sum, rms: Math.sqrt(this.squares) };
   }
 }

@@ -26,12 +26,12 @@ class Along {
     this.tallies = entry.forces.map(() => new Float64Array(6).fill(NaN));
     this.asked = entry.forces.flatMap((force, k) => {
       const parts = (force.parts.length ? force.parts : [force.name]).map((name) => this.scratch[place.get(name)]);
-      return force.open ? [] : [{ parts, tally: this.tallies[k], slope: new Float64Array(2 * this.many), square: new Float64Array(2 * this.many - 1), known: new Float64Array(2), none: false }];
+      return force.open ? [] : [{ parts, tally: this.tallies[k], slope: new Float64Array(2 * this.many), known: new Float64Array(1) }];
     });
     this.needed = this.scratch.map((c) => this.asked.some((one) => one.parts.includes(c)));
     this.series = new Map();
     this.rowOf = new Map();
-    this.ends = new Set();
+    this.peaks = new Set();
     this.pieces = [];
   }
 
@@ -51,7 +51,7 @@ class Along {
   prepare(length) {
     const { live, engine, entry, held, degree } = this;
     this.length = length;
-    for (const { known } of this.asked) [known[0], known[1]] = [Infinity, -Infinity];
+    for (const { known } of this.asked) known[0] = -Infinity;
     const constants = this.spreads.flat().map((own) => [this.outputs[own], held[own]]);
     const marks = this.spreads.flatMap(([width, end]) => [held[end] - held[width], held[end]]).filter((u) => u > 0 && u < 1);
     let changed = this.cut([...new Set([...live.breaks, ...marks])].sort((a, b) => a - b));
@@ -108,13 +108,12 @@ class Along {
   }
 
   /** Report of every instant, with its number, what each determined force is there: smallest, where, largest, where, largest in size,
-   *  where. The numbers hold until the next instant. Unless `whole`, what is beyond nothing that was found for this design is left out:
-   *  the ends of the cycle are the same. */
+   *  where. The numbers hold until the next instant. Unless `whole`, what is no larger in size than what was found for this design is
+   *  left out: the peak of the cycle is the same. */
   reachAll(count, whole, put) {
-    // Where the ends were in the design before, those of this one are near: then little is beyond what is known.
-    if (!whole) for (const instant of this.ends) if (instant < count) this.reach(instant, false);
-    this.ends.clear();
-    for (const one of this.asked) one.none = false;
+    // Where the peaks were in the design before, those of this one are near: then little is beyond what is known.
+    if (!whole) for (const instant of this.peaks) if (instant < count) this.reach(instant, false);
+    this.peaks.clear();
     for (let i = 0; i < count; i += 1) put(this.reach(i, whole), i);
   }
 
@@ -145,20 +144,21 @@ class Along {
     const { degree, scratch } = this;
     const edge = edgeAt(this.entry, low);
     for (let k = 0; k < this.plain.length; k += 1) if (this.needed[k]) this.sum(k, piece, edge, place);
-    const [from, to] = [low, high].map((u) => (u - piece.low) / (piece.high - piece.low));
-    if (low > piece.low || high < piece.high) for (let k = 0; k < scratch.length; k += 1) if (this.needed[k]) cutTo(scratch[k], degree, from, to);
-    for (const one of this.asked) {
-      if (!whole && high > low && isWithin(one)) continue;
-      const { parts, tally, slope, known } = one;
+    if (low > piece.low || high < piece.high) {
+      const [from, to] = [low, high].map((u) => (u - piece.low) / (piece.high - piece.low));
+      for (let k = 0; k < scratch.length; k += 1) if (this.needed[k]) cutTo(scratch[k], degree, from, to);
+    }
+    for (const { parts, tally, slope, known } of this.asked) {
+      const bound = whole ? Infinity : boundOf(parts);
+      if (high > low && bound < (1 - ROUNDED) * known[0]) continue;
       put(tally, known, sizeAt(parts, 0), low);
-      if (high > low) {
-        put(tally, known, sizeAt(parts, 1), high);
-        if (parts.length > 1) squaredSlope(parts, slope, this.factor);
-        else slopeInto(slope, parts[0], degree);
-        const zeros = zerosOf(slope, parts.length > 1 ? 2 * degree - 1 : degree - 1);
-        for (let z = 0; z < zeros.count; z += 1) put(tally, known, sizeAt(parts, zeros.at[z]), low + (high - low) * zeros.at[z]);
-      }
-      if (tally[0] === 0) one.none = true;
+      if (high === low) continue;
+      put(tally, known, sizeAt(parts, 1), high);
+      if (bound <= (1 + ROUNDED) * Math.abs(tally[4])) continue;
+      if (parts.length > 1) squaredSlope(parts, slope, this.factor);
+      else slopeInto(slope, parts[0], degree);
+      const zeros = zerosOf(slope, parts.length > 1 ? 2 * degree - 1 : degree - 1);
+      for (let z = 0; z < zeros.count; z += 1) put(tally, known, sizeAt(parts, zeros.at[z]), low + (high - low) * zeros.at[z]);
     }
   }
 
@@ -207,44 +207,12 @@ function largestSize(c) {
   return most;
 }
 
-/** Whether a force is everywhere from 0 to 1 between what is known, or at the nothing that there was before. The square of a size is a
- *  polynomial. */
-function isWithin({ parts, square, known, none }) {
-  if (parts.length === 1) {
-    const rounded = ROUNDED * largestSize(parts[0]);
-    return isBetween(parts[0], known[0] + rounded, known[1] - rounded, 1);
-  }
-  square.fill(0);
-  for (const c of parts) addProduct(square, c, c.length - 1, c, c.length - 1);
-  const rounded = ROUNDED * largestSize(square);
-  return isBetween(square, none ? -Infinity : known[0] * known[0] + rounded, known[1] * known[1] - rounded, 1);
-}
-
-/** Whether a polynomial is between two values, by its ordinates of Bernstein, or those of its halves and of theirs. */
-function isBetween(ordinates, least, most, depth) {
-  const many = ordinates.length;
-  if (!(ordinates[0] < most && ordinates[0] > least && ordinates[many - 1] < most && ordinates[many - 1] > least)) return false;
-  let within = true;
-  for (let j = 1; within && j < many - 1; j += 1) within = ordinates[j] < most && ordinates[j] > least;
-  if (within) return true;
-  if (depth > HALVINGS) return false;
-  const { left, right } = halves(depth, many);
-  right.set(ordinates);
-  for (let i = 0; i < many; i += 1) {
-    left[i] = right[0];
-    for (let j = 0; j < many - 1 - i; j += 1) right[j] = (right[j] + right[j + 1]) / 2;
-  }
-  return isBetween(left, least, most, depth + 1) && isBetween(right, least, most, depth + 1);
-}
-
-const HALVINGS = 4;
-
-const halved = [];
-
-/** Room for the ordinates of two halves. */
-function halves(depth, many) {
-  if (halved[depth]?.left.length !== many) halved[depth] = { left: new Float64Array(many), right: new Float64Array(many) };
-  return halved[depth];
+/** What a force is nowhere from 0 to 1 beyond in size: no polynomial is beyond its ordinates of Bernstein. */
+function boundOf(parts) {
+  if (parts.length === 1) return largestSize(parts[0]);
+  let sum = 0;
+  for (const c of parts) sum += largestSize(c) ** 2;
+  return Math.sqrt(sum);
 }
 
 const ROUNDED = 1e-12; // Over a value: more than rounding can hide.
@@ -256,16 +224,15 @@ function put(tally, known, value, u) {
   if (first || value < tally[0]) {
     tally[0] = value;
     tally[1] = u;
-    if (value < known[0]) known[0] = value;
   }
   if (first || value > tally[2]) {
     tally[2] = value;
     tally[3] = u;
-    if (value > known[1]) known[1] = value;
   }
   if (first || Math.abs(value) > Math.abs(tally[4])) {
     tally[4] = value;
     tally[5] = u;
+    if (Math.abs(value) > known[0]) known[0] = Math.abs(value);
   }
 }
 
