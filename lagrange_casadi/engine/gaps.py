@@ -10,6 +10,7 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
 
+import casadi as ca
 import numpy as np
 
 from ..base.arrays import Array, Flags
@@ -18,7 +19,7 @@ from ..base.tables import LENGTH
 from ..model.declared_parts import Point
 from ..model.joints import Joint
 from .joint_closure import carried, held_directions
-from .multibody import LoopEquations
+from .multibody import LoopEquations, Multibody
 from .nearest import Nearest
 from .released_loops import State
 from .tree import Branch, Tree
@@ -63,35 +64,53 @@ def gaps_of(nearest: Nearest, state: State, left: Sequence[int]) -> tuple[Gap, .
     return tuple(found)
 
 
+def joined(loop: LoopEquations) -> tuple[Point, Point]:
+    """The points of two bodies that a joint or a two-force link joins."""
+    if (bar := loop.two_force_link) is not None:
+        one, other = bar.joints
+        return bar.other(one), bar.other(other)
+    assert loop.joint is not None
+    return loop.joint.parent, loop.joint.child
+
+
+def apart(multibody: Multibody, loop: LoopEquations) -> ca.SX:
+    """What is apart where a joint or a two-force link closes a loop, over coordinates (7,): two
+    places that should be one, in ground axes [m], and the sine of the angle between the bodies.
+    """
+    one, last = (
+        column(multibody.frames[point.body.name].place_of(point.place)) for point in joined(loop)
+    )
+    if loop.two_force_link is not None:
+        wide = ca.norm_2(last - one)
+        along = (last - one) / ca.if_else(wide > 0.0, wide, 1.0)
+        return column([one + loop.two_force_link.length * along, last, 0.0])
+    assert loop.joint is not None
+    parent, child = (multibody.frames[body.name] for body in loop.joint.bodies)
+    sines = loop.residual[loop.residual.numel() - held_directions(loop.joint) :]
+    there = parent.place_of(carried(loop.joint, parent, child))
+    return column([*there, last, ca.sqrt(ca.sumsqr(sines))])
+
+
 def _gap(nearest: Nearest, loop: LoopEquations) -> Gap:
     """The gap of a loop, and in words what is apart."""
-    numbers, frames = nearest.numbers, nearest.multibody.frames
     if loop.declared:
-        (residual,) = numbers.of(loop.residual)
+        (residual,) = nearest.numbers.of(loop.residual)
         words = f"constraint '{loop.name}' is {residual:.6g} in place of 0"
         return Gap(loop.name, loop.kind, (), np.zeros((0, 3)), abs(residual), "", words)
-    if (bar := loop.two_force_link) is not None:
-        one, other = (bar.other(joint) for joint in bar.joints)
-        first, last = nearest.place(one), nearest.place(other)
-        along = (last - first) / (np.linalg.norm(last - first) or 1.0)
-        ends, angle = np.array([first + numbers.of(bar.length)[0] * along, last]), 0.0
-    else:
-        assert loop.joint is not None
-        one, other = loop.joint.parent, loop.joint.child
-        parent, child = (frames[body.name] for body in loop.joint.bodies)
-        there = numbers.of(column(parent.place_of(carried(loop.joint, parent, child))))
-        sines = loop.residual[loop.residual.numel() - held_directions(loop.joint) :]
-        ends, angle = (
-            np.array([there, nearest.place(other)]),
-            math.asin(min(1.0, float(np.linalg.norm(numbers.of(sines))))),
-        )
-    apart, bodies = float(np.linalg.norm(ends[1] - ends[0])), (one.body.name, other.body.name)
-    what, where = f"{bodies[0]} and {bodies[1]} are", f"at {loop.kind} '{loop.name}'"
-    if angle * nearest.size > apart:
-        words = f"{what} turned by {math.degrees(angle):.3g} deg against each other {where}"
-        return Gap(loop.name, loop.kind, bodies, ends, angle, "rad", words)
+    *places, sine = nearest.numbers.of(apart(nearest.multibody, loop))
+    ends, angle = np.reshape(places, (2, 3)), math.asin(min(1.0, sine))
+    one, other = (point.body.name for point in joined(loop))
+    wide, where = float(np.linalg.norm(ends[1] - ends[0])), f"at {loop.kind} '{loop.name}'"
+    turned = angle * nearest.size > wide
+    by_turn = f"turned by {math.degrees(angle):.3g} deg against each other"
     return Gap(
-        loop.name, loop.kind, bodies, ends, apart, "m", f"{what} {apart:.3g} m apart {where}"
+        loop.name,
+        loop.kind,
+        (one, other),
+        ends,
+        angle if turned else wide,
+        "rad" if turned else "m",
+        f"{one} and {other} are {by_turn if turned else f'{wide:.3g} m apart'} {where}",
     )
 
 

@@ -76,9 +76,9 @@ class Nearest:
         )
 
     @property
-    def drives(self) -> set[str]:
+    def drives(self) -> tuple[str, ...]:
         """The driven coordinates."""
-        return {c.name for c in self.multibody.coordinates if c.driven}
+        return tuple(c.name for c in self.multibody.coordinates if c.driven)
 
     @property
     def size(self) -> float:
@@ -90,19 +90,25 @@ class Nearest:
         values = self.released.placed(*state[:2]).full().ravel()
         self.numbers.note(self.released.variables, values.tolist())
 
-    def poses(self) -> dict[str, Array]:
-        """The place of the origin of each body, and its axes, rows (4, 3), in ground axes."""
-        frames = self.multibody.frames
+    @cached_property
+    def placed(self) -> ca.SX:
+        """The place of each body's origin, and its axes, in ground axes, over coordinates (12 a
+        body); the x axis of a two-force link is stretched between its ends.
+        """
         rows = [
             row
-            for frame in frames.values()
+            for frame in self.multibody.frames.values()
             for turn in (frame.rotation,)
             for row in (frame.place_of(ZERO), turn.x, turn.y, turn.z)
         ]
-        found = np.array(self.numbers.of(column(itertools.chain(*rows)))).reshape(-1, 4, 3)
+        return column(itertools.chain(*rows))
+
+    def poses(self) -> dict[str, Array]:
+        """The place of the origin of each body, and its axes, rows (4, 3), in ground axes."""
+        found = np.array(self.numbers.of(self.placed)).reshape(-1, 4, 3)
         # A two-force link that does not fit between its ends is not stretched.
         found[:, 1] /= np.linalg.norm(found[:, 1], axis=1, keepdims=True)
-        return dict(zip(frames, found, strict=True))
+        return dict(zip(self.multibody.frames, found, strict=True))
 
     def place(self, point: Point) -> Array:
         """A point of a body, in ground axes [m]."""

@@ -152,18 +152,10 @@ def place(
     """
     given = parameter_values(mechanism.parameters, values)
     laws = laws_of(mechanism, motion or {})
-    whole, tree, floating = _joined(_measured(guided(mechanism, motion or {}), given), laws)
-    p = list(parameter_values(whole.parameters, given).values())
-    carried = [axis.coordinate for branch in tree.branches for axis in branch.joint.axes]
-    driven = [name for name in carried if name in laws]
-    multibody = assemble(whole, tree, driven, ())
-    law = Laws.of(laws, whole.symbols).only(driven).motion
     rough = mechanism.rough | rough_posture(mechanism, posture or {})
-    numbers = begun(multibody, rough, Start(law, (start, start), p, ""))
-    nearest = Nearest.of(multibody, numbers, rough)
-    state, left = nearest.found(nearest.released.first)
-    if t is not None and t != start and not (closed and left):
-        state, left = _followed(nearest, law, state, t, closed)
+    whole = _measured(guided(mechanism, motion or {}), given)
+    at = start if t is None else t
+    nearest, state, left, tree, floating = _stood(whole, laws, start, at, given, rough, closed)
     nearest.note(state)
     gaps = gaps_of(nearest, state, left)
     poses = nearest.poses()
@@ -172,7 +164,54 @@ def place(
     axes = {name: poses[name][1:] for name in description.bodies}
     seated = getattr(mechanism, "references", {})
     _set_beside(bases, axes, description, [name for name in floating if name not in seated])
-    return Placement(mechanism, float(state[2]), description, bases, axes, tuple(driven), gaps)
+    return Placement(mechanism, state[2], description, bases, axes, nearest.drives, gaps)
+
+
+@symbolic
+@np.errstate(all="ignore")
+def stand(scene: Scene, t: float, values: Mapping[str, float]) -> tuple[Nearest, State]:
+    """The loops of a scene's mechanism over its own parameters, and the state of its coordinates at
+    an instant [s], from which that of other parameters is found.
+    """
+    mechanism = scene.mechanism
+    nearest, state, *_ = _stood(
+        guided(mechanism, scene.motion),
+        laws_of(mechanism, scene.motion),
+        scene.span[0],
+        t,
+        mechanism.values({**scene.assembly, **values}),
+        {**mechanism.rough, **scene.posture},
+        closed=False,
+    )
+    return nearest, state
+
+
+def _stood(
+    mechanism: Mechanism,
+    laws: Mapping[str, Any],
+    start: float,
+    t: float,
+    values: Mapping[str, float],
+    rough: Mapping[str, Any],
+    closed: bool,
+) -> tuple[Nearest, State, list[int], Tree, list[str]]:
+    """Place a mechanism with driven motions at an instant, from a rough posture at the start.
+
+    Returns its loops, the state of its coordinates, the loops that this leaves open, the tree, and
+    the bodies that no joint places.
+    """
+    whole, tree, floating = _joined(mechanism, laws)
+    p = list(parameter_values(whole.parameters, values).values())
+    carried = [axis.coordinate for branch in tree.branches for axis in branch.joint.axes]
+    driven = [name for name in carried if name in laws]
+    multibody = assemble(whole, tree, driven, ())
+    law = Laws.of(laws, whole.symbols).only(driven).motion
+    numbers = begun(multibody, rough, Start(law, (start, start), p, ""))
+    nearest = Nearest.of(multibody, numbers, rough)
+    state, left = nearest.found(nearest.released.first)
+    if t != start and not (closed and left):
+        state, left = _followed(nearest, law, state, t, closed)
+    return nearest, state, left, tree, floating
 
 
 def _measured(mechanism: Mechanism, values: Mapping[str, float]) -> Mechanism:

@@ -43,9 +43,9 @@ def opened(one, path, text):
     wait(one, "window.page.live.engine !== null")
 
 
-def wait(one, condition):
+def wait(one, condition, seconds=20.0):
     """Wait until something is so in a page."""
-    end = time.monotonic() + 20.0
+    end = time.monotonic() + seconds
     while not one.run(condition):
         assert time.monotonic() < end, (condition, one.complaints)
         time.sleep(0.02)

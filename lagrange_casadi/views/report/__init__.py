@@ -8,7 +8,7 @@ from .notebook import scene_summary, summary, view
 from .page import (
     ENDINGS,
     assembled,
-    live_digest,
+    digest,
     page,
     scene_report,
     with_motion,
@@ -20,7 +20,7 @@ __all__ = [
     "ENDINGS",
     "Live",
     "assembled",
-    "live_digest",
+    "digest",
     "page",
     "scene_report",
     "scene_summary",

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +19,7 @@ from ...results.ordering import error_of, ordered
 from ...results.solution import Solution
 from .array_block import Arrays
 from .instants import drive_entry, shown_instants
-from .page import COMPARISON_SCRIPTS, assembled, page, page_digest, script, write_page
+from .page import COMPARISON_SCRIPTS, assembled, digest, page, script, write_page
 from .page_contents import series_of
 from .words import GROUPS, what
 
@@ -69,7 +68,7 @@ def _page(solutions: tuple[Solution, Solution], names: Sequence[str]) -> str:
                 "certified": solution.certified,
                 "t": arrays.add(solution.t[chosen]),
                 "over": drive_entry(solution, chosen, arrays),
-                "series": [asdict(one) for one in series_of(solution, chosen, arrays)],
+                "series": [*series_of(solution, chosen, arrays)],
                 "parameters": {
                     parameter: [entry.value, entry.unit]
                     for parameter, entry in solution.description.parameters.items()
@@ -85,7 +84,7 @@ def _page(solutions: tuple[Solution, Solution], names: Sequence[str]) -> str:
         f"{cases}: two runs",
         content,
         [script(name) for name in COMPARISON_SCRIPTS],
-        others=[page_digest()],
+        others=[digest(live=False)],
     )
 
 

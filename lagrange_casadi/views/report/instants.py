@@ -4,8 +4,6 @@ values with when and where they are.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import numpy.typing as npt
 
@@ -57,21 +55,10 @@ def drive_entry(
     return {"joint": over.joint, "unit": over.unit, "values": arrays.add(over.values[chosen])}
 
 
-@dataclass(frozen=True)
-class Mark:
-    """A value with its time, its ratio xi/l where it is along a link, and the drive's coordinate
-    where instants are over one.
+def mark(solution: Solution, value: float, t: float, xi: float | None) -> dict[str, Json]:
+    """A value at one of a solution's instants, with its time, its ratio xi/l where it is along a
+    link, and the drive's coordinate where instants are over one.
     """
-
-    value: float
-    t: float
-    xi: float | None
-    over: float | None
-
-
-def mark(solution: Solution, value: float, t: float, xi: float | None) -> Mark:
-    """The mark of a value at one of a solution's instants."""
     axis = solution.over
-    return Mark(
-        value + 0.0, t, xi, float(axis.values[int(np.argmax(solution.t == t))]) if axis else None
-    )
+    at = float(axis.values[int(np.argmax(solution.t == t))]) if axis else None
+    return {"value": value + 0.0, "t": t, "xi": xi, "over": at}

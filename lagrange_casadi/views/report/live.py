@@ -20,10 +20,15 @@ import numpy.typing as npt
 
 from ...base.arrays import Json
 from ...base.quantities import Output
+from ...base.scalars import column
 from ...engine.codegen.printer import print_functions
 from ...engine.derive import compile_scene
+from ...engine.gaps import apart, joined
 from ...engine.instants.evaluation_method import EvaluationMethod
 from ...engine.model_data import ModelData
+from ...engine.nearest import Nearest
+from ...engine.placement import stand
+from ...engine.released_loops import State
 from ...errors import DeclarationError
 from ...interop.portable.data import LARGEST
 from ...interop.portable.source import Source
@@ -40,7 +45,7 @@ _CORNERS = (
     " parameters only, not with those of the sliders."
 )
 
-_NUMBERS = """#include <math.h>
+_FUNCTIONS = """#include <math.h>
 typedef double casadi_real;
 {functions}
 void live_numbers(const double* p, double* numbers) {{
@@ -49,6 +54,14 @@ void live_numbers(const double* p, double* numbers) {{
   arg[0] = p;
   res[0] = numbers;
   numbers_of(arg, res);
+}}
+void live_posture(const double* p, const double* x, double* posture) {{
+  const casadi_real* arg[2];
+  casadi_real* res[1];
+  arg[0] = p;
+  arg[1] = x;
+  res[0] = posture;
+  posture_of(arg, res);
 }}
 """
 
@@ -63,13 +76,16 @@ class Live:
     """Program of a live page: the ``source`` of its solution's program, and the definition of its
     instants.
 
-    ``command`` is how a command line begins that evaluates the same.
+    ``command`` is how a command line begins that evaluates the same. ``numbers`` and ``posture``
+    are how many numbers these functions of a module give.
     """
 
+    scene: Scene
     source: Source
     timing: Timing
     command: str
     numbers: int
+    posture: int
     module: Future[bytes]
     """WebAssembly, which is compiled while the solution is evaluated."""
 
@@ -98,30 +114,21 @@ class Live:
         source = sourced(
             scene, "", parameters, wanted, EvaluationMethod("auto", "double"), LARGEST["double"]
         )
-        function = _numbers(data, timing)
-        text = _NUMBERS.format(
-            functions=print_functions({"numbers_of": function}, "double", prefix="live")
-        )
-        build = page_build(source, {"live.c": text}, ["live_numbers"])
+        nearest, _ = stand(scene, scene.span[0], parameters or {})
+        functions = {"numbers_of": _numbers(data, timing), "posture_of": _posture(nearest)}
+        text = _FUNCTIONS.format(functions=print_functions(functions, "double", prefix="live"))
+        build = page_build(source, {"live.c": text}, ["live_numbers", "live_posture"])
         compilers = ThreadPoolExecutor(1)
         module = compilers.submit(build)
         compilers.shutdown(wait=False)
-        return cls(source, timing, command, function.numel_out(), module)
+        numbers, posture = (function.numel_out() for function in functions.values())
+        return cls(scene, source, timing, command, numbers, posture, module)
 
     @property
     def notes(self) -> tuple[str, ...]:
         """Notes for whoever changes parameters in the page."""
         corners = self.source.exported.program.data.corners
         return (_CORNERS,) if corners.laws or corners.constraints else ()
-
-    def entry(
-        self, solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays
-    ) -> dict[str, Json]:
-        """Data of a page beside its solution: the module, and its inputs, outputs and numbers.
-
-        ``chosen`` are the instants that are shown, by number.
-        """
-        return _entry(self, solution, chosen, arrays)
 
 
 def _numbers(data: ModelData, timing: Timing) -> ca.Function:
@@ -131,16 +138,70 @@ def _numbers(data: ModelData, timing: Timing) -> ca.Function:
     return ca.Function("numbers_of", [data.symbols], [ca.densify(numbers)], {"cse": True})
 
 
-def _entry(
+def _posture(nearest: Nearest) -> ca.Function:
+    """The posture by the parameters and by x, which is the time, the coordinates u and the
+    quaternions of balls: the equations of loops, their derivatives by u, the bodies, the ends of
+    loops, and the quaternions turned by u.
+    """
+    released, multibody = nearest.released, nearest.multibody
+    u, q, t, p = released.given
+    ends = (apart(multibody, loop) for loop in multibody.loop_equations if not loop.declared)
+    placed = ca.substitute(
+        column([nearest.placed, *ends]), released.variables, released.placed(u, q)
+    )
+    slopes = ca.densify(ca.jacobian(released.residuals, u))
+    found = column([released.residuals, ca.vec(slopes.T), placed, released.turned(u, q)])
+    # A two-force link has no other axes than that along it: its sides stay as they are.
+    inputs, outputs = [p, ca.vertcat(t, u, q)], [ca.densify(found)]
+    sides = column(ca.Function("open", inputs, outputs, {"allow_free": True}).free_sx())
+    outputs = [ca.substitute(found, sides, ca.DM(nearest.numbers.of(sides)))]
+    return ca.Function("posture_of", inputs, outputs, {"cse": True})
+
+
+def _posture_entry(nearest: Nearest, state: State, known: Mapping[str, int]) -> dict[str, Json]:
+    """Layout of the posture's numbers, and the coordinates at the first instant."""
+    u, q, *_ = state
+    multibody, sizes = nearest.multibody, nearest.released.sizes
+    return {
+        "u": u.tolist(),
+        "q": q.tolist(),
+        "free": np.flatnonzero(nearest.free).tolist(),
+        "resting": np.flatnonzero(nearest.released.resting).tolist(),
+        "driven": [
+            [k, known[f"motion:{coordinate.name}"], sizes[k]]
+            for k, coordinate in enumerate(multibody.coordinates)
+            if coordinate.driven
+        ],
+        "bodies": list(multibody.frames),
+        "loops": [
+            {
+                "name": loop.name,
+                "kind": loop.kind,
+                "rows": [rows.start, rows.stop],
+                "bodies": [] if loop.declared else [point.body.name for point in joined(loop)],
+            }
+            for loop, rows in zip(multibody.loop_equations, nearest.loops, strict=True)
+        ],
+    }
+
+
+def live_entry(
     live: Live, solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays
 ) -> dict[str, Json]:
+    """Data of a page beside its solution: the module, and its inputs, outputs and numbers.
+
+    ``chosen`` are the instants that are shown, by number.
+    """
     source, timing = live.source, live.timing
     data = source.exported.program.data
     contract = source.contract
     known = {member.source: k for k, member in enumerate((*contract.inputs, *contract.outputs))}
+    values = {name: one.value for name, one in solution.description.parameters.items()}
+    nearest, state = stand(live.scene, float(solution.t[0]), values)
+    more = live.numbers + live.posture + 1 + sum(map(len, state[:2]))
     return {
         "module": base64.b64encode(live.module.result()).decode("ascii"),
-        "layout": layout(source) | {"more": live.numbers},
+        "layout": layout(source) | {"more": more},
         "defaults": data.defaults.tolist(),
         "loops": (
             [places(source)["loops"], source.exported.sizes["loops"]] if source.iterated else None
@@ -161,6 +222,7 @@ def _entry(
             "joint": timing.joint,
             "coordinate": known.get(f"motion:{timing.joint}", -1),
         },
+        "posture": _posture_entry(nearest, state, known),
         "shown": None if chosen.size == timing.count else chosen.tolist(),
         "numbers": live.numbers,
         "picture": _picture(data.content, 2),

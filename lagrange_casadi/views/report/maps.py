@@ -5,7 +5,6 @@ law of.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -17,9 +16,9 @@ from ...results.statistics import counted
 from ...results.strength.all_parts import strong_of
 from ...results.strength.stress import Stress
 from .array_block import Arrays
-from .instants import Mark, mark
+from .instants import mark
 
-RATIOS = 51
+_RATIOS = np.linspace(0.0, 1.0, 51)
 """Equal ratios xi/l of a map, both ends included."""
 
 INSTANTS = 201
@@ -30,52 +29,32 @@ points.
 _BESIDE = 0.98
 
 
-@dataclass(frozen=True)
-class Map:
-    """Values of a link over time and along it.
-
-    ``t``, ``xi`` and ``values`` are numbers of arrays: times (t,), ratios (xi,), and values (t,
-    xi), all of an instant together; ``over`` that of the drive's coordinate (t,) where instants are
-    over one. ``where`` says more of the peak's place.
-    """
-
-    name: str
-    link: str
-    what: str
-    unit: str
-    signed: bool
-    t: int
-    over: int | None
-    xi: int
-    values: int
-    peak: Mark
-    where: str
-
-
 def map_entries(solution: Solution, arrays: Arrays) -> Iterator[dict[str, Json]]:
-    """The maps of the links that have a beam: von Mises' stress, and where the material's
-    elasticity is known the deflection.
+    """The maps of the links that have a beam, values over time and along the link: von Mises'
+    stress, and where the material's elasticity is known the deflection.
+
+    Arrays are by their numbers: times ``t`` (t,), ratios ``xi`` (xi,), and ``values`` (t, xi), all
+    of an instant together; ``over`` has the drive's coordinate (t,) where instants are over one.
+    ``where`` says more of the peak's place.
     """
     for link in strong_of(solution):
         stress = solution.stress(link)
         peak = stress.peak("von_mises")
         chosen = _instants(solution, peak.t)
-        grid = Stress(stress.member.during(chosen)).grid("von_mises", _ratios())
-        yield asdict(
-            Map(
-                name=f"stress:{link}",
-                link=link,
-                what="von Mises' stress",
-                unit="Pa",
-                signed=False,
-                **_numbers(solution, chosen, grid, arrays),
-                peak=mark(solution, peak.value, peak.t, peak.xi),
-                where=peak.fibre,
-            )
-        )
+        grid = Stress(stress.member.during(chosen)).grid("von_mises", _RATIOS)
+        yield {
+            "name": f"stress:{link}",
+            "link": link,
+            "what": "von Mises' stress",
+            "unit": "Pa",
+            "signed": False,
+            **_numbers(solution, chosen, grid, arrays),
+            "peak": mark(solution, peak.value, peak.t, peak.xi),
+            "where": peak.fibre,
+        }
     for link in bending_of(solution):
         bent = solution.deflection(link)
-        sizes = bent.size(np.broadcast_to(_ratios(), (solution.t.size, RATIOS)))
+        sizes = bent.size(np.broadcast_to(_RATIOS, (solution.t.size, _RATIOS.size)))
         most = np.abs(sizes).max(axis=1)
         if not counted(most).any():
             continue
@@ -86,27 +65,20 @@ def map_entries(solution: Solution, arrays: Arrays) -> Iterator[dict[str, Json]]
         )
         chosen = _instants(solution, largest.t)
         line = "the line between its ends" if bent.against == "ends" else "its axis at the base"
-        yield asdict(
-            Map(
-                name=f"deflection:{link}",
-                link=link,
-                what="deflection across the link",
-                unit="m",
-                signed=not bent.member.space,
-                **_numbers(solution, chosen, sizes[chosen], arrays),
-                peak=mark(solution, largest.value, largest.t, largest.xi),
-                where=f"from {line}",
-            )
-        )
-
-
-def _ratios() -> Array:
-    return np.linspace(0.0, 1.0, RATIOS)
+        yield {
+            "name": f"deflection:{link}",
+            "link": link,
+            "what": "deflection across the link",
+            "unit": "m",
+            "signed": not bent.member.space,
+            **_numbers(solution, chosen, sizes[chosen], arrays),
+            "peak": mark(solution, largest.value, largest.t, largest.xi),
+            "where": f"from {line}",
+        }
 
 
 def _instants(solution: Solution, t: float) -> Array:
-    total = solution.t.size
-    distributed = spread(total, INSTANTS)
+    distributed = spread(solution.t.size, INSTANTS)
     return np.unique(np.append(distributed, int(np.argmax(solution.t == t))))
 
 
@@ -115,6 +87,6 @@ def _numbers(solution: Solution, chosen: Array, grid: Array, arrays: Arrays) -> 
     return {
         "over": arrays.add(solution.over.values[chosen]) if solution.over else None,
         "t": arrays.add(solution.t[chosen]),
-        "xi": arrays.add(_ratios()),
+        "xi": arrays.add(_RATIOS),
         "values": arrays.add(grid.ravel()),
     }

@@ -64,7 +64,7 @@ SCRIPTS = (
 )
 """The viewer's sources, in the order in which they stand in a page."""
 
-LIVE_SCRIPTS = ("bernstein", "along", "shapes", "alive", "drag")
+LIVE_SCRIPTS = ("bernstein", "along", "shapes", "posture", "alive", "drag")
 """Scripts of a live page before the others, after the engine's own wrapper."""
 
 SWEEP_SCRIPTS = (
@@ -131,9 +131,8 @@ def write_page(target: Path, made: Callable[[], str]) -> None:
 
 def page(solution: Solution, live: Live | None = None, clock: Json = None) -> str:
     """The text of the page; within a page of two runs with the ``clock`` of both."""
-    alive = [engine(), *map(script, LIVE_SCRIPTS)] if live else []
     content = contents(solution, live) | ({"clock": clock} if clock else {})
-    return assembled(solution.case, content, [*alive, *map(script, SCRIPTS)], wasm=bool(live))
+    return assembled(solution.case, content, viewer(bool(live)), wasm=bool(live))
 
 
 def assembled(
@@ -175,14 +174,15 @@ def policy(
     )
 
 
-def live_digest() -> str:
-    """The digest of the script of a live page."""
-    return _digest(_whole([engine(), *map(script, (*LIVE_SCRIPTS, *SCRIPTS))]))
+def digest(live: bool) -> str:
+    """The digest of the script of a page, of a live one or another."""
+    return _digest(_whole(viewer(live)))
 
 
-def page_digest() -> str:
-    """The digest of the script of a page that is not live."""
-    return _digest(_whole([script(name) for name in SCRIPTS]))
+def viewer(live: bool) -> list[str]:
+    """The sources of the viewer, with the engine where it is ``live``."""
+    alive = [engine(), *map(script, LIVE_SCRIPTS)] if live else []
+    return [*alive, *map(script, SCRIPTS)]
 
 
 def script(name: str) -> str:

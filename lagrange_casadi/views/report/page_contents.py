@@ -5,13 +5,14 @@ page reads.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 
 import numpy as np
 import numpy.typing as npt
 
 from ...base.arrays import Array, Json
 from ...base.quantities import Output
+from ...base.tables import Table
 from ...engine.instants.beyond_equilibrium import held_outputs
 from ...model.description import Description, JointNumbers
 from ...results.derivatives import derivatives
@@ -25,8 +26,8 @@ from ..shapes.poses import Poses, require_poses
 from ..shapes.primitives import colours_of, disc_axis
 from ..shapes.shapes import named_spots, shapes
 from .array_block import Arrays, finite
-from .instants import Mark, drive_entry, mark, shown_instants
-from .live import Live
+from .instants import drive_entry, mark, shown_instants
+from .live import Live, live_entry
 from .maps import map_entries
 from .page_sections import section_entries
 from .words import GROUPS, what
@@ -36,43 +37,6 @@ VERSION = 1
 
 _LOADED = ("effort", "reaction", "stress", "utilisation", "deflection")
 _CHARTED = (*_LOADED, "output", "motion", "load", "friction", "multiplier", "pose")
-
-
-@dataclass(frozen=True)
-class Series:
-    """A quantity over the instants that are shown, for charts; of a section force, what is largest
-    in size along its link.
-
-    ``values`` is the number of its array, ``places`` that of the ratios xi/l of a section force.
-    """
-
-    name: str
-    group: str
-    part: str
-    what: str
-    unit: str
-    values: int
-    places: int | None = None
-
-
-@dataclass(frozen=True)
-class Row:
-    """A quantity over all instants: its peak, how far it may be off, its ends and means; only its
-    name where it is ``open``.
-    """
-
-    name: str
-    group: str
-    part: str
-    what: str
-    unit: str
-    open: bool
-    peak: Mark | None = None
-    error: float | None = None
-    smallest: Mark | None = None
-    largest: Mark | None = None
-    mean: float | None = None
-    rms: float | None = None
 
 
 def contents(solution: Solution, live: Live | None = None) -> dict[str, Json]:
@@ -101,11 +65,11 @@ def contents(solution: Solution, live: Live | None = None) -> dict[str, Json]:
             for name, load in description.loads.items()
         ],
         "paths": [{"name": name} | asdict(spot) for name, spot in description.paths.items()],
-        "series": [asdict(one) for one in series_of(solution, chosen, arrays)],
+        "series": [*series_of(solution, chosen, arrays)],
         "sections": list(section_entries(solution, chosen, arrays)),
         "maps": list(map_entries(solution, arrays)),
         "groups": GROUPS,
-        "rows": [asdict(row) for row in _rows(solution)],
+        "rows": [*_rows(solution)],
         "strength": list(_strength(solution)),
         "drives": [{"name": name} | asdict(use) for name, use in solution.drives_used().items()],
         "parameters": list(_parameters(description)),
@@ -117,7 +81,7 @@ def contents(solution: Solution, live: Live | None = None) -> dict[str, Json]:
         ),
     }
     if live:
-        found["live"] = live.entry(solution, chosen, arrays)
+        found["live"] = live_entry(live, solution, chosen, arrays)
     return found | {"arrays": arrays.places, "numbers": arrays.block()}
 
 
@@ -151,12 +115,33 @@ def _bodies(
         }
 
 
-def series_of(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) -> Iterator[Series]:
+def _series(
+    output: Output, table: Table, unit: str, values: int, **others: Json
+) -> dict[str, Json]:
+    """A quantity over the instants that are shown, for charts; ``values`` is the number of its
+    array, ``places`` that of the ratios xi/l at which a section force is largest in size.
+    """
+    return {
+        "name": str(output),
+        "group": output.group,
+        "part": output.part,
+        "what": what(output, table),
+        "unit": unit,
+        "values": values,
+        "places": None,
+        **others,
+    }
+
+
+def series_of(
+    solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays
+) -> Iterator[dict[str, Json]]:
     """The quantities of a solution that can be charted, at the instants that are chosen."""
+    table = solution.table
     resultants = (
         output
         for output in ordered(solution)
-        if len(output.components(solution.table)) > 1 and output.group in ("reaction", "load")
+        if len(output.components(table)) > 1 and output.group in ("reaction", "load")
     )
     outputs = [output for output in solution.quantities() if output.group in (*_CHARTED, "section")]
     for output in sorted(
@@ -165,70 +150,53 @@ def series_of(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) 
         if not solution.determined(output):
             continue
         values, places = solution.extremes(output)
-        words, unit = what(output, solution.table), solution.unit(output)
         along = None if places is None else arrays.add(places[chosen])
         of = map(str, solution.made_of(output)) if places is None else ()
-        yield Series(
-            str(output),
-            output.group,
-            output.part,
-            words,
-            unit,
-            arrays.add(values[chosen], *of),
-            along,
-        )
+        number = arrays.add(values[chosen], *of)
+        yield _series(output, table, solution.unit(output), number, places=along)
     for slope in derivatives(solution, solution.sensitivities):
         if slope.values.ndim == 1 and slope.output.group in _CHARTED:
-            words = (
-                f"{what(slope.output, solution.table) or slope.output.part}, by"
-                f" {slope.name.split(':')[1]}"
-            )
-            yield Series(
-                slope.name,
-                "sensitivity",
-                slope.output.part,
-                words,
-                slope.unit,
-                arrays.add(slope.values[chosen]),
+            by = f"{what(slope.output, table) or slope.output.part}, by {slope.name.split(':')[1]}"
+            words: dict[str, Json] = {"name": slope.name, "group": "sensitivity", "what": by}
+            yield _series(
+                slope.output, table, slope.unit, arrays.add(slope.values[chosen]), **words
             )
     for output, values in held_outputs(solution.holding).items():
-        words, unit = what(output, solution.table), solution.unit(output)
-        yield Series(str(output), "holding", output.part, words, unit, arrays.add(values[chosen]))
+        number = arrays.add(values[chosen])
+        yield _series(output, table, solution.unit(output), number, group="holding")
     for output, values in _residuals(solution):
-        yield Series(
-            str(output),
-            output.group,
-            "",
-            what(output, solution.table),
-            "1",
-            arrays.add(values[chosen]),
-        )
+        yield _series(output, table, "1", arrays.add(values[chosen]))
 
 
-def _rows(solution: Solution) -> Iterator[Row]:
-    def marked(extreme: Extreme) -> Mark:
+def _rows(solution: Solution) -> Iterator[dict[str, Json]]:
+    """The quantities over all instants: their peaks, how far these may be off, ends and means; only
+    the names of those that are ``open``.
+    """
+
+    def marked(extreme: Extreme) -> dict[str, Json]:
         return mark(solution, extreme.value, extreme.t, extreme.xi)
 
     for output in ordered(solution):
-        words = (
-            str(output),
-            output.group,
-            output.part,
-            what(output, solution.table),
-            solution.unit(output),
-        )
+        named = {"name": str(output), "group": output.group, "part": output.part}
+        row = named | {"what": what(output, solution.table), "unit": solution.unit(output)}
         if not solution.determined(output):
-            yield Row(*words, open=True)
+            nothing = ("peak", "error", "smallest", "largest", "mean", "rms")
+            yield row | {"open": True} | dict.fromkeys(nothing)
             continue
         statistics = solution.statistics(output)
-        peak, smallest, largest = (
-            marked(extreme)
-            for extreme in (statistics.peak, statistics.smallest, statistics.largest)
-        )
-        means = (
+        mean, rms = (
             None if mean is None else finite(mean) for mean in (statistics.mean, statistics.rms)
         )
-        yield Row(*words, False, peak, error_of(solution, output), smallest, largest, *means)
+        yield {
+            **row,
+            "open": False,
+            "peak": marked(statistics.peak),
+            "error": error_of(solution, output),
+            "smallest": marked(statistics.smallest),
+            "largest": marked(statistics.largest),
+            "mean": mean,
+            "rms": rms,
+        }
 
 
 def _strength(solution: Solution) -> Iterator[dict[str, Json]]:

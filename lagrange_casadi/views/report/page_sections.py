@@ -8,7 +8,6 @@ instant takes few numbers.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -23,27 +22,6 @@ from .words import what
 
 RATIOS = 101
 """Equal ratios xi/l along a link at which the viewer knows its forces, both ends included."""
-
-
-@dataclass(frozen=True)
-class Force:
-    """A section force of a link: ``parts`` are the forces whose size it is; any other is a sum of
-    ``terms`` and of loads.
-
-    A term is the number of a coefficient's array (t,), that of a function along the link (xi,), and
-    a sign. ``acting`` is the member of what acts at stations that goes into it; of a moment with an
-    ``arm`` of 1 or -1 so is that ``across``, times its distance.
-    """
-
-    name: str
-    what: str
-    unit: str
-    open: bool
-    parts: tuple[str, ...] = ()
-    terms: tuple[tuple[int, int, int], ...] = ()
-    acting: str = ""
-    across: str = ""
-    arm: int = 0
 
 
 def section_entries(
@@ -84,8 +62,8 @@ def section_entries(
         for name in table.forces:
             output = Output("section", link, name)
             made = _made(name, table, columns, distributed, (of_force, of_moment))
-            words = what(output, table), solution.unit(output), not solution.determined(output)
-            forces.append(asdict(Force(name, *words, **made)))
+            words = {"name": name, "what": what(output, table), "unit": solution.unit(output)}
+            forces.append(words | {"open": not solution.determined(output)} | made)
         yield {
             "link": link,
             "length": law.length,
@@ -103,13 +81,20 @@ def _made(
     distributed: Sequence[Mapping[str, Sequence[int]]],
     rows: tuple[Sequence[int], Sequence[int]],
 ) -> dict[str, Any]:
-    """Terms of a force."""
+    """How a force is made: ``parts`` are the forces whose size it is; any other is a sum of
+    ``terms`` and of loads.
+
+    A term is the number of a coefficient's array (t,), that of a function along the link (xi,), and
+    a sign. ``acting`` is the member of what acts at stations that goes into it; of a moment with an
+    ``arm`` of 1 or -1 so is that ``across``, times its distance.
+    """
     terms = table.sections.get(name)
+    made: dict[str, Any] = {"parts": (), "terms": (), "acting": "", "across": "", "arm": 0}
     if terms is None:
-        return {"parts": table.parts("section", name)}
+        return made | {"parts": table.parts("section", name)}
     plain, sign = rows[1 if terms.arm else 0], terms.arm or 1
-    law = [columns[coefficient] for coefficient in terms.coefficients]
-    summed = [*zip(law, plain, [1, *(sign for _ in law[1:])], strict=False)]
+    own = [columns[coefficient] for coefficient in terms.coefficients]
+    summed = [*zip(own, plain, [1, *(sign for _ in own[1:])], strict=False)]
     # After those of the law, a row for each power of each load; couples have no arm.
     first = 0
     for load in distributed:
@@ -123,4 +108,5 @@ def _made(
             ]
         first += max(map(len, load.values()))
     across = table.sections[terms.shear].acting if terms.arm else ""
-    return {"terms": tuple(summed), "acting": terms.acting, "across": across, "arm": terms.arm}
+    made |= {"terms": tuple(summed), "acting": terms.acting, "across": across, "arm": terms.arm}
+    return made

@@ -17,6 +17,5 @@ def still(solution: Solution) -> str:
     """The mechanism at the first instant; from a slanted direction where it is in space."""
     whole = Poses.of(solution.during(every(solution.t.size, _TRACED)))
     things = drawing(whole.during([0]), whole)
-    one = view_of(solution.description)
-    title = f"{solution.case} at its first instant"
+    title, one = f"{solution.case} at its first instant", view_of(solution.description)
     return svg(picture(title, things, one, 460, tallest=0.65, unit=0.85), paper=False)

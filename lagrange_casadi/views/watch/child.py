@@ -24,6 +24,7 @@ from ...studies import solving  # noqa: F401 - which takes long to import
 from ...studies.case import case_file, load_case
 from ...studies.evaluate import evaluate
 from ..drawing import draw_declared, draw_error
+from ..report.live import Live, run_of
 from ..report.page import with_motion
 from ..report.page_contents import contents
 
@@ -83,7 +84,7 @@ def _shown(given: Mapping[str, Any], say: Say) -> str:
 
 
 def _show(case: Path, given: Mapping[str, Any], say: Say) -> None:
-    """Say what a case looks like, how it moves, and its forces."""
+    """Say what a case looks like, how it moves, its forces, and what evaluates other designs."""
     say("doing", "loading the case")
     file = case_file(case).resolve()
     opened = _opened_in(file.parent)
@@ -95,14 +96,24 @@ def _show(case: Path, given: Mapping[str, Any], say: Say) -> None:
         raise
     finally:
         say("files", sorted(opened))
-    parameters, t, wanted = given["parameters"], given["t"], given["wanted"] or scene.wanted
+    parameters, t = given["parameters"], given["t"]
+    wanted = with_motion(given["wanted"] or scene.wanted)
     say("doing", "drawing")
     say("drawing", scene.draw(parameters=parameters).svg)
     say("doing", "computing the motion")
     run = partial(evaluate, scene, parameters=parameters, t=t, backend="vm")
     say("motion", contents(run(wanted=["motion"], certificate=False)))
     say("doing", "computing forces and peaks")
-    say("all", contents(run(wanted=with_motion(wanted))))
+    solution = run(wanted=wanted)
+    say("all", contents(solution))
+    # What elasticity determines is not in the program of a live page.
+    if scene.mechanism.parameters and not solution.elasticity.completed:
+        say("doing", "compiling for the browser")
+        try:
+            live = Live.of(scene, scene.timing(t), wanted, run_of(str(case)), parameters)
+            say("all", contents(solution, live))
+        except LagrangeCasadiError as error:
+            say("note", f"joints cannot be dragged: {one_line(error)}")
 
 
 def _opened_in(folder: Path) -> set[str]:

@@ -6,19 +6,19 @@ from __future__ import annotations
 
 from importlib import resources
 
-from ..report.page import SCRIPTS, assembled, policy, script
+from ..report.page import assembled, policy, script, viewer
 
 
 def page(title: str) -> tuple[str, str]:
     """The text of the page, and the policy of content that it is sent with."""
     scripts = [
         *(script("dom"), "function viewer(before) {\n"),
-        *(script(name) for name in SCRIPTS),
+        *viewer(live=True),
         *(_asset("kept.js"), "}\n", _asset("watch.js")),
     ]
-    text = assembled(title, {}, scripts, connect=True)
+    text = assembled(title, {}, scripts, wasm=True, connect=True)
     text = text.replace("</style>", f"{_asset('watch.css')}</style>", 1)
-    asked = policy(scripts, connect=True)
+    asked = policy(scripts, wasm=True, connect=True)
     return text, f"{asked}; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 
 

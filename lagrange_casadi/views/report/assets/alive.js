@@ -10,6 +10,8 @@ class Alive {
     this.values = Float64Array.from(contents.parameters, (one) => one.value);
     this.file = { values: this.values.slice(), defaults: live.defaults, rows: structuredClone(contents.rows), t: instants.t.slice() };
     this.why = null;
+    this.known = this.file.values;
+    this.postures = new Postures(this);
     this.read();
     const kept = [...this.targets, ...this.paths, ...this.curves.flatMap((curve) => [...curve.series.values()].flat())].map((one) => one.array);
     // What the module does not compute, as residuals, is of the file's design alone.
@@ -63,17 +65,19 @@ class Alive {
   show(values, whole = true) {
     this.values = Float64Array.from(values);
     contents.parameters.forEach((one, k) => (one.value = this.values[k]));
-    this.why = null;
+    this.why = this.stood = null;
     if (this.own) {
       for (const [array, before] of this.kept) array.set(before);
       contents.rows.forEach((row, k) => Object.assign(row, structuredClone(this.file.rows[k])));
       this.engine.prepare(this.values);
       this.place();
       for (const curve of this.curves) curve.forget();
+      this.known = this.values;
       return;
     }
     try {
       this.evaluate(whole);
+      this.known = this.values;
     } catch (error) {
       if (!(error instanceof NoResult)) throw error;
       this.why = error.message;
@@ -99,7 +103,13 @@ class Alive {
     if (over) this.put(array(over.values), this.coordinates, 0, times.length);
     for (const curve of this.curves) this.along(curve, times.length, whole, (row) => tallyOf(row, true));
     for (const [row, tally] of tallies) Object.assign(row, tally.described(times, this.coordinates, whole));
-    for (const bar of this.bars) complete(bar);
+    for (const bar of this.bars) {
+      for (let i = 0; i < bar[0].length; i += 1) {
+        const pose = bar.map((column) => column[i]);
+        complete(pose);
+        bar.forEach((column, k) => (column[i] = pose[k]));
+      }
+    }
     for (const values of this.unknown) values.fill(NaN);
     for (const row of this.untold) lose(row);
   }
@@ -240,26 +250,43 @@ class Alive {
     return this.numbersNow();
   }
 
-  /** The time of an instant that is shown: see times. */
-  timeAt([start, stop], instant) {
-    const { count, joint } = this.live.timing;
-    const value = evenly(start, stop, count)(this.numberOf(instant));
-    return joint ? this.meet(value, instants.t[instant])[0] : value;
+  /** Prepare for a design at an instant that is shown; returns the time, null where there is no such design. */
+  prepareAt(values, instant) {
+    const { engine, live } = this;
+    const { count, joint } = live.timing;
+    if (engine.prepare(values)) return null;
+    const [start, stop] = this.numbersNow();
+    const value = evenly(start, stop, count)(live.shown ? live.shown[instant] : instant);
+    engine.fit(1);
+    try {
+      const time = joint ? this.meet(value, instants.t[instant])[0] : value;
+      return Number.isFinite(time) && !engine.motion(time) ? time : null;
+    } catch (error) {
+      if (!(error instanceof NoResult)) throw error;
+      return null;
+    }
   }
 
-  /** The number of an instant that is shown, among all. */
-  numberOf(instant) {
-    return this.live.shown ? this.live.shown[instant] : instant;
+  /** Have the parts of a design without a result stand at an instant as it leaves them; returns the gaps, null where that is not known. */
+  stand(instant) {
+    if (this.stood?.instant !== instant) {
+      const near = this.postures.near(instant);
+      const posture = near && this.postures.find(this.values, instant, near);
+      if (posture) this.pose(posture);
+      this.stood = { instant, posture, gaps: posture && this.postures.gapsOf(posture) };
+    }
+    return this.stood.gaps;
   }
 
-  /** Where iterated loops stand at an instant that is shown, which they reach one instant after another; null where there are none. */
-  loopsAt(values, instant) {
-    if (!this.live.loops) return null;
-    const [start, stop] = this.numbers(values);
-    const all = this.times(start, stop);
-    this.close(all[0]);
-    for (const time of all.slice(0, this.numberOf(instant) + 1)) this.step(time);
-    return this.loops().slice();
+  /** Put a posture into the poses of its instant. */
+  pose(posture) {
+    for (const [name, body] of bodies) {
+      const [origin, x, y, z] = this.postures.frameOf(posture, name);
+      const numbers = contents.space ? [...origin, ...x, ...y, ...z] : [...origin.slice(0, 2), Math.atan2(x[1], x[0])];
+      if (contents.live.poses[name].slice(6).some((source) => source < 0)) complete(numbers);
+      body.pose.forEach((column, k) => (column[posture.instant] = numbers[k]));
+    }
+    framesOf = -1;
   }
 
   /** Evaluate one instant; returns its status. */
@@ -267,26 +294,6 @@ class Alive {
     const { engine } = this;
     engine.fit(1);
     return engine.motion(time) || engine.evaluate(1);
-  }
-
-  /** The place of a spot for a design, at an instant that is shown, whose loops are near some; null where parts do not close there. */
-  placeAt(values, spot, instant, loops) {
-    const { engine, live } = this;
-    if (engine.prepare(values)) return null;
-    const numbers = this.numbersNow();
-    if (loops) this.loops().set(loops);
-    const time = this.timeAt(numbers, instant);
-    if (!Number.isFinite(time) || this.step(time)) return null;
-    const { inputs: given } = live.layout;
-    const body = bodies.get(spot.body);
-    const pose = body?.pose.map((column, k) => {
-      const source = live.poses[spot.body][k];
-      return [source < 0 ? column[instant] : source < given ? engine.inputs[source] : engine.outputs[source - given]];
-    });
-    if (pose && live.poses[spot.body].slice(6).some((source) => source < 0)) complete(pose);
-    const own = contents.joints.findIndex((joint) => joint.child === spot);
-    const at = live.picture.joints[own].child.map((place) => (place < 0 ? 0 : numbers[place]));
-    return placeIn(pose ? frameFrom(pose.flat()) : GROUND, at);
   }
 
   loops() {
@@ -413,11 +420,8 @@ function unwrap(view, stride, start, count, before) {
   return last;
 }
 
-/** Of a body whose own x axis alone is known: two axes that go with it. */
+/** Of a pose whose own x axis alone is known: two axes that go with it. */
 function complete(pose) {
-  for (let i = 0; i < pose[0].length; i += 1) {
-    const x = [3, 4, 5].map((k) => pose[k][i]);
-    const [y, z] = acrossOf(x).map((axis) => times(axis, -1));
-    for (let k = 0; k < 3; k += 1) [pose[6 + k][i], pose[9 + k][i]] = [y[k], z[k]];
-  }
+  const [y, z] = acrossOf(pose.slice(3, 6)).map((axis) => times(axis, -1));
+  for (let k = 0; k < 3; k += 1) [pose[6 + k], pose[9 + k]] = [y[k], z[k]];
 }

@@ -55,26 +55,10 @@ function slopeInto(found, c, n) {
   for (let i = 0; i < n; i += 1) found[i] = n * (c[i + 1] - c[i]);
 }
 
-const products = new Map();
-
-/** The factors of ordinates of degrees n and m in those of their product, a row for each ordinate of the first. */
-function productOf(n, m) {
-  const key = 1000 * n + m;
-  if (!products.has(key)) {
-    const [left, right, both] = [n, m, n + m].map(binomialsOf);
-    products.set(key, Float64Array.from({ length: (n + 1) * (m + 1) }, (_, k) => {
-      const [i, j] = [Math.floor(k / (m + 1)), k % (m + 1)];
-      return (left[i] * right[j]) / both[i + j];
-    }));
-  }
-  return products.get(key);
-}
-
 /** Add the product of two polynomials of degrees n and m to a third. */
 function addProduct(found, a, n, b, m) {
-  const factors = productOf(n, m);
-  let k = 0;
-  for (let i = 0; i <= n; i += 1) for (let j = 0; j <= m; j += 1) found[i + j] += a[i] * b[j] * factors[k++];
+  const [left, right, both] = [binomialsOf(n), binomialsOf(m), binomialsOf(n + m)];
+  for (let i = 0; i <= n; i += 1) for (let j = 0; j <= m; j += 1) found[i + j] += a[i] * b[j] * ((left[i] * right[j]) / both[i + j]);
 }
 
 /** Have a polynomial of degree n as that of a part of 0 to 1 (de Casteljau). */

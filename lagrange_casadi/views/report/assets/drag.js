@@ -6,11 +6,11 @@ const STEP = 1e-5; // Of a parameter's range: half the difference by which a der
 
 const STILL = 0.1; // Points of the screen: what moves a joint no more than this in its whole range does not move the joint.
 
-const DAMPING = 1e-3; // Of the square of the derivative: what keeps a step small where a place hardly moves.
+const DAMPING = 1e-3; // Of the squares of derivatives: what keeps a step small where a place hardly moves.
 
 class Drag {
   constructor(engine, stage) {
-    Object.assign(this, { engine, stage, joint: null, moving: false, pointer: null, before: null, last: null });
+    Object.assign(this, { engine, stage, joint: null, moving: false, pointer: null, before: null, posture: null });
     this.ranges = contents.parameters.map((one) => rangeOf(one));
     this.freed = contents.parameters.map(() => false);
     this.own = this.ownParameters();
@@ -43,34 +43,29 @@ class Drag {
     return this.joint;
   }
 
-  /** Take a joint, with the others at its place; returns whether a parameter moves it. */
+  /** Take a joint, with the others at its place; returns whether a parameter moves it. One that has no parameters of its own follows all. */
   take(joint) {
     const { engine, stage } = this;
-    if (engine.why) return false;
     this.spot = joint.child;
     const at = spotOf(joint.child, stage.instant);
-    const together = contents.joints.map((other) => sizeOf(less(spotOf(other.child, stage.instant), at)) < 1e-9 * extent.size);
-    this.active = contents.parameters.map((_, n) => this.freed[n] || this.own.some((own, k) => together[k] && own[n]));
-    if (!this.active.some(Boolean)) return false;
-    const place = this.begin();
-    return Boolean(place) && this.columns(engine.values, place).some(([x, y]) => x || y);
+    const near = (place) => sizeOf(less(place, at)) < 1e-6 * extent.size;
+    const together = contents.joints.map((other) => near(spotOf(other.child, stage.instant)));
+    const owned = contents.parameters.map((_, n) => this.own.some((own, k) => together[k] && own[n]));
+    this.active = owned.map((is, n) => this.freed[n] || is || !owned.some(Boolean));
+    const base = this.base();
+    return Boolean(base) && near(engine.postures.placeOf(base, this.spot)) && this.columns(base).some(([x, y]) => x || y);
   }
 
-  /** Have the engine stand at the instant that is shown; returns the joint's place. */
-  begin() {
+  /** The posture that is shown. */
+  base() {
     const { engine, stage } = this;
-    this.loops = engine.loopsAt(engine.values, stage.instant);
-    return this.placeAt(engine.values);
+    if (!engine.why) return engine.postures.near(stage.instant);
+    engine.stand(stage.instant);
+    return engine.stood.posture;
   }
 
-  /** The joint's place for a design, where it has one. */
-  placeAt(values) {
-    try {
-      return this.engine.placeAt(values, this.spot, this.stage.instant, this.loops);
-    } catch (error) {
-      if (!(error instanceof NoResult)) throw error;
-      return null;
-    }
+  placeOf(posture) {
+    return this.engine.postures.placeOf(posture, this.spot);
   }
 
   missOf(place, pointer) {
@@ -78,13 +73,16 @@ class Drag {
     return [pointer[0] - x, pointer[1] - y];
   }
 
-  /** How far the joint moves on the sheet for the range of each parameter: a central difference, one-sided where a side does not close. */
-  columns(values, place) {
+  /** How far the joint moves on the sheet for the range of each parameter: a central difference, one-sided where there are no such parts. */
+  columns(posture) {
+    const { engine, stage } = this;
+    const { values, instant, weights } = posture;
     return contents.parameters.map((_, n) => {
       if (!this.active[n]) return [0, 0];
-      const [back, on] = [-1, 1].map((way) => this.placeAt(this.beside(values, n, way)));
-      if (!back && !on) return [0, 0];
-      const way = this.stage.paper.along(times(less(on ?? place, back ?? place), 1 / (STEP * (Boolean(back) + Boolean(on)))));
+      const sides = [-1, 1].map((way) => engine.postures.find(this.beside(values, n, way), instant, posture, weights));
+      if (!sides.some(Boolean)) return [0, 0];
+      const [back, on] = sides.map((side) => this.placeOf(side ?? posture));
+      const way = stage.paper.along(times(less(on, back), 1 / (STEP * sides.filter(Boolean).length)));
       return Math.hypot(...way) > STILL ? way : [0, 0];
     });
   }
@@ -99,7 +97,9 @@ class Drag {
     const free = columns.map(([x, y]) => Boolean(x || y));
     let rest = miss;
     for (let left = free.filter(Boolean).length; left > 0; ) {
-      const asked = leastStep(columns.map((column, n) => (free[n] ? column : [0, 0])), rest);
+      const used = columns.map((column, n) => (free[n] ? column : [0, 0]));
+      const product = ([x, y], [a, b]) => x * a + y * b;
+      const asked = solved(used.map((column) => [...used.map((other) => product(column, other)), product(column, rest)]), DAMPING);
       const held = asked.map((value, n) => Math.max(ends[n][0], Math.min(ends[n][1], value)));
       const over = free.map((is, n) => is && held[n] !== asked[n]);
       if (!over.some(Boolean)) return found.map((value, n) => (free[n] ? asked[n] : value));
@@ -113,28 +113,27 @@ class Drag {
     return found;
   }
 
-  /** The parameters that bring the joint nearest to the pointer, by steps of Gauss and Newton that become shorter where parts do not close. */
+  /** The posture that brings the joint nearest to the pointer, by steps of Gauss and Newton that become shorter where they lead away. */
   nearest() {
     const { engine, pointer } = this;
-    let values = [...engine.values];
-    let place = this.begin();
-    for (let k = 0; k < 8 && place; k += 1) {
-      const miss = this.missOf(place, pointer);
-      const columns = this.columns(values, place);
+    const [closed, missOf] = [engine.postures.near(this.stage.instant), (posture) => this.missOf(this.placeOf(posture), pointer)];
+    let posture = this.posture;
+    for (let k = 0; k < 8; k += 1) {
+      const { values, instant } = posture;
+      const miss = missOf(posture);
+      const columns = this.columns(posture);
       const step = this.step(values, columns, miss);
       let next = null;
-      let [nextPlace, nextMiss] = [null, Infinity];
       for (let part = 1; part > 0.02; part /= 2) {
-        next = values.map((value, n) => this.rounded(value + part * step[n] * (this.ranges[n][1] - this.ranges[n][0]), n, columns[n]));
-        nextPlace = this.placeAt(next);
-        nextMiss = nextPlace ? Math.hypot(...this.missOf(nextPlace, pointer)) : Infinity;
-        if (nextMiss < Math.hypot(...miss)) break;
+        const asked = values.map((value, n) => this.rounded(value + part * step[n] * (this.ranges[n][1] - this.ranges[n][0]), n, columns[n]));
+        next = engine.postures.find(asked, instant, closed);
+        if (next && Math.hypot(...missOf(next)) < Math.hypot(...miss)) break;
+        next = null;
       }
-      if (!(nextMiss < Math.hypot(...miss))) break;
-      [values, place] = [next, nextPlace];
-      if (engine.live.loops) this.loops = engine.loops().slice();
+      if (!next) break;
+      posture = next;
     }
-    return values;
+    return posture;
   }
 
   /** A value within its bounds, with digits as far as a tenth of a point of the screen. */
@@ -150,7 +149,8 @@ class Drag {
     if (!this.seek(pointer)) return false;
     player.pause();
     this.moving = true;
-    this.before = this.last = [...this.engine.values];
+    this.before = [...this.engine.values];
+    this.posture = this.base();
     const at = this.stage.paper.on(spotOf(this.spot, this.stage.instant));
     this.grip = [at[0] - pointer[0], at[1] - pointer[1]];
     return true;
@@ -178,20 +178,14 @@ class Drag {
     return true;
   }
 
-  /** Show the design that the pointer asks for; where that has no result, the farthest on the way there that has one. Returns why then. */
+  /** Show the design that the pointer asks for. */
   show(whole) {
-    const { engine, last } = this;
-    const wanted = this.pointer ? this.nearest() : last;
-    let why = null;
-    for (const part of [1, 0.5, 0.25, 0.125, 0]) {
-      engine.show(part === 1 ? wanted : last.map((value, n) => value + part * (wanted[n] - value)), whole);
-      why ??= engine.why;
-      if (!engine.why) break;
-    }
-    this.last = [...engine.values];
-    fillFields(this.last);
+    const { engine } = this;
+    this.posture = this.nearest();
+    engine.show(this.posture.values, whole);
+    if (!engine.why) engine.postures.last = { ...this.posture, values: engine.known };
+    fillFields(engine.values);
     if (!this.moving) this.pointer = null;
-    return why;
   }
 
   /** The ring around a joint that can be dragged, and how far it stays behind the pointer. */
@@ -207,15 +201,4 @@ class Drag {
       strokeWith(context, paper.inks.accent, 1.5);
     });
   }
-}
-
-/** Of all steps that lead nearest to a place of the sheet, the least one: z = Jᵀ (J Jᵀ + c)⁻¹ r for the columns of J. */
-function leastStep(columns, rest) {
-  let [xx, xy, yy] = [0, 0, 0];
-  for (const [x, y] of columns) [xx, xy, yy] = [xx + x * x, xy + x * y, yy + y * y];
-  const damping = DAMPING * (xx + yy);
-  [xx, yy] = [xx + damping, yy + damping];
-  const all = xx * yy - xy * xy;
-  const [a, b] = [(yy * rest[0] - xy * rest[1]) / all, (xx * rest[1] - xy * rest[0]) / all];
-  return columns.map(([x, y]) => x * a + y * b);
 }

@@ -20,7 +20,7 @@ class Paper {
   readInks() {
     const style = getComputedStyle(this.canvas);
     const ink = (name) => style.getPropertyValue(`--${name}`).trim();
-    const names = ["ink", "soft", "faint", "sheet", "metal", "reaction", "effort", "load", "positive", "negative", "path", "accent", "map-positive", "map-negative", "map-none"];
+    const names = ["ink", "soft", "faint", "sheet", "metal", "reaction", "effort", "load", "positive", "negative", "path", "accent", "bad", "map-positive", "map-negative", "map-none"];
     this.inks = Object.fromEntries(names.map((name) => [name, ink(name)]));
     this.inks.bodies = Array.from({ length: BODY_COLOURS }, (_, k) => ink(`body-${k}`));
   }

@@ -32,7 +32,7 @@ async function comeAlive(panel, stage) {
   }
 }
 
-const live = { engine: null, drag: null, alarm: null, stopped: null, asked: null, moving: false, late: 0, fields: [], turn: 0 };
+const live = { engine: null, drag: null, alarm: null, asked: null, moving: false, late: 0, fields: [], turn: 0 };
 
 const LATE = 150; // After so many milliseconds without a change, what is slow follows: tables, fine maps, what is out of sight.
 
@@ -144,11 +144,8 @@ function answer() {
   live.asked = null;
   live.moving = true;
   document.documentElement.classList.add("moving");
-  if (live.drag.pointer) live.stopped = live.drag.show(chartsPlaces());
-  else {
-    live.stopped = null;
-    live.engine.show(values, chartsPlaces());
-  }
+  if (live.drag.pointer) live.drag.show(chartsPlaces());
+  else live.engine.show(values, chartsPlaces());
   renewAll();
   follow(end);
   clearTimeout(live.late);
@@ -187,8 +184,9 @@ function renewAll() {
   framesOf = -1;
   deck.stage.trace();
   player.renew();
-  live.alarm.hidden = !why && !live.stopped;
-  live.alarm.textContent = why ? `There is no such design: ${outOfRange().join("; ") || why}.` : live.stopped ? `The drag stops here: ${live.stopped}.` : "";
+  const gaps = (why && live.engine.stand(player.instant)) || [];
+  live.alarm.hidden = !why;
+  live.alarm.textContent = why ? `There is no such design: ${[outOfRange().join("; ") || why, ...gaps.map(({ words }) => words)].join("; ")}.` : "";
   for (const watcher of reading.watchers) watcher();
 }
 

@@ -107,16 +107,19 @@ class Stage {
     paper.begin();
     drawFloor(paper);
     const known = designState() !== "none";
-    if (known) this.drawMechanism(instant);
+    const gaps = known ? [] : live.engine.stand(instant);
+    if (gaps) this.drawMechanism(instant, known);
+    for (const gap of gaps ?? []) if (gap.ends) drawGap(paper, gap);
     paper.end();
     if (known) drawScales(this);
   }
 
-  drawMechanism(instant) {
+  /** Draw the mechanism at an instant, and the forces where they are `known`. */
+  drawMechanism(instant, known) {
     const { paper, shows } = this;
     drawTraces(paper, this.traces);
     const { ribbon } = this.scale;
-    if (shows.ribbon && ribbon) for (const section of sections) drawRibbon(paper, section, section.forces.get(shows.ribbon), instant, ribbon);
+    if (known && shows.ribbon && ribbon) for (const section of sections) drawRibbon(paper, section, section.forces.get(shows.ribbon), instant, ribbon);
     for (const body of bodies.values()) drawBody(paper, body, instant);
     for (const load of contents.loads) {
       if (load.kind === "spring") coil(paper, spotOf(load.spots[0], instant), spotOf(load.spots[1], instant), paper.inks.soft);
@@ -192,6 +195,20 @@ function drawPoint(paper, place) {
     context.rotate(Math.PI / 4);
     context.fillStyle = paper.inks.path;
     context.fillRect(-4, -4, 8, 8);
+  });
+}
+
+/** The gap of a loop that does not close, between its ends, with how wide it is. */
+function drawGap(paper, { ends, size }) {
+  const line = ends.map((end) => paper.on(end));
+  const [x, y] = [0, 1].map((k) => (line[0][k] + line[1][k]) / 2);
+  paper.put(ORDER.names, 1, (context) => {
+    context.setLineDash([5, 4]);
+    lineThrough(context, line);
+    strokeWith(context, paper.inks.bad, 2.4);
+    context.font = "bold 12px system-ui, sans-serif";
+    context.setLineDash([]);
+    writeOn(context, size, x + 8, y - 8, paper.inks.bad, sheer(paper.inks.sheet, 0.85), 3.5);
   });
 }
 
