@@ -73,9 +73,9 @@ def joined(loop: LoopEquations) -> tuple[Point, Point]:
     return loop.joint.parent, loop.joint.child
 
 
-def apart(multibody: Multibody, loop: LoopEquations) -> ca.SX:
-    """What is apart where a joint or a two-force link closes a loop, over coordinates (7,): two
-    places that should be one, in ground axes [m], and the sine of the angle between the bodies.
+def ends_of(multibody: Multibody, loop: LoopEquations) -> ca.SX:
+    """Ends of the joint or two-force link that closes a loop, over coordinates (7,): the two places
+    that should be one, in ground axes [m], and the sine of the angle between the bodies.
     """
     one, last = (
         column(multibody.frames[point.body.name].place_of(point.place)) for point in joined(loop)
@@ -97,7 +97,7 @@ def _gap(nearest: Nearest, loop: LoopEquations) -> Gap:
         (residual,) = nearest.numbers.of(loop.residual)
         words = f"constraint '{loop.name}' is {residual:.6g} in place of 0"
         return Gap(loop.name, loop.kind, (), np.zeros((0, 3)), abs(residual), "", words)
-    *places, sine = nearest.numbers.of(apart(nearest.multibody, loop))
+    *places, sine = nearest.numbers.of(ends_of(nearest.multibody, loop))
     ends, angle = np.reshape(places, (2, 3)), math.asin(min(1.0, sine))
     one, other = (point.body.name for point in joined(loop))
     wide, where = float(np.linalg.norm(ends[1] - ends[0])), f"at {loop.kind} '{loop.name}'"

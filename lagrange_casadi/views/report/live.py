@@ -10,9 +10,10 @@ from __future__ import annotations
 
 import base64
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 
 import casadi as ca
 import numpy as np
@@ -23,7 +24,7 @@ from ...base.quantities import Output
 from ...base.scalars import column
 from ...engine.codegen.printer import print_functions
 from ...engine.derive import compile_scene
-from ...engine.gaps import apart, joined
+from ...engine.gaps import ends_of, joined
 from ...engine.instants.evaluation_method import EvaluationMethod
 from ...engine.model_data import ModelData
 from ...engine.nearest import Nearest
@@ -77,10 +78,11 @@ class Live:
     instants.
 
     ``command`` is how a command line begins that evaluates the same. ``numbers`` and ``posture``
-    are how many numbers these functions of a module give.
+    are how many numbers these functions of a module give. ``standing`` gives the loops, and the
+    state of the coordinates at an instant [s] for parameters.
     """
 
-    scene: Scene
+    standing: Callable[[float, Mapping[str, float]], tuple[Nearest, State]]
     source: Source
     timing: Timing
     command: str
@@ -122,7 +124,7 @@ class Live:
         module = compilers.submit(build)
         compilers.shutdown(wait=False)
         numbers, posture = (function.numel_out() for function in functions.values())
-        return cls(scene, source, timing, command, numbers, posture, module)
+        return cls(partial(stand, scene), source, timing, command, numbers, posture, module)
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -145,7 +147,7 @@ def _posture(nearest: Nearest) -> ca.Function:
     """
     released, multibody = nearest.released, nearest.multibody
     u, q, t, p = released.given
-    ends = (apart(multibody, loop) for loop in multibody.loop_equations if not loop.declared)
+    ends = (ends_of(multibody, loop) for loop in multibody.loop_equations if not loop.declared)
     placed = ca.substitute(
         column([nearest.placed, *ends]), released.variables, released.placed(u, q)
     )
@@ -197,7 +199,7 @@ def live_entry(
     contract = source.contract
     known = {member.source: k for k, member in enumerate((*contract.inputs, *contract.outputs))}
     values = {name: one.value for name, one in solution.description.parameters.items()}
-    nearest, state = stand(live.scene, float(solution.t[0]), values)
+    nearest, state = live.standing(float(solution.t[0]), values)
     more = live.numbers + live.posture + 1 + sum(map(len, state[:2]))
     return {
         "module": base64.b64encode(live.module.result()).decode("ascii"),

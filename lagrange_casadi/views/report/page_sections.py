@@ -81,7 +81,7 @@ def _made(
     distributed: Sequence[Mapping[str, Sequence[int]]],
     rows: tuple[Sequence[int], Sequence[int]],
 ) -> dict[str, Any]:
-    """How a force is made: ``parts`` are the forces whose size it is; any other is a sum of
+    """Terms of a force, or its ``parts``, the forces whose size it is; any other is a sum of
     ``terms`` and of loads.
 
     A term is the number of a coefficient's array (t,), that of a function along the link (xi,), and

@@ -107,7 +107,7 @@ def _show(case: Path, given: Mapping[str, Any], say: Say) -> None:
     solution = run(wanted=wanted)
     say("all", contents(solution))
     # What elasticity determines is not in the program of a live page.
-    if scene.mechanism.parameters and not solution.elasticity.completed:
+    if scene.values() and not solution.elasticity.completed:
         say("doing", "compiling for the browser")
         try:
             live = Live.of(scene, scene.timing(t), wanted, run_of(str(case)), parameters)
