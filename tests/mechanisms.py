@@ -365,3 +365,15 @@ def press(law=polynomial, wanted=("all",), pin=PIN, **keywords):
 def uneven(_, w):
     """A crank's motion at the mean speed w that is uneven by a fifth."""
     return expression(lambda t: w * t + 0.2 * ca.sin(w * t))
+
+
+def standing_rod():
+    """A rod of 1 m and 2 kg that stands on the ground, where its turn is driven, and is pulled up
+    at its middle.
+    """
+    m = Mechanism("rod")
+    mu, pull = m.parameter("mu", 0.5), m.parameter("pull", 0.0, "N")
+    rod = m.link("rod", length=1.0, mass=2.0)
+    m.contact("foot", rod, friction=mu, at=(0.0, 0.0))
+    m.force("up", rod.at(0.5), y=pull)
+    return Scene(m, {"foot": polynomial("60 deg", 0.0, -1.0)}, t=(0, 0.3, 4))

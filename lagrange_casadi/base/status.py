@@ -90,3 +90,4 @@ class Status(enum.IntEnum):
         ),
     )
     STROKE = 21, "a cylinder or a strut is longer than open, or shorter than closed"
+    LOST_CONTACT = 22, "a contact pulls or slides"

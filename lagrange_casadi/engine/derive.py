@@ -25,6 +25,7 @@ from ..model.declared_parts import Asked, Link
 from ..model.end_conditions import effective_lengths, ends_of
 from ..model.limits import END, FITS, MISSES
 from ..model.link_density import Density
+from ..model.mechanism import Mechanism
 from ..model.scene import STRENGTH, Scene, Wanted
 from ..model.wanted_names import among
 from .deflections import deflections
@@ -45,6 +46,7 @@ from .sampling import Sampling
 from .section_function import Place, Section
 from .two_force_links import find_two_force_links, unaimed
 from .utilisation import stresses, utilisation
+from .verdicts import OPEN
 
 _SERVES = 1e-10
 """Largest residual of redundant equations at the start for other parameters, for which the graphs
@@ -57,6 +59,9 @@ places fit, however their axes are rounded.
 """
 
 _STEPS, _CLOSED = 50, 1e-9
+
+_CONTACT = {"pulls": "normal", "slides": "margin"}
+"""Outputs of a contact by what it does where they are negative."""
 
 
 @public
@@ -287,6 +292,7 @@ class _JointForces:
 def _derive(scene: Scene, asked: Wanted) -> Program:
     mechanism = scene.mechanism
     want = feeling(mechanism, asked) if scene.elastic and asked.forces else asked
+    want = _standing(mechanism, want) if mechanism.contacts and asked.forces else want
     moving = Moving.of(scene, want)
     columns, loop_angles = moving.columns()
     joint_forces = (
@@ -307,8 +313,9 @@ def _derive(scene: Scene, asked: Wanted) -> Program:
     columns = (
         columns
         if want is asked
-        else {key: value for key, value in columns.items() if not _for_strain_alone(key, asked)}
+        else {key: value for key, value in columns.items() if _is_asked(key, asked)}
     )
+    columns |= _contacts(mechanism.contacts, forces) if want.forces else {}
     instant = graph("instant", moving.inputs, out=column(columns.values()))
     return Program(
         data=ModelData.of(scene, moving.laws),
@@ -366,14 +373,46 @@ def _strength(
     return found
 
 
-def _for_strain_alone(key: Column, asked: Wanted) -> bool:
-    """Return whether a column is there for strain energy alone."""
+def _standing(mechanism: Mechanism, want: Wanted) -> Wanted:
+    """Add to what is wanted all contacts' forces, by which it is found which pull or slide."""
+    reactions = {*want.reactions, *mechanism.contacts}
+    own = {*want.own, *(f"{name}_{of}" for name in mechanism.contacts for of in _CONTACT.values())}
+    return replace(
+        want,
+        reactions=tuple(name for name in mechanism.joints if name in reactions),
+        own=tuple(name for name in mechanism.outputs if name in own),
+    )
+
+
+def _contacts(names: Sequence[str], forces: Forces) -> dict[Column, Expression]:
+    """Checks of contacts' forces that must not be negative, zero where equilibrium leaves them
+    open; and beside them the size of all normal forces.
+    """
+    found: dict[Column, Any] = {}
+    total = sum((ca.fabs(forces.values[_of_contact(name, "pulls")]) for name in names), ca.SX(0))
+    for name in names:
+        for kind in _CONTACT:
+            output = _of_contact(name, kind)
+            known = forces.open.get(output, 0.0) <= OPEN["single"]
+            found[Check(kind, f"contact '{name}'")] = known * forces.values[output]
+        found[Check("rowsize", f"contact '{name}'")] = total
+    return found
+
+
+def _of_contact(name: str, kind: str) -> Output:
+    return Output("output", f"{name}_{_CONTACT[kind]}")
+
+
+def _is_asked(key: Column, asked: Wanted) -> bool:
+    """Return whether a column was asked for; others are for strain energy or contacts alone."""
     output = key.part if isinstance(key, Check) else key
     if not isinstance(output, Output):
-        return False
-    return (output.group == "reaction" and output.part not in asked.reactions) or (
-        output.along and output.part not in asked.sections
-    )
+        return True
+    if output.group == "reaction":
+        return output.part in asked.reactions
+    if output.group == "output":
+        return output.part in asked.own
+    return not output.along or output.part in asked.sections
 
 
 def user_outputs(

@@ -48,7 +48,7 @@ Beside: TypeAlias = Literal["", "CLOSURE", "BRANCH", "ROW", "TURNED"]
 
 ``CLOSURE``, of the square of a sine, and ``BRANCH``, of a sine: one if a dead centre lies between
 this instant and the next (:mod:`.dead_centres`), else zero. ``ROW``: the largest size of the row's
-terms. ``TURNED``: the change to the next instant.
+terms, or of the contacts' forces. ``TURNED``: the change to the next instant.
 """
 
 
@@ -194,6 +194,15 @@ def _loop(status: Status, below: str, sine: str, beside: Beside) -> Verdict:
     )
 
 
+def _lost(words: str) -> Verdict:
+    """Verdict on a force of a contact that must not be negative, beside the contacts' forces."""
+    return Verdict(
+        lambda at: at.residual(OPEN),
+        (Rule(Status.LOST_CONTACT, lambda x, limit, size: x < -limit * size, words),),
+        "ROW",
+    )
+
+
 _GIMBAL = (
     "its third axis becomes parallel to its first; choose axis and second so that turn_2 stays away"
     " from 90 deg"
@@ -323,6 +332,16 @@ VERDICTS: Mapping[str, Verdict] = {
     "hold": _closure(
         f"the drives {{it.part}} cannot produce the motion {{it.at}}: {_HOLD}",
         f"the drives {{it.part}} cannot produce the motion {{it.after}}: {_HOLD}",
+    ),
+    # Normal force of a contact [N], beside those of all contacts.
+    "pulls": _lost(
+        "{it.part} pulls {it.at}: its normal force is {it.value:.4g} N, and the ground only pushes;"
+        " shift the weight, move slower, or leave the contact out of this scene"
+    ),
+    # Distance of a contact's force from the cone of friction [N].
+    "slides": _lost(
+        "{it.part} slides {it.at}: its force is outside the cone of friction by {it.size:.4g} N;"
+        " give it more friction or weight, or move slower"
     ),
     # How far frictions are from holding each other (:mod:`.friction`).
     "jam": Verdict(

@@ -222,7 +222,6 @@ class Description(Brief):
     loads: Mapping[str, LoadNumbers] = field(default_factory=dict)
     rows: Mapping[str, str] = field(default_factory=dict)
     motors: Mapping[str, DriveNumbers] = field(default_factory=dict)
-    contacts: tuple[str, ...] = ()
     constraints: tuple[str, ...] = ()
     driven: Mapping[str, CoordinateKind] = field(default_factory=dict)
     drives: tuple[str, ...] = ()
@@ -268,7 +267,6 @@ class Description(Brief):
             loads={name: _load(load) for name, load in mechanism.loads.items()},
             motors={name: _drive(one) for name, one in mechanism.drives.items()},
             rows=rows,
-            contacts=tuple(mechanism.contacts),
             constraints=tuple(mechanism.constraints),
             driven={name: kind_of(mechanism, name) for name in given},
             drives=tuple(

@@ -22,6 +22,7 @@ from ..base.methods import method
 from ..base.symbolic import symbolic
 from ..base.tables import FORCE, MOMENT
 from ..base.units import Number, quantity
+from ..base.vectors import dot, minus, norm, times
 from ..errors import DeclarationError
 from .beams.beam import Beam
 from .constraints import Constraint, Row
@@ -370,6 +371,74 @@ class Mechanism(Declaration):
             If the parent is a point mass, or both are one body.
         """
         return self._joint(name, "weld", parent, child, angle=angle)
+
+    def contact(
+        self,
+        name: str,
+        point: Body | Point,
+        *,
+        friction: Expression,
+        at: tuple[Expression, Expression],
+        normal: tuple[Expression, Expression] = (0.0, 1.0),
+    ) -> Joint:
+        """Let a point of a body stand on the ground, where it stays over the scene and may turn.
+
+        Its reaction is the ground's force on the body. The outputs ``NAME_normal`` and
+        ``NAME_margin`` [N] are the part of the force along the normal, negative where the contact
+        pulls, and its distance from the cone of friction, (friction normal - tangential) /
+        sqrt(1 + friction^2), negative where the point slides or pulls. An instant at which one is
+        negative has the status ``LOST_CONTACT``, if any force is evaluated and equilibrium
+        determines that of the contact.
+
+        Parameters
+        ----------
+        name : str
+            Name of the contact, which is a revolute joint.
+        point : Link, PointMass or Point
+            The point; a link stands for its base.
+        friction : float or casadi.SX
+            Coefficient of friction.
+        at : tuple
+            Place (x, y) of the point [m].
+        normal : tuple
+            Direction (x, y) out of the ground.
+
+        Returns
+        -------
+        Joint
+            The joint, from the ground to the body.
+
+        Raises
+        ------
+        DeclarationError
+            If the coefficient is negative, or the normal has no length.
+        """
+        what, checked = f"contact '{name}'", self.ownership.expression
+        foot, mu = self.ownership.point(what, point), self._coefficient(what, friction)
+        upward = in_plane(f"{what}: normal", normal, checked)
+        if not isinstance(at, (tuple, list)) or len(at) != 2:
+            raise DeclarationError(f"{what}: at must be two components (x, y), got {at!r}")
+        x, y = (checked(f"{what}: at", component, "m") for component in at)
+        return self._standing(self.revolute(name, self.ground.at(x, y), foot), upward, mu)
+
+    def _coefficient(self, what: str, friction: Expression) -> Expression:
+        """A coefficient of friction."""
+        mu = self.ownership.expression(f"{what}: friction", friction)
+        if isinstance(mu, float) and mu < 0.0:
+            raise DeclarationError(f"{what}: friction must be at least 0, got {mu:g}")
+        return mu
+
+    def _standing(self, joint: Joint, upward: Vector, mu: Expression) -> Joint:
+        """A joint as a contact with a coefficient of friction, with its outputs."""
+        fx, fy, *fz = self.results.reaction(joint)
+        force = (fx, fy, fz[0] if self.space else 0.0)
+        pressing = dot(upward, force)
+        sliding = norm(minus(force, times(pressing, upward)))
+        margin = (mu * pressing - sliding) / ca.sqrt(1 + mu * mu)
+        self.output(f"{joint.name}_normal", pressing, unit="N")
+        self.output(f"{joint.name}_margin", margin, unit="N")
+        self.contacts.append(joint.name)
+        return joint
 
     def gear(
         self, name: str, first: Joint, second: Joint, *, ratio: Expression, offset: Expression = 0.0

@@ -48,7 +48,6 @@ def notes(
     if resting.any():
         yield rest_note(t, outputs, resting)
     yield from drawing_notes(description)
-    yield from _lost_contacts(t, outputs, description)
     for name, joint in description.joints.items():
         if (second := _locked(joint, outputs)) is not None:
             near = t[int(np.argmin(np.abs(np.cos(second))))]
@@ -135,26 +134,6 @@ def _across(description: Description) -> Iterator[str]:
             f" {math.degrees(off):.3g} deg to its axis, because the joint's axis does not turn it:"
             f" {directions}"
         )
-
-
-def _lost_contacts(
-    t: Array, outputs: Mapping[Output, Array], description: Description
-) -> Iterator[str]:
-    """Each contact that pulls or slides."""
-    for name in description.contacts:
-        normal, margin = (
-            outputs.get(Output("output", f"{name}_{word}")) for word in ("normal", "margin")
-        )
-        if normal is None or margin is None:
-            continue
-        off = margin < -_EDGE * float(np.max(np.abs(normal)))
-        if off.any():
-            word = "pulls" if np.any(normal[off] < 0.0) else "slides"
-            yield (
-                f"contact '{name}' {word} at {np.count_nonzero(off)} of {t.size} instants, first"
-                f" at t = {t[np.flatnonzero(off)[0]]:.6g} s: its force is outside the cone of"
-                f" friction by {-float(np.min(margin)):.4g} N"
-            )
 
 
 def _is_carrier(description: Description, link: str) -> bool:

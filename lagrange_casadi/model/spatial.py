@@ -7,12 +7,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
-import casadi as ca
-
 from ..base.arguments import public
 from ..base.rotation import Rotation
 from ..base.symbolic import symbolic
-from ..base.vectors import dot, minus, norm, times
+from ..base.vectors import times
 from ..errors import DeclarationError, check_kind
 from .beams.beam import Beam
 from .declared_parts import Body, Expression, Ground, Link, Point, PointMass, RigidMass, Vector
@@ -463,7 +461,7 @@ class SpatialMechanism(Mechanism):
         """
         return self._spatial(name, "free", (parent, child), (axis, second), at, turned)
 
-    def contact(
+    def contact(  # type: ignore[override]
         self,
         name: str,
         point: Body | Point,
@@ -472,21 +470,14 @@ class SpatialMechanism(Mechanism):
         normal: Vector = (0.0, 0.0, 1.0),
         at: Expression = None,
     ) -> Joint:
-        """Let a point of a body stand on the ground, where it stays over the scene and may turn.
-
-        Its reaction is the ground's force on the body. The outputs ``NAME_normal`` and
-        ``NAME_margin`` [N] are the part of the force along the normal, negative where the contact
-        pulls, and its distance from the cone of friction, (friction normal - tangential) /
-        sqrt(1 + friction^2), negative where the point slides or pulls. A note says where.
+        """Let a point of a body stand on the ground, as :meth:`.Mechanism.contact` does.
 
         Parameters
         ----------
         name : str
             Name of the contact, which is a spherical joint.
-        point : Link, PointMass or Point
-            The point; a link stands for its base.
-        friction : float or casadi.SX
-            Coefficient of friction.
+        point, friction
+            As of :meth:`.Mechanism.contact`.
         normal : tuple
             Direction (x, y, z) out of the ground.
         at : tuple, optional
@@ -503,10 +494,8 @@ class SpatialMechanism(Mechanism):
             If the coefficient is negative, the normal has no length, or the body has no position
             in the reference posture and ``at`` is missing.
         """
-        what, own = f"contact '{name}'", self.ownership
-        foot, mu = own.point(what, point), own.expression(f"{what}: friction", friction)
-        if isinstance(mu, float) and mu < 0.0:
-            raise DeclarationError(f"{what}: friction must be at least 0, got {mu:g}")
+        what = f"contact '{name}'"
+        foot, mu = self.ownership.point(what, point), self._coefficient(what, friction)
         if at is None and foot.body.name not in self.references:
             raise DeclarationError(
                 f"{what}: '{foot.body.name}' has no position in the reference posture; expected"
@@ -514,15 +503,9 @@ class SpatialMechanism(Mechanism):
             )
         if at is None:
             at = self._reference(what, foot.body).place(foot.place)
-        upward = triad_of(f"{what}: normal", normal, None, own)[0]
-        joint = self.spherical(name, self.ground.at(*self._vector(f"{what}: at", at, "m")), foot)
-        fx, fy, fz, *_ = self.results.reaction(joint)
-        pressing = dot(upward, (fx, fy, fz))
-        sliding = norm(minus((fx, fy, fz), times(pressing, upward)))
-        self.output(f"{name}_normal", pressing, unit="N")
-        self.output(f"{name}_margin", (mu * pressing - sliding) / ca.sqrt(1 + mu * mu), unit="N")
-        self.contacts.append(name)
-        return joint
+        upward = triad_of(f"{what}: normal", normal, None, self.ownership)[0]
+        place = self.ground.at(*self._vector(f"{what}: at", at, "m"))
+        return self._standing(self.spherical(name, place, foot), upward, mu)
 
     def force(
         self,

@@ -8,7 +8,14 @@ import numpy as np
 import pytest
 from design_rows import around, values
 from internals import Status
-from mechanisms import crank_slider, double_crank, flat_parallelogram, slider_crank, truss_platform
+from mechanisms import (
+    crank_slider,
+    double_crank,
+    flat_parallelogram,
+    slider_crank,
+    standing_rod,
+    truss_platform,
+)
 from stepped import iterated
 
 from lagrange_casadi import Mechanism, Scene, evaluate, load_case, prepare
@@ -22,6 +29,7 @@ SAYS = {
     Status.NOT_CONVERGED: "did not converge",
     Status.JUMPED: "jumped",
     Status.MISFIT: "do not fit",
+    Status.LOST_CONTACT: "contact 'foot' (pulls|slides)",
 }
 
 
@@ -44,7 +52,7 @@ def lengths(ratios):
     return [[0.1, 0.1 * ratio, 0.1, 0.1, 0.1] for ratio in ratios]
 
 
-PASSES, REACH = Status.PASSES_DEAD_CENTRE, Status.OUT_OF_REACH
+PASSES, REACH, LOST = Status.PASSES_DEAD_CENTRE, Status.OUT_OF_REACH, Status.LOST_CONTACT
 ROWS = {
     "on an instant": (quarter, lengths([1.0, 1.1, 0.9]), [Status.DEAD_CENTRE, 0, REACH]),
     "between instants": (flat_parallelogram, [[]], [PASSES]),
@@ -56,6 +64,7 @@ ROWS = {
     "iterated": (truss_platform, [[0.05], [5.0], [0.04]], [0, Status.NOT_CONVERGED, 0]),
     "small steps": (lambda: double_crank(1.0), [[]], [0]),
     "large steps": (lambda: double_crank(2.3), [[]], [Status.JUMPED]),
+    "contact": (standing_rod, [[0.5, 0.0], [0.05, 0.0], [0.5, 30.0]], [0, LOST, LOST]),
     "welds": (bridge, [[0.0], [math.pi], [0.1]], [0, Status.MISFIT, Status.MISFIT]),
 }
 

@@ -129,6 +129,7 @@ def declarations() -> Iterator[tuple[str, Call]]:
             "weld": {"name": "new", **two},
             "constraint": {"name": "new", "phi": p.m.coordinate(p.other)},
             "nonholonomic": {"name": "new", "expression": p.m.rate(p.other), "replaces": p.pin},
+            "contact": {"name": "new", "point": p.rod, "friction": 0.5, "at": (0.0, 0.0)},
             "gear": {"name": "new", "first": p.pin, "second": p.other, "ratio": 2.0},
             "force": {"name": "new", "point": p.arm.tip, "x": 1.0},
             "torque": {"name": "new", "point": p.arm, "value": 1.0},

@@ -34,6 +34,7 @@ _MEANINGS: dict[str, str | tuple[Status, ...]] = {
     "AT_REST": (Status.AT_REST,),
     "PASSES_DEAD_CENTRE": (Status.PASSES_DEAD_CENTRE,),
     "STROKE": (Status.STROKE,),
+    "LOST_CONTACT": (Status.LOST_CONTACT,),
 }
 """Meanings of all answers, or the statuses in whose words they are, in the order of C."""
 

@@ -691,6 +691,8 @@ const char* press_message(press_status status) {
     return "between two instants a loop passes through a dead centre, a joint through gimbal lock, a two-force link through its beside= direction, or the drives through a position in which they cannot produce the motion";
   case PRESS_STROKE:
     return "a cylinder or a strut is longer than open, or shorter than closed";
+  case PRESS_LOST_CONTACT:
+    return "a contact pulls or slides";
   }
   return "unknown status";
 }

@@ -64,7 +64,8 @@ typedef enum {
   PRESS_JAMS = 18 /* the mechanism jams: its friction forces have no unique solution */,
   PRESS_AT_REST = 19 /* a joint with friction is at rest, so its friction is indeterminate: take instants of motion, or give the friction smooth= */,
   PRESS_PASSES_DEAD_CENTRE = 20 /* between two instants a loop passes through a dead centre, a joint through gimbal lock, a two-force link through its beside= direction, or the drives through a position in which they cannot produce the motion */,
-  PRESS_STROKE = 21 /* a cylinder or a strut is longer than open, or shorter than closed */
+  PRESS_STROKE = 21 /* a cylinder or a strut is longer than open, or shorter than closed */,
+  PRESS_LOST_CONTACT = 22 /* a contact pulls or slides */
 } press_status;
 
 /* Numbers that may change without generating anything again.
