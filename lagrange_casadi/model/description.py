@@ -183,6 +183,13 @@ class LoadNumbers:
     friction: Mapping[str, float] | None = None
     symbols: tuple[str, ...] = ()
 
+    @property
+    def size(self) -> str:
+        """Output that is its size: of a torque its moment, of any other its force; none of a
+        friction, which has outputs of its own.
+        """
+        return {"friction": "", "torque": "moment"}.get(self.kind, "resultant")
+
 
 @dataclass(frozen=True)
 class DriveNumbers:

@@ -56,8 +56,7 @@ def ordered(histories: Histories) -> Iterator[Output]:
     """Efforts, reactions with their resultants, how large loads are, section forces, what is
     largest along links, and own outputs.
     """
-    loads = histories.description.loads
-    moment = "moment" if histories.description.space else "mz"
+    description = histories.description
     for output in histories.quantities():
         if output.group in _GROUPS:
             yield output
@@ -66,9 +65,10 @@ def ordered(histories: Histories) -> Iterator[Output]:
                 if output == histories.made_of(resultant)[-1]:
                     yield resultant
         elif output.group == "load" and output.member == "fx":
-            kind = loads[output.part].kind
-            if kind != "friction":  # which has outputs of its own
-                yield Output("load", output.part, moment if kind == "torque" else "resultant")
+            size = description.loads[output.part].size
+            if size:
+                planar = size == "moment" and not description.space
+                yield Output("load", output.part, "mz" if planar else size)
 
 
 def error_of(solution: Solution, name: str | Output) -> float | None:

@@ -66,11 +66,9 @@ def assert_refined(scene, designs, outcome, row, p, tolerance=1e-11, noise=1e-12
             there = alone(scene, p, (t, t, 1))
             assert there.peak(peak.name).value == pytest.approx(value, rel=1e-10), peak.name
         assert np.isnan(xi) == (peak.xi is None)
-    for joint in {name.split(":")[1] for name in names if name.startswith("reaction:")}:
-        reaction = solution.reaction(joint)
-        size = np.hypot(reaction.fx, reaction.fy)
-        resultant = found[f"reaction:{joint}:resultant"][0]
-        parts = [abs(found[f"reaction:{joint}:{member}"][0]) for member in ("fx", "fy")]
+    for name in (name for name in designs.quantities if name.endswith(":resultant")):
+        size, resultant = solution.array(name), found[name][0]
+        parts = [abs(found[name.replace("resultant", member)][0]) for member in ("fx", "fy")]
         assert resultant >= max(size.max() * (1 - 1e-14), *(part * (1 - 1e-11) for part in parts))
         assert resultant <= math.hypot(*parts) * (1 + 1e-11)
 

@@ -53,8 +53,8 @@ class KeptOutputs:
     """The outputs of which something is kept of each design: peaks of ``quantities``, in ``units``,
     and means of ``efforts``, which are efforts and outputs of the user's own.
 
-    Quantities are the wanted outputs, without angles that loops set, and sizes of joints'
-    reactions; section forces come last. Which of them equilibrium leaves open is
+    Quantities are the wanted outputs, without angles that loops set, and sizes of reactions and
+    loads; section forces come last. Which of them equilibrium leaves open is
     decided for each design. ``reduction`` is the same in numbers of columns, as C takes it.
     """
 
@@ -73,8 +73,11 @@ class KeptOutputs:
         for output, k in at.items():
             if output.along or output in program.loop_angles:
                 continue
-            for member in table.reactions if output.group == "reaction" else ():
-                size = Output("reaction", output.part, member)
+            members = table.reactions if output.group == "reaction" else ()
+            if output.group == "load":
+                members = (data.content.loads[output.part].size,)
+            for member in members:
+                size = Output(output.group, output.part, member)
                 parts = [other for other in size.components(table) if other in at]
                 if parts[:1] == [output] and len(parts) > 1:
                     chosen[size] = tuple(at[other] for other in parts)
