@@ -67,7 +67,7 @@ def new(
     source: Path | None = None,
     accept_inertias: bool = False,
     payload: Sequence[str] = (),
-    floating: bool = False,
+    floating: str | None = None,
     posture: Mapping[str, float] | None = None,
     contacts: Sequence[str] | None = None,
 ) -> None:
@@ -88,8 +88,8 @@ def new(
         Take moments of inertia that no body has as FILE gives them.
     payload : FRAME=MASS[@(X,Y,Z)]
         Put a mass at a link or frame of FILE, at a place on its axes: tool0=3kg@(0,0,0.1).
-    floating
-        Let the base of the robot move freely, with its mass.
+    floating : [LINK]
+        Let the base of the robot move freely, with its mass, or another link or frame in its place.
     posture : NAME=VALUE
         Let a coordinate have this value at the start.
     contacts : NAME,...
@@ -100,7 +100,7 @@ def new(
         (like is not None and source, "--like and --from exclude each other"),
         (accept_inertias and not model, "--accept-inertias needs --from FILE of a model"),
         (payload and not model, "--payload needs --from FILE of a model"),
-        (floating and not model, "--floating needs --from FILE of a model"),
+        (floating is not None and not model, "--floating needs --from FILE of a model"),
         (posture and not model, "--posture needs --from FILE of a model"),
         (contacts and not model, "--contacts needs --from FILE of a model"),
     )
@@ -118,7 +118,8 @@ def new(
         from ..interop.formats import case_of
         from ..interop.formats.standing import Standing
 
-        stands = Standing(floating, posture or {}, contacts or ())
+        free = floating if floating else floating is not None
+        stands = Standing(free, posture or {}, contacts or ())
         text = case_of(source, accept_inertias=accept_inertias, payload=payload, stands=stands)
         files = {"case.py": text.encode()}
         notes = [line[2:] for line in text.splitlines() if line.startswith("# ")]

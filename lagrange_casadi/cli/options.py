@@ -375,7 +375,7 @@ def option(parameter: Parameter) -> click.Parameter:
     """The argument of a command, or its option, for a parameter.
 
     What must be named in Python is an option; it is a switch if it is a bool, and repeatable if it
-    is a sequence or a mapping.
+    is a sequence or a mapping. The value may be left out where brackets stand for it.
     """
     name, kind = parameter.name, parameter.kind
     says = re.sub(r"``(\w+)``", lambda one: _spelled(one[1]), parameter.says).replace("``", "")
@@ -393,6 +393,9 @@ def option(parameter: Parameter) -> click.Parameter:
     base = re.findall(r"\w+", kind.replace("Annotated", "").replace("Sequence", ""))[0]
     words = get_args(getattr(vocabulary, base, None))
     default = None if many else parameter.value
+    alone: dict[str, Any] = (
+        {"is_flag": False, "flag_value": ""} if (metavar or "").startswith("[") else {}
+    )
     says = f"{says} Repeatable." if many else says
     return click.Option(
         [spelled, name],
@@ -405,6 +408,7 @@ def option(parameter: Parameter) -> click.Parameter:
         default=default,
         show_default=bool(default),
         help=says,
+        **alone,
     )
 
 

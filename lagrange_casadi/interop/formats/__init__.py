@@ -47,7 +47,7 @@ def read(
     *,
     accept_inertias: bool = False,
     payload: Sequence[str] = (),
-    floating: bool = False,
+    floating: bool | str = False,
     posture: Mapping[str, Number] | None = None,
     contacts: Sequence[str] = (),
 ) -> Scene:
@@ -62,7 +62,8 @@ def read(
     payload
         Masses at links or frames of the file, as ``["tool0=3kg@(0,0,0.1)"]``.
     floating
-        True for a base that is free, with its mass, of a robot that is not fixed to the ground.
+        True for a base that is free, with its mass, of a robot that is not fixed to the ground; or
+        the link or frame of the file that is free in place of that base.
     posture
         Coordinates in which the robot stands [rad or m], by their names in the case; others are
         zero.
@@ -99,11 +100,12 @@ def case_of(
 ) -> str:
     """Return the text of a case for a file of another program, as of :func:`read`."""
     stands = stands or Standing()
-    loads, model = [Payload.of(text) for text in payload], _model(Path(path), stands.floating)
+    loads, model = [Payload.of(text) for text in payload], _model(Path(path), bool(stands.floating))
     if stands.floating and model.file.suffix.lower() in (".json", ".asmt"):
         raise model.refuse("", "only a URDF, SDF or MJCF has a base that floating= can free")
     for load in loads:
         model.load(load)
+    stands.free(model)
     model = checked(model, accept_inertias=accept_inertias)
     driven(stands.placed(model))
     return case_text(model)

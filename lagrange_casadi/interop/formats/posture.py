@@ -78,15 +78,19 @@ def posed(model: Model, posture: Mapping[str, float]) -> Model:
     """
     found, bodies = {GROUND: Frame()}, dict(model.bodies)
     for joint in outward([*model.joints.values()], {GROUND}):
-        if joint.parent not in found or joint.child in found:
+        if joint.parent in found and joint.child in found:
             continue
-        frame = found[joint.parent].then(joint.on_parent)
+        across = joint.on_parent
         for name, (_, move, axis) in zip(joint.coordinates, MOVES[joint.kind], strict=True):
             along, q = np.eye(3)["xyz".index(axis)], posture.get(name, 0.0)
             step = Frame(q * along) if move == "slide" else Frame(axes=turned(along, q))
-            frame = frame.then(step)
-        found[joint.child] = frame.then(joint.on_child.inverse())
-        bodies[joint.child] = replace(bodies[joint.child], frame=found[joint.child])
+            across = across.then(step)
+        across = across.then(joint.on_child.inverse())
+        near, far = joint.parent, joint.child
+        if far in found:
+            near, far, across = far, near, across.inverse()
+        found[far] = found[near].then(across)
+        bodies[far] = replace(bodies[far], frame=found[far])
     return replace(model, bodies=bodies)
 
 

@@ -7,19 +7,46 @@ from dataclasses import dataclass, field
 
 from ...base.units import Number, quantity
 from .file_frames import Frame
-from .posture import posed
+from .posture import outward, posed
 from .record import GROUND, MOVES, Joint, Law, Model
 
 
 @dataclass(frozen=True, eq=False)
 class Standing:
-    """Stand of a robot: whether its base is free, in which ``posture``, and which links or frames
-    of the file are ``contacts``.
+    """Stand of a robot: whether its base is free, or which link or frame in its place, in which
+    ``posture``, and which links or frames of the file are ``contacts``.
     """
 
-    floating: bool = False
+    floating: bool | str = False
     posture: Mapping[str, Number] = field(default_factory=dict)
     contacts: Sequence[str] = ()
+
+    def free(self, model: Model) -> None:
+        """Free the link or frame that is named, where the model is, in place of its base.
+
+        Raises :class:`.ModelFileError` for one that no joints connect to a free base.
+        """
+        if not isinstance(self.floating, str):
+            return
+        body, frame = model.spot(self.floating)
+        free = {
+            one.child: one.name
+            for one in model.joints.values()
+            if one.kind == "free" and one.parent == GROUND
+        }
+        joints = [one for one in model.joints.values() if one.parent != GROUND]
+        reached = {body}
+        list(outward(joints, reached))  # which adds what joints connect
+        bases = [joint for base, joint in free.items() if base in reached]
+        if len(bases) != 1:
+            found = ", ".join(map(repr, bases)) or "none"
+            words = (
+                f"expected joints from '{self.floating}' to one base that is free, found {found}"
+            )
+            raise model.refuse("", words)
+        del model.joints[bases[0]]
+        place = model.frame_of(body).then(frame)
+        model.add(Joint, f"{self.floating}_free", "", "free", GROUND, body, place, frame)
 
     def placed(self, model: Model) -> Model:
         """Add contacts to a model and, where there are some, the motion of its base and its drives;
