@@ -311,8 +311,7 @@ def test_legs_bear_a_robot_with_the_least_efforts(legs, feet, base, wide, tmp_pa
     legs, corners = legs.split(), ("", 1, 2, 3) if wide else ("",)
     feet = [f"{leg}_foot{corner}" for leg in feet.split() for corner in corners]
     (path := tmp_path / "walker.urdf").write_text(text := walker(legs, wide))
-    bent = (name for name in BENT if name[:2] in legs and (wide or name[3] < "4"))
-    posture = {name: BENT[name] for name in bent}
+    posture = {name: q for name, q in BENT.items() if name[:2] in legs and (wide or name[3] < "4")}
     scene = read(path, floating=True, posture=posture, contacts=feet)
     moved = {"slide": (0.01, 0.2, -0.7), "turn": (0.05, -0.3, 1.1)}
     laws = {}
@@ -368,8 +367,7 @@ def test_any_link_may_be_the_free_base(tmp_path):
 
 
 def test_a_free_base_must_be_there(tmp_path):
+    pytest.importorskip("mujoco")
     (path := tmp_path / "fixed.xml").write_text(MJCF)
     with pytest.raises(ModelFileError, match="expected joints from 'b' to one base that is free"):
         read(path, floating="b")
-    with pytest.raises(ModelFileError, match="unknown link or frame 'x'; valid: a, b"):
-        read(path, floating="x")
