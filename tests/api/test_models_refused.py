@@ -188,10 +188,10 @@ FAR_TERMS = {
 NO_LAWS = {
     "brackets": ("sin(" * 199 + "t" + ")" * 199, "100 pairs of parentheses"),
     "terms": ("t+" * 1100 + "t", "at most 1000 terms"),
-    "signs": ("-" * 900 + "t", "100 pairs of parentheses"),
-    "tower": ("9^9^9^9*t", "'9 ** 9 ** 9' is no number of at most 1e+12"),
+    "comment": ("t # 1", "expected an expression of t"),
+    "tower": ("9^9^9^9*t", "'9**9**9' is no number of at most 1e+12"),
     "large": ("1e12*1e12*t", "is no number of at most 1e+12"),
-    "by zero": ("t/(2-2)", "'t / (2 - 2)' is no number"),
+    "by zero": ("t/(2-2)", "'t/(2-2)' is no number"),
     "root": ("(-8)^(1/3)*t", "is no number"),
     "logarithm": ("log(0)*t", "is no number"),
     "exponential": ("exp(1000)", "is no number"),

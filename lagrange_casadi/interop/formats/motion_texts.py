@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import ast
 import math
+import operator
 import re
-from collections.abc import Container, Sequence
+from collections.abc import Callable, Container, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
+from itertools import accumulate
+from typing import Any
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -17,27 +21,26 @@ from .record import LARGEST, Law, Model, number
 
 _TURNS = ("sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh")
 ONE_NUMBER = (*_TURNS, "exp", "log", "sqrt", "fabs")
-"""Functions of one number that a law may have; CasADi's are called the same."""
+"""Functions of one number that a law may have; CasADi's and Python's are called the same."""
 
-NAMES = (*ONE_NUMBER, "atan2")
-"""All of them."""
+_FUNCTIONS = {name: name for name in (*ONE_NUMBER, "atan2")}
+_NAMES = ", ".join(_FUNCTIONS)
+_FUNCTIONS |= {"abs": "fabs", "arcsin": "asin", "arccos": "acos", "arctan": "atan", "ln": "log"}
+_VALUES = {"t": "t", "time": "t", "pi": "pi"}
+_WORDS = _VALUES | {name: f"ca.{known}" for name, known in _FUNCTIONS.items()}
+"""Names of a law as a case has them."""
 
-_OTHER_NAMES = {"abs": "fabs", "arcsin": "asin", "arccos": "acos", "arctan": "atan", "ln": "log"}
 LONGEST = 10_000
 _TALLEST, _DEEPEST, _DEGREE = 1000, 100, 20
 """Terms of a sum, pairs of parentheses in each other, and degree of a polynomial, at most."""
 
-_OPERATORS: dict[type[ast.operator], tuple[str, int]] = {
-    ast.Add: ("+", 1),
-    ast.Sub: ("-", 1),
-    ast.Mult: ("*", 2),
-    ast.Div: ("/", 2),
-    ast.Pow: ("**", 4),
+_OPERATORS: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+    ast.Pow: operator.pow,
 }
-"""Operators as Python writes them, each with its rank: the higher one binds first."""
-
-_SIGN, _ATOM = 3, 5
-"""Rank of a sign, and of a part that has no operator."""
 
 
 class LawError(ValueError):
@@ -46,30 +49,10 @@ class LawError(ValueError):
 
 @dataclass(frozen=True, eq=False)
 class Expression:
-    """An expression of ``t`` as Python, and as a polynomial of t if it is one.
-
-    ``binds`` is how closely its outermost operator does, ``tall`` how many operators are in each
-    other, ``deep`` how many of them are in parentheses or on the right.
-    """
+    """An expression of ``t`` as Python, and as a polynomial of t if it is one."""
 
     text: str
-    binds: int = _ATOM
-    polynomial: Polynomial | None = None
-    tall: int = 0
-    deep: int = 0
-
-    @property
-    def number(self) -> float | None:
-        """The value of one without t."""
-        known = self.polynomial
-        return float(known.coef[0]) if known is not None and known.degree() == 0 else None
-
-    def within(self, binds: int) -> str:
-        """Return the text as part of what binds so closely."""
-        return self.text if self.binds >= binds else f"({self.text})"
-
-
-_ZERO = Expression("0", polynomial=Polynomial([0.0]))
+    polynomial: Polynomial | None
 
 
 def parsed(text: str) -> Expression:
@@ -79,122 +62,87 @@ def parsed(text: str) -> Expression:
     """
     if len(text) > LONGEST:
         raise LawError(f"an expression of more than {LONGEST} characters")
-    plain = re.sub(r"(?<=[\d.])d(?![\w.])", "", text.strip()).replace("^", "**")
+    plain = re.sub(r"(?<=[\d.])d(?![\w.])", "", " ".join(text.split())).replace("^", "**")
     try:
-        tree = ast.parse(plain, mode="eval").body
+        tree = ast.parse(plain if plain.isascii() and "#" not in plain else "", mode="eval").body
     except (SyntaxError, ValueError, MemoryError, RecursionError):
         raise LawError("expected an expression of t") from None
-    nodes, made = [tree], dict[ast.expr, Expression]()
+    nodes, tall = [tree], dict[ast.expr, int]()
     for node in nodes:  # which grow: no recursion, for a sum of many terms is as deep
-        nodes += _parts(node)
+        nodes += _parts(node, plain)
+    found = dict[ast.expr, Polynomial | None]()
     for node in reversed(nodes):
-        made[node] = _expression(node, [made[part] for part in _parts(node)])
-    return made[tree]
+        parts = _parts(node, plain)
+        tall[node] = 1 + max((tall[part] for part in parts), default=0)
+        try:
+            found[node] = _polynomial(node, [found[part] for part in parts])
+        except (ArithmeticError, TypeError, ValueError):
+            words = f"'{_stated(node, plain)}' is no number of at most {LARGEST:g}"
+            raise LawError(words) from None
+    nested = max(accumulate((one == "(") - (one == ")") for one in plain))
+    if tall[tree] > _TALLEST or nested > _DEEPEST:
+        most = f"{_TALLEST} terms, and {_DEEPEST} pairs of parentheses in each other"
+        raise LawError(f"expected at most {most}")
+    written = re.sub(r"(?<![\w.])[a-z]\w*", lambda word: _WORDS[word[0]], plain)
+    return Expression(written, found[tree])
 
 
-def _parts(node: ast.expr) -> list[ast.expr]:
+def _parts(node: ast.expr, text: str) -> list[ast.expr]:
     """Return the parts of an expression. Raises :class:`LawError` for what no law has."""
     match node:
         case ast.Constant(value=int() | float() as value) if not isinstance(value, bool):
             return []
-        case ast.Name(id="t" | "time" | "pi"):
+        case ast.Name(id=name) if name in _VALUES:
             return []
         case ast.UnaryOp(op=ast.USub() | ast.UAdd(), operand=inner):
             return [inner]
-        case ast.BinOp(left=left, op=operator, right=right) if type(operator) in _OPERATORS:
+        case ast.BinOp(left=left, op=sign, right=right) if type(sign) in _OPERATORS:
             return [left, right]
-        case ast.Call(func=ast.Name(id=name), args=given, keywords=[]) if _name(name) in NAMES:
-            if len(given) != (2 if _name(name) == "atan2" else 1):
-                raise LawError(f"{_name(name)} of {len(given)} numbers")
+        case ast.Call(func=ast.Name(id=name), args=given, keywords=[]) if name in _FUNCTIONS:
+            if len(given) != 1 + (name == "atan2"):
+                raise LawError(f"{name} of {len(given)} numbers")
             return given
-    try:
-        stated = ast.unparse(node)[:60]
-    except RecursionError:
-        stated = type(node).__name__
-    raise LawError(
-        f"'{stated}' is not supported; valid: numbers, pi, t, + - * / ^, {', '.join(NAMES)}"
-    )
+    words = f"'{_stated(node, text)}' is not supported"
+    raise LawError(f"{words}; valid: numbers, pi, t, + - * / ^, {_NAMES}")
 
 
-def _name(name: str) -> str:
-    """Return what a function is called here."""
-    return _OTHER_NAMES.get(name, name)
+def _stated(node: ast.expr, text: str) -> str:
+    """Return the part of a text that an expression is of, for messages."""
+    return text[node.col_offset : node.end_col_offset][:60]
 
 
-def _expression(node: ast.expr, parts: Sequence[Expression]) -> Expression:
-    """Return an expression of its parts. Raises :class:`LawError` for one that is too large, or has
-    a part without t that is no number.
+def _polynomial(node: ast.expr, parts: Sequence[Polynomial | None]) -> Polynomial | None:
+    """Return an expression as a polynomial of t, if it is one of finite numbers and a low degree,
+    from its parts.
+
+    Raises :class:`ArithmeticError`, :class:`TypeError` or :class:`ValueError` for a part without t
+    that is no number.
     """
-    text, binds = "t", _ATOM
-    found: Polynomial | None = Polynomial([0.0, 1.0])
-    tall = max((one.tall for one in parts), default=-1) + 1
-    deep = max((one.deep for one in parts), default=-1) + 1
-    try:
-        match node:
-            case ast.Constant(value=int() | float() as value):
-                text = repr(value)
-                found = Polynomial([number(value)])
-            case ast.Name(id="pi"):
-                text, found = "pi", Polynomial([math.pi])
-            case ast.UnaryOp(op=sign):
-                symbol, binds = "-" if isinstance(sign, ast.USub) else "+", _SIGN
-                text = f"{symbol}{parts[0].within(binds)}"
-                found = _combined(symbol, _ZERO, parts[0])
-            case ast.BinOp(op=operator):
-                symbol, binds = _OPERATORS[type(operator)]
-                one, other = parts
-                bare = one.binds >= binds + (symbol == "**")
-                deep = max(one.deep + (not bare), other.deep + 1)
-                sides = one.within(binds + (symbol == "**")), other.within(binds + (symbol != "**"))
-                text = f" {symbol} ".join(sides)
-                found = _combined(symbol, one, other)
-            case ast.Call(func=ast.Name(id=name)):
-                text = f"ca.{_name(name)}({', '.join(one.text for one in parts)})"
-                values = [one.number for one in parts]
-                known = None not in values
-                found = Polynomial([getattr(math, _name(name))(*values)]) if known else None
-        if found is not None and found.degree() == 0:
-            number(float(found.coef[0]))
-    except (ArithmeticError, TypeError, ValueError):
-        raise LawError(f"'{text[:60]}' is no number of at most {LARGEST:g}") from None
-    if tall > _TALLEST or deep > _DEEPEST:
-        most = (
-            f"expected at most {_TALLEST} terms, and {_DEEPEST} pairs of parentheses in each other"
-        )
-        raise LawError(most)
-    return Expression(text, binds, found, tall, deep)
+    values = [float(one.coef[0]) if one and not one.degree() else None for one in parts]
+    found, known = None, bool(parts) and None not in values
+    match node:
+        case ast.Constant(value=value):
+            found = Polynomial([number(value)])
+        case ast.Name(id=name):
+            found = Polynomial([math.pi] if name == "pi" else [0.0, 1.0])
+        case ast.UnaryOp(op=sign):
+            found = -parts[0] if parts[0] and isinstance(sign, ast.USub) else parts[0]
+        case ast.Call(func=ast.Name(id=name)) if known:
+            found = Polynomial([number(getattr(math, _FUNCTIONS[name])(*values))])
+        case ast.BinOp(op=sign) if known:
+            found = Polynomial([number(_OPERATORS[type(sign)](*values))])
+        case ast.BinOp(op=sign):
+            if isinstance(sign, ast.Div) and values[1] == 0.0:
+                raise ZeroDivisionError
+            one, other = parts[0], parts[1] if values[1] is None else values[1]
+            # A quotient by t, a root, and what is none itself are no polynomials.
+            with suppress(TypeError, ValueError), np.errstate(all="ignore"):
+                found = _OPERATORS[type(sign)](one, other)
+    low = found is not None and found.degree() <= _DEGREE and np.isfinite(found.coef).all()
+    return found if low else None
 
 
-def _combined(symbol: str, one: Expression, other: Expression) -> Polynomial | None:
-    """Return what an operator makes of two expressions, as a polynomial of t if it is one of finite
-    numbers and a low degree.
-
-    Raises :class:`ArithmeticError` and the like for numbers that have no such one.
-    """
-    left, right, value = one.polynomial, other.polynomial, other.number
-    if symbol == "/" and value == 0.0:
-        raise ZeroDivisionError
-    if left is None or right is None:
-        return None
-    degree, found = left.degree() + right.degree(), None
-    with np.errstate(all="ignore"):
-        match symbol:
-            case "+":
-                found = left + right
-            case "-":
-                found = left - right
-            case "*" if degree <= _DEGREE:
-                found = left * right
-            case "/" if value is not None:
-                found = left / value
-            case "**" if value is not None and not degree:
-                found = Polynomial([number(float(left.coef[0]) ** value)])
-            case "**" if value in (0.0, 1.0, 2.0, 3.0) and degree * value <= _DEGREE:
-                found = left ** int(value)
-    return found if found is not None and np.isfinite(found.coef).all() else None
-
-
-def python(text: str, less: float = 0.0) -> Call:
+def python(text: str, less: float) -> Call:
     """Return a law, less a number, as what a case has for it, in the words of ``motion``."""
     found = parsed(text)
     if found.polynomial is None:
