@@ -5,33 +5,29 @@ dependencies.
 from __future__ import annotations
 
 import hashlib
+import itertools
 import math
 import uuid
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from html import escape
 from typing import TYPE_CHECKING, Literal
-from xml.etree import ElementTree
+from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
 from ...base.quantities import Output, motion_names
+from ...base.units import known
 from ...engine.program import Program
 from ...version import __version__
 from ..portable.contract import Contract, Member, Setting
 from ..portable.golden import motions_at
 from ..portable.source import Source
 from ..portable.text import template
-from .unit_powers import BASE, base_unit
 
 if TYPE_CHECKING:
     import casadi as ca
-
-LOGGED = {
-    "logStatusDiscard": "instants without a result, and why",
-    "logStatusError": "parameters that are refused, and calls that are out of order",
-}
 
 
 @dataclass(frozen=True)
@@ -106,14 +102,8 @@ class Description:
     @cached_property
     def guid(self) -> str:
         """Identifier of the scene and of its description."""
-        text = _text(self._root(""))
-        whole = self.source.identity + self.source.code + text
+        whole = self.source.identity + self.source.code + self.text("")
         return f"{{{uuid.UUID(hashlib.sha256(whole.encode()).hexdigest()[:32])}}}"
-
-    @property
-    def xml(self) -> str:
-        """The text of the file."""
-        return '<?xml version="1.0" encoding="UTF-8"?>\n' + _text(self._root(self.guid)) + "\n"
 
     @cached_property
     def known(self) -> dict[str, int]:
@@ -126,88 +116,45 @@ class Description:
         inside = found["time" if self.by == "time" else self.place]
         return found | dict.fromkeys(["time", *self.start], inside)
 
-    def _root(self, guid: str) -> ElementTree.Element:
-        c = self.contract
-        root = ElementTree.Element(
-            "fmiModelDescription",
-            fmiVersion="2.0",
-            modelName=c.name,
-            guid=guid,
-            description=(
-                "Efforts, reactions and section forces of a mechanism, from the motion of its"
-                " drives"
-            ),
-            generationTool=f"lagrange_casadi {__version__}",
-            variableNamingConvention="flat",
-            numberOfEventIndicators="0",
-        )
-        for kind, able in _KINDS.items():
-            element = _add(
-                root, kind, modelIdentifier=c.prefix, **{able: "true"}, canGetAndSetFMUstate="true"
-            )
-            files = _add(element, "SourceFiles")
-            for file in self.sources:
-                _add(files, "File", name=file)
-        units = _add(root, "UnitDefinitions")
-        for unit in dict.fromkeys(one.member.unit for one in self.variables):
-            _unit(units, unit)
-        logged = _add(root, "LogCategories")
-        for name, meaning in LOGGED.items():
-            _add(logged, "Category", name=name, description=meaning)
-        data = self.source.exported.program.data
+    def text(self, guid: str) -> str:
+        """Return the text of the file, with an identifier."""
+        c, data = self.contract, self.source.exported.program.data
         (start, stop), count = data.span, data.timing.count
-        span = {"startTime": _number(start)}
+        span = {"startTime": start}
         if stop > start:
-            span |= {
-                "stopTime": _number(stop),
-                "stepSize": _number((stop - start) / max(1, count - 1)),
-            }
-        _add(root, "DefaultExperiment", **span)
-        self._variables(_add(root, "ModelVariables"))
-        self._structure(_add(root, "ModelStructure"))
-        return root
+            span |= {"stopTime": stop, "stepSize": (stop - start) / max(1, count - 1)}
+        units = dict.fromkeys(one.member.unit for one in self.variables)
+        return template(
+            "model_description.xml",
+            **self.source.words | {"name": quoteattr(c.name)},
+            guid=guid,
+            files="\n".join("      " + _tag("File", name=file) for file in self.sources),
+            units="\n".join(map(_unit, units)),
+            span=_tag("DefaultExperiment", **span),
+            variables="\n".join(map(_variable, itertools.count(), self.variables)),
+            outputs="\n".join(self._unknowns(fixed=False)),
+            unknowns="\n".join(self._unknowns(fixed=True)),
+        )
 
-    def _variables(self, parent: ElementTree.Element) -> None:
-        for place, one in enumerate(self.variables):
-            m, numbers = one.member, dict[str, float]()
-            if isinstance(m, Setting):
-                numbers = {"min": m.low, "max": m.high}
-            if one.start is not None:
-                numbers["start"] = one.start
-            finite = {key: _number(x) for key, x in numbers.items() if math.isfinite(x)}
-            variable = _add(
-                parent,
-                "ScalarVariable",
-                name=m.path,
-                valueReference=str(place),
-                description="; ".join(part for part in (m.meaning, m.sign) if part),
-                causality=one.kind,
-                **_CHANGING[one.kind],
-            )
-            _add(variable, "Real", unit=m.unit, **finite)
-
-    def _structure(self, parent: ElementTree.Element) -> None:
+    def _unknowns(self, *, fixed: bool) -> Iterator[str]:
+        """Yield the elements of outputs with what these depend on, with parameters if these are
+        ``fixed`` first.
+        """
         exported = self.source.exported
         reach = None if exported.cycle is not None else reached(exported.program)
-        for kind, fixed in (("Outputs", False), ("InitialUnknowns", True)):
-            group = _add(parent, kind)
-            for k, one in enumerate(self.variables, 1):
-                if one.kind != "output":
-                    continue
-                unknown = _add(group, "Unknown", index=str(k))
+        for k, one in enumerate(self.variables, 1):
+            if one.kind == "output":
+                on: dict[str, object] = {}
                 if reach is not None:
-                    on = {
+                    places = {
                         self.known[name]
                         for name in reach[one.member.source] & self.known.keys()
                         if fixed or not name.startswith("parameter:")
                     }
-                    unknown.set("dependencies", " ".join(map(str, sorted(on))))
+                    on["dependencies"] = " ".join(map(str, sorted(places)))
+                yield "      " + _tag("Unknown", index=k, **on)
 
 
-_KINDS = {
-    "ModelExchange": "completedIntegratorStepNotNeeded",
-    "CoSimulation": "canHandleVariableCommunicationStepSize",
-}
 _CHANGING = {
     "parameter": {"variability": "tunable", "initial": "exact"},
     "input": {"variability": "continuous"},
@@ -276,26 +223,30 @@ def _table(title: str, members: Sequence[Member]) -> str:
     )
 
 
-def _add(parent: ElementTree.Element, tag: str, **attributes: str) -> ElementTree.Element:
-    return ElementTree.SubElement(parent, tag, attributes)
+def _tag(element: str, /, **attributes: object) -> str:
+    """Return an element that has attributes alone."""
+    given = (f" {key}={quoteattr(str(value))}" for key, value in attributes.items())
+    return f"<{element}{''.join(given)} />"
 
 
-def _unit(parent: ElementTree.Element, name: str) -> None:
-    unit, known = _add(parent, "Unit", name=name), base_unit(name)
-    if known is not None:
-        powers = {base: str(n) for base, n in zip(BASE, known.exponents, strict=True) if n}
-        _add(
-            unit,
-            "BaseUnit",
-            **powers,
-            **({} if known.factor == 1.0 else {"factor": _number(known.factor)}),
-        )
+def _unit(name: str) -> str:
+    """Return the element of a unit, in base units if it is known."""
+    if (unit := known(name)) is None:
+        return "    " + _tag("Unit", name=name)
+    powers = {base: n for base, n in zip(("kg", "m", "s", "rad"), unit.powers, strict=True) if n}
+    factor = {} if unit.factor == 1.0 else {"factor": unit.factor}
+    return f"    <Unit name={quoteattr(name)}>{_tag('BaseUnit', **powers, **factor)}</Unit>"
 
 
-def _number(value: float) -> str:
-    return repr(float(value))
-
-
-def _text(root: ElementTree.Element) -> str:
-    ElementTree.indent(root)
-    return ElementTree.tostring(root, encoding="unicode")
+def _variable(place: int, one: Variable) -> str:
+    """Return the element of a variable."""
+    m, numbers = one.member, dict[str, float | None]()
+    if isinstance(m, Setting):
+        numbers = {"min": m.low, "max": m.high}
+    numbers["start"] = one.start
+    finite = {key: x for key, x in numbers.items() if x is not None and math.isfinite(x)}
+    described = {"description": "; ".join(part for part in (m.meaning, m.sign) if part)}
+    described |= {"causality": one.kind, **_CHANGING[one.kind]}
+    variable = _tag("ScalarVariable", name=m.path, valueReference=place, **described)
+    real = _tag("Real", unit=m.unit, **finite)
+    return f"    {variable.removesuffix(' />')}>{real}</ScalarVariable>"
