@@ -5,7 +5,7 @@ work is added.
 from math import pi
 
 from lagrange_casadi import Scene, SpatialMechanism
-from lagrange_casadi.motion import polynomial
+from lagrange_casadi.motion import expression
 
 
 def scene() -> Scene:
@@ -52,6 +52,6 @@ def scene() -> Scene:
     m.prismatic("Guide", m.ground, Ram, axis=(0.0, 1.0, 0.0), at=at_Guide)
     m.force("work", m.at(Ram, *at_Guide), y=900.0)
     laws = {
-        "Bearing": polynomial(0.0, 8 * pi),
+        "Bearing": expression(lambda t: 8.0 * pi * t),
     }
     return Scene(m, laws, t=(0.0, 0.25, 201))

@@ -7,13 +7,7 @@ import math
 import operator
 import re
 from collections.abc import Callable, Container, Sequence
-from contextlib import suppress
-from dataclasses import dataclass
 from itertools import accumulate
-from typing import Any
-
-import numpy as np
-from numpy.polynomial import Polynomial
 
 from .posture import at_reference, extent
 from .python_text import Call, of_pi, signed, vector
@@ -31,10 +25,12 @@ _WORDS = _VALUES | {name: f"ca.{known}" for name, known in _FUNCTIONS.items()}
 """Names of a law as a case has them."""
 
 LONGEST = 10_000
-_TALLEST, _DEEPEST, _DEGREE = 1000, 100, 20
-"""Terms of a sum, pairs of parentheses in each other, and degree of a polynomial, at most."""
+_TALLEST, _DEEPEST = 1000, 100
+"""Terms of a sum, and pairs of parentheses in each other, at most."""
 
-_OPERATORS: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
+_OPERATORS: dict[type[ast.AST], Callable[..., float]] = {
+    ast.UAdd: operator.pos,
+    ast.USub: operator.neg,
     ast.Add: operator.add,
     ast.Sub: operator.sub,
     ast.Mult: operator.mul,
@@ -47,18 +43,11 @@ class LawError(ValueError):
     """Part of a text that no law has, in words."""
 
 
-@dataclass(frozen=True, eq=False)
-class Expression:
-    """An expression of ``t`` as Python, and as a polynomial of t if it is one."""
+def parsed(text: str) -> tuple[str, float | None]:
+    """Return the expression of a text as Python, and its number if it is without t.
 
-    text: str
-    polynomial: Polynomial | None
-
-
-def parsed(text: str) -> Expression:
-    """Return the expression of a text: numbers, pi, t or time, + - * / ^ and functions.
-
-    Each part without t is a number of at most 1e12. Raises :class:`LawError`.
+    A text has numbers, pi, t or time, + - * / ^ and functions. Each part without t is a number of
+    at most 1e12. Raises :class:`LawError`.
     """
     if len(text) > LONGEST:
         raise LawError(f"an expression of more than {LONGEST} characters")
@@ -67,24 +56,20 @@ def parsed(text: str) -> Expression:
         tree = ast.parse(plain if plain.isascii() and "#" not in plain else "", mode="eval").body
     except (SyntaxError, ValueError, MemoryError, RecursionError):
         raise LawError("expected an expression of t") from None
-    nodes, tall = [tree], dict[ast.expr, int]()
+    nodes, found = [tree], dict[ast.expr, float | None]()
     for node in nodes:  # which grow: no recursion, for a sum of many terms is as deep
         nodes += _parts(node, plain)
-    found = dict[ast.expr, Polynomial | None]()
     for node in reversed(nodes):
-        parts = _parts(node, plain)
-        tall[node] = 1 + max((tall[part] for part in parts), default=0)
         try:
-            found[node] = _polynomial(node, [found[part] for part in parts])
+            found[node] = _number(node, [found[part] for part in _parts(node, plain)])
         except (ArithmeticError, TypeError, ValueError):
             words = f"'{_stated(node, plain)}' is no number of at most {LARGEST:g}"
             raise LawError(words) from None
     nested = max(accumulate((one == "(") - (one == ")") for one in plain))
-    if tall[tree] > _TALLEST or nested > _DEEPEST:
+    if len(nodes) > 2 * _TALLEST or nested > _DEEPEST:
         most = f"{_TALLEST} terms, and {_DEEPEST} pairs of parentheses in each other"
         raise LawError(f"expected at most {most}")
-    written = re.sub(r"(?<![\w.])[a-z]\w*", lambda word: _WORDS[word[0]], plain)
-    return Expression(written, found[tree])
+    return re.sub(r"(?<![\w.])[a-z]\w*", lambda word: _WORDS[word[0]], plain), found[tree]
 
 
 def _parts(node: ast.expr, text: str) -> list[ast.expr]:
@@ -94,7 +79,7 @@ def _parts(node: ast.expr, text: str) -> list[ast.expr]:
             return []
         case ast.Name(id=name) if name in _VALUES:
             return []
-        case ast.UnaryOp(op=ast.USub() | ast.UAdd(), operand=inner):
+        case ast.UnaryOp(op=sign, operand=inner) if type(sign) in _OPERATORS:
             return [inner]
         case ast.BinOp(left=left, op=sign, right=right) if type(sign) in _OPERATORS:
             return [left, right]
@@ -111,45 +96,32 @@ def _stated(node: ast.expr, text: str) -> str:
     return text[node.col_offset : node.end_col_offset][:60]
 
 
-def _polynomial(node: ast.expr, parts: Sequence[Polynomial | None]) -> Polynomial | None:
-    """Return an expression as a polynomial of t, if it is one of finite numbers and a low degree,
-    from its parts.
+def _number(node: ast.expr, values: Sequence[float | None]) -> float | None:
+    """Return the number of an expression from those of its parts; None for one with t.
 
     Raises :class:`ArithmeticError`, :class:`TypeError` or :class:`ValueError` for a part without t
     that is no number.
     """
-    values = [float(one.coef[0]) if one and not one.degree() else None for one in parts]
-    found, known = None, bool(parts) and None not in values
     match node:
         case ast.Constant(value=value):
-            found = Polynomial([number(value)])
+            return number(value)
         case ast.Name(id=name):
-            found = Polynomial([math.pi] if name == "pi" else [0.0, 1.0])
-        case ast.UnaryOp(op=sign):
-            found = -parts[0] if parts[0] and isinstance(sign, ast.USub) else parts[0]
-        case ast.Call(func=ast.Name(id=name)) if known:
-            found = Polynomial([number(getattr(math, _FUNCTIONS[name])(*values))])
-        case ast.BinOp(op=sign) if known:
-            found = Polynomial([number(_OPERATORS[type(sign)](*values))])
-        case ast.BinOp(op=sign):
-            if isinstance(sign, ast.Div) and values[1] == 0.0:
-                raise ZeroDivisionError
-            one, other = parts[0], parts[1] if values[1] is None else values[1]
-            # A quotient by t, a root, and what is none itself are no polynomials.
-            with suppress(TypeError, ValueError), np.errstate(all="ignore"):
-                found = _OPERATORS[type(sign)](one, other)
-    low = found is not None and found.degree() <= _DEGREE and np.isfinite(found.coef).all()
-    return found if low else None
+            return math.pi if name == "pi" else None
+        case ast.BinOp(op=ast.Div()) if values[1] == 0.0:
+            raise ZeroDivisionError
+        case ast.Call(func=ast.Name(id=name)) if None not in values:
+            return number(getattr(math, _FUNCTIONS[name])(*values))
+        case ast.UnaryOp(op=sign) | ast.BinOp(op=sign) if None not in values:
+            return number(_OPERATORS[type(sign)](*values))
+    return None
 
 
 def python(text: str, less: float) -> Call:
     """Return a law, less a number, as what a case has for it, in the words of ``motion``."""
-    found = parsed(text)
-    if found.polynomial is None:
-        return Call("expression", [f"lambda t: {found.text}{signed(-less)}"])
-    return Call(
-        "polynomial", [of_pi(one) for one in (found.polynomial - less).trim().coef.tolist()]
-    )
+    written, value = parsed(text)
+    if value is None:
+        return Call("expression", [f"lambda t: {written}{signed(-less)}"])
+    return Call("polynomial", [of_pi(value - less)])
 
 
 class Motions:
