@@ -45,7 +45,7 @@ class Entry:
     of the system's clock.
     """
 
-    files: tuple[Path, ...]
+    files: tuple[os.DirEntry[str], ...]
     size: int
     used: float
 
@@ -237,17 +237,17 @@ def use(file: Path) -> None:
 
 def entries(place: Path) -> dict[str, Entry]:
     """Entries of a folder by their hash, the one used longest ago first. Raises ``OSError``."""
-    found: dict[str, list[tuple[Path, os.stat_result]]] = {}
+    found: dict[str, list[os.DirEntry[str]]] = {}
     for file in os.scandir(place):
         if ours := _OURS.fullmatch(file.name):
             with suppress(FileNotFoundError):
-                there = Path(file.path), file.stat()
-                found.setdefault(ours[1], []).append(there)
+                file.stat()  # which it keeps
+                found.setdefault(ours[1], []).append(file)
     listed = {
         name: Entry(
-            tuple(path for path, _ in files),
-            sum(s.st_size for _, s in files),
-            max(s.st_mtime for _, s in files),
+            tuple(files),
+            sum(file.stat().st_size for file in files),
+            max(file.stat().st_mtime for file in files),
         )
         for name, files in found.items()
     }
@@ -260,8 +260,8 @@ def remove(entries: Iterable[Entry]) -> int:
     for entry in entries:
         with suppress(OSError):
             # A seal first: without it a library is not believed, whoever looks meanwhile.
-            for file in sorted(entry.files, key=lambda file: file.suffix != ".sha256"):
-                file.unlink(missing_ok=True)
+            for file in sorted(entry.files, key=lambda file: not file.name.endswith(".sha256")):
+                Path(file).unlink(missing_ok=True)
             removed += entry.size
     return removed
 
@@ -271,22 +271,8 @@ def _make_space(place: Path, fresh: set[str]) -> None:
     stays.
     """
     with suppress(OSError):
-        # Sizes alone first: a folder holds thousands of files, is nearly always within its limit,
-        # and is looked at whenever something is kept.
-        size = 0
-        with os.scandir(place) as files:
-            for file in files:
-                if _OURS.fullmatch(file.name):
-                    with suppress(FileNotFoundError):
-                        size += file.stat().st_size
-        if size > limit():
-            _remove_oldest(place, fresh)
-
-
-def _remove_oldest(place: Path, fresh: set[str]) -> None:
-    """Remove what was used longest ago, until the rest is within the limit. Raises ``OSError``."""
-    kept = entries(place)
-    beyond = sum(entry.size for entry in kept.values()) - limit()
-    for name, entry in kept.items():
-        if beyond > 0 and name not in fresh:
-            beyond -= remove([entry])
+        kept = entries(place)
+        beyond = sum(entry.size for entry in kept.values()) - limit()
+        for name, entry in kept.items():
+            if beyond > 0 and name not in fresh:
+                beyond -= remove([entry])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+
 from ..base import cache as kept
 from ..errors import StoreError
 from ..studies.sweep.axes import counted
@@ -27,7 +29,7 @@ def cache(
         distrusted = kept.distrusted(place) if place.exists() else ""
     except OSError as error:
         raise StoreError(f"cannot read {place}: {error.strerror}") from None
-    names = [file.suffix for entry in entries for file in entry.files]
+    names = [os.path.splitext(file)[1] for entry in entries for file in entry.files]
     size = sum(entry.size for entry in entries)
     libraries = counted(names.count(".so"), "library").replace("librarys", "libraries")
     if distrusted:
