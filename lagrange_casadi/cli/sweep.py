@@ -18,7 +18,7 @@ from ..studies.sweep.sweep_notes import fatigue_notes, resting_note, turning_not
 from .echo import echo
 from .executor import executor_at
 from .options import HDF5, refuse, target
-from .progress import shown
+from .progress import Progress
 
 
 def sweep(
@@ -77,7 +77,7 @@ def sweep(
     scene = loaded.scene
     out = target("--out", out, f"{loaded.name}_sweep.h5", HDF5)
     swept = read_designs(designs, scene.parameters) if designs else grid
-    with executor_at(dask) as executor, closing(shown(quiet)) as progress:
+    with executor_at(dask) as executor, closing(Progress(quiet)) as progress:
         found = carry_out(loaded, swept, out=out, executor=executor, progress=progress, **given)
     _report(found)
     fixed, t, over = (given[name] for name in ("parameters", "t", "over"))
