@@ -112,14 +112,6 @@ class Row:
         return found
 
 
-def _headings(cells: Sequence[str]) -> list[tuple[str, str]]:
-    """Names of columns with their units, as of ``height [mm]`` or ``height (mm)``; an empty text
-    if a cell has no unit.
-    """
-    found = (_HEADING.fullmatch(cell) for cell in cells)
-    return [(match[1], match[2] or "") for match in found if match]
-
-
 @dataclass(frozen=True, eq=False)
 class Table:
     """A file's columns: the row of its ``head``, the ``names`` and the ``units`` in that, and the
@@ -143,7 +135,8 @@ class Table:
         """
         rows = read_rows(path, expected, skip, others)
         head = next(rows)
-        names, units = zip(*_headings(head.cells), strict=True)
+        found = [match for cell in head.cells if (match := _HEADING.fullmatch(cell))]
+        names, units = tuple(match[1] for match in found), tuple(match[2] or "" for match in found)
         return cls(Path(path), head, names, units, rows)
 
     @classmethod
@@ -151,34 +144,29 @@ class Table:
         """Read a table of values over time: the first row may be of numbers, and units may stand in
         a row below the heads.
         """
-        table = cls._headed(path, expected, skip)
-        if (first := next(table.rows, None)) is None:
+        table = cls.read(path, expected, skip)
+        head, rows = table.head, table.rows
+        unread = [cell for cell in head.cells if math.isnan(head.number(cell))]
+        if meant := [cell for cell in unread if _is_meant(cell)]:
+            raise DeclarationError(f"{head.where}: expected a finite number, got {meant[0]!r}")
+        first: Row | None = head
+        if not unread or _is_time(head.pointed(head.cells[0])):
+            table = replace(table, names=(), units=("",) * len(head.cells))
+        else:
+            first = next(rows, None)
+            words = [cell.strip("[]()") for cell in first.cells] if first else []
+            ours = all(word in ("", *COUNTS) or known(word) is not None for word in words)
+            if ours and not {"", "1"}.issuperset(words):
+                units = (unit or word for unit, word in zip(table.units, words, strict=True))
+                table, first = replace(table, units=tuple(units)), next(rows, None)
+        if first is None:
             return table
         texts = {
             place: cell
             for place, (cell, unit) in enumerate(zip(first.cells, table.units, strict=True))
             if _TEXT.match(cell) and not unit and cell.lower() not in _MISSING
         }
-        return replace(table, rows=chain([first], table.rows), texts=texts)
-
-    @classmethod
-    def _headed(cls, path: Path, expected: str, skip: int) -> Table:
-        """A log with its heads and units."""
-        table = cls.read(path, expected, skip)
-        head, rows = table.head, table.rows
-        unread = [cell for cell in head.cells if math.isnan(head.number(cell))]
-        if meant := [cell for cell in unread if _is_meant(cell)]:
-            raise DeclarationError(f"{head.where}: expected a finite number, got {meant[0]!r}")
-        if not unread or _is_time(head.pointed(head.cells[0])):
-            return replace(table, names=(), units=("",) * len(head.cells), rows=chain([head], rows))
-        below = next(rows, None)
-        if below is None:
-            return table
-        words = [cell.strip("[]()") for cell in below.cells]
-        if {"", "1"}.issuperset(words) or not all(map(_is_unit, words)):
-            return replace(table, rows=chain([below], rows))
-        units = (unit or word for unit, word in zip(table.units, words, strict=True))
-        return replace(table, units=tuple(units))
+        return replace(table, rows=chain([first], rows), texts=texts)
 
     def units_of(
         self,
@@ -436,10 +424,6 @@ def _is_time(cell: str) -> bool:
         stamp([cell])
         return True
     return False
-
-
-def _is_unit(word: str) -> bool:
-    return word in ("", *COUNTS) or known(word) is not None
 
 
 def _is_meant(cell: str) -> bool:
