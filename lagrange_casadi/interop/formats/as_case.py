@@ -20,7 +20,7 @@ from .file_frames import Frame
 from .motion_texts import Motions
 from .places import Places
 from .posture import about_z, opened
-from .python_text import Call, comment, of_pi, safe, signed, text_of, vector
+from .python_text import Call, comment, direction, of_pi, safe, short, signed, text_of, vector
 from .record import GROUND, MOVES, Body, Coupling, Joint, Model, Spring, Tie
 
 _FRAME = '''
@@ -72,7 +72,7 @@ class _Case:
         self.open = dict.fromkeys(self.counted, (0.0, 0.0)) | gaps
         self.model, self.motions = model, Motions(model, self.open)
         self.places = Places(model, self.open, NAMES)
-        self.short, self.variables = self.places.short, self.places.variables
+        self.variables = self.places.variables
         self.lines: list[str] = []
         self.loaded: set[str] = set()
         turned = [*self.open, *(one.joint for one in model.springs if one.stiffness)]
@@ -146,22 +146,22 @@ class _Case:
             return
         base, tip = self.places.between[body.name]
         assert body.inertia is not None
-        axes, centre = body.frame.axes, self.short.place(body.frame.at(body.centre))
+        axes, centre = body.frame.axes, self.places.place(body.frame.at(body.centre))
         own = Frame(np.array(base), self.places.link_axes(body.name))
         arguments: list[object] = [json.dumps(body.name)]
         if body.name in self.places.held:
             ends = [self.places.written(base), self.places.written(tip)]
             arguments.append(Call("between=", ends))
             if body.name in self.turned:
-                arguments.append(self.short.direction(own.axes[:, 1], "beside"))
+                arguments.append(direction(own.axes[:, 1], "beside"))
         else:  # no joint gives its posture: it is on its own axes
             axes = own.axes.T @ axes
-            centre = self.short.place(own.relative(Frame(np.array(centre))).place)
+            centre = self.places.place(own.relative(Frame(np.array(centre))).place)
             arguments.append(f"length={text_of(math.dist(base, tip))}")
         arguments.append(f"mass={mass}")
         if body.rod is None:
             arguments.append(vector(centre, "centre"))
-            inertia = self.short.values(axes @ body.inertia @ axes.T)
+            inertia = short(axes @ body.inertia @ axes.T)
             if np.array_equal(inertia, diagonal := np.diag(np.diag(inertia))):
                 arguments.append(vector(np.diag(diagonal).tolist(), "inertia"))
             else:
@@ -175,7 +175,7 @@ class _Case:
         near, far = self.model.frames(joint)
         arguments: list[object] = [json.dumps(joint.name)]
         if joint.name in self.model.contacts:
-            foot, at = self.places.point(joint.child, far.place), self.short.place(near.place)
+            foot, at = self.places.point(joint.child, far.place), self.places.place(near.place)
             mu = f"friction={self.places.mu}"
             self.call("m.contact", *arguments, foot, mu, vector(at, "at"))
             return
@@ -190,7 +190,7 @@ class _Case:
             arguments.append(self.places.point(joint.child, far.place))
             arguments += self.axes(joint, parent.T @ near.axes, far)
             if joint.kind not in ("spherical", "free", "slot") or joint.name in self.counted:
-                turned = self.short.values(parent.T @ near.axes @ far.axes.T @ child, 1.0)
+                turned = short(parent.T @ near.axes @ far.axes.T @ child, 1.0)
                 columns = [vector(column) for column in turned[:, :2].T.tolist()]
                 arguments.append(Call("turned=", columns))
         else:
@@ -209,7 +209,7 @@ class _Case:
                 return []
             case "spherical" | "free":
                 given = {*self.model.motions, *self.model.posture} & {*joint.coordinates}
-                usual = not given or np.array_equal(self.short.values(axes, 1.0), np.eye(3))
+                usual = not given or np.array_equal(short(axes, 1.0), np.eye(3))
                 return [] if usual else self.directions(x, y)
             case "universal":
                 return self.directions(z, far.axes[:, 2])
@@ -222,7 +222,7 @@ class _Case:
     def directions(self, *axes: Array) -> list[object]:
         """Return the arguments for one direction or two."""
         names = ("axis", "second")[: len(axes)]
-        return [self.short.direction(*one) for one in zip(axes, names, strict=True)]
+        return [direction(*one) for one in zip(axes, names, strict=True)]
 
     def coupling(self, one: Coupling) -> None:
         """Declare a coupling as a pair of gears."""
@@ -283,7 +283,7 @@ class _Case:
         near = self.model.frames(joint)[0]
         for body, sign in ((joint.child, ""), (joint.parent, "-")):
             if body != GROUND:
-                along = self.short.values(self.places.link_axes(body).T @ near.axes[:, 2], 1.0)
+                along = short(self.places.link_axes(body).T @ near.axes[:, 2], 1.0)
                 parts = zip("xyz", along.tolist(), strict=True)
                 force = [f"{axis}={text_of(part)} * {sign}{pull}" for axis, part in parts if part]
                 name = json.dumps(self.load(f"{one.joint}_spring_{body}"))
@@ -321,8 +321,8 @@ def _tie_lines(places: Places, tie: Tie) -> Iterator[str]:
     """Yield the lines that declare a tie."""
     near, far = places.model.frames(tie)
     for names, body, frame in (("p, x, y, z", tie.parent, near), ("q, u, v, w", tie.child, far)):
-        x, y, _ = (places.short.direction(axis) for axis in frame.axes.T)
-        at = places.written(places.short.place(frame.place))
+        x, y, _ = (direction(axis) for axis in frame.axes.T)
+        at = places.written(places.place(frame.place))
         yield from Call(f"{names} = frame", [f"m, {places.variables[body]}", at, x, y]).lines()
     turns = partial(_turns_about, places, tie)
     for k, row in enumerate(tie.rows, 1):

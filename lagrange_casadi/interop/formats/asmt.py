@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
@@ -32,33 +31,30 @@ KINDS: dict[str, str] = {
 
 _PARALLEL = (Row("cosine", 2, 0), Row("cosine", 2, 1))
 
-TIES: dict[str, tuple[Row, ...]] = {
-    "PointInPlaneJoint": (Row("slide"),),
-    "LineInPlaneJoint": (Row("slide"), Row("cosine")),
-    "ParallelAxesJoint": _PARALLEL,
-    "PerpendicularJoint": (Row("cosine"),),
-    "NoRotationJoint": (Row("cosine", 1, 0), *_PARALLEL),
-    "ConstantVelocityJoint": (Row("sides"),),
-    "AngleJoint": (Row("cosine"),),
-    "SphSphJoint": (Row("distance"),),
-    "CylSphJoint": (Row("distance across"),),
-    "RevCylJoint": (Row("distance across"), *_PARALLEL),
-    "RevRevJoint": (Row("distance across"), Row("slide"), *_PARALLEL),
-    "ScrewJoint": (Row("slide and turn"),),
-    "RackPinionJoint": (Row("slide and turn", i=0),),
-    "GearJoint": (Row("wheels"),),
+TIES: dict[str, tuple[str, Callable[[float], tuple[Row, ...]]]] = {
+    "PointInPlaneJoint": ("offset", lambda x: (Row("slide", value=x),)),
+    "LineInPlaneJoint": ("offset", lambda x: (Row("slide", value=x), Row("cosine"))),
+    "ParallelAxesJoint": ("", lambda _: _PARALLEL),
+    "PerpendicularJoint": ("", lambda _: (Row("cosine"),)),
+    "NoRotationJoint": ("", lambda _: (Row("cosine", 1, 0), *_PARALLEL)),
+    "ConstantVelocityJoint": ("", lambda _: (Row("sides"),)),
+    "AngleJoint": ("theIzJz", lambda x: (Row("cosine", value=math.cos(x)),)),
+    "SphSphJoint": ("distanceIJ", lambda x: (Row("distance", value=x**2),)),
+    "CylSphJoint": ("distanceIJ", lambda x: (_across(x),)),
+    "RevCylJoint": ("distanceIJ", lambda x: (_across(x), *_PARALLEL)),
+    "RevRevJoint": ("distanceIJ", lambda x: (_across(x), Row("slide"), *_PARALLEL)),
+    "ScrewJoint": ("pitch", lambda x: (Row("slide and turn", factor=-x / math.tau),)),
+    "RackPinionJoint": ("pitchRadius", lambda x: (Row("slide and turn", i=0, factor=x),)),
+    "GearJoint": ("radiusI", lambda x: (Row("wheels", factor=x),)),
 }
-"""The joints that are rows between their markers; an atomic joint of such is one of several."""
+"""The joints that are rows between their markers: the property with their number, and the rows. An
+atomic joint of such is one of several.
+"""
 
-_NUMBERS: dict[str, str] = {
-    **dict.fromkeys(("PlanarJoint", "PointInPlaneJoint", "LineInPlaneJoint"), "offset"),
-    **dict.fromkeys(("SphSphJoint", "CylSphJoint", "RevCylJoint", "RevRevJoint"), "distanceIJ"),
-    "AngleJoint": "theIzJz",
-    "ScrewJoint": "pitch",
-    "RackPinionJoint": "pitchRadius",
-    "GearJoint": "radiusI",
-}
-"""Property with the number of a joint."""
+
+def _across(distance: float) -> Row:
+    return Row("distance across", value=distance**2)
+
 
 _MOTIONS = {
     "RotationalMotion": ("RotationZ", "turn", "revolute"),
@@ -203,25 +199,25 @@ class _Reader:
             words = f"is not supported; valid: {', '.join([*KINDS, *TIES])}"
             raise model.refuse(where, words)
         bodies, (near, far) = self.ends(line)
-        key = _NUMBERS.get(kind, "")
-        value = line.amount(key, None if kind == "GearJoint" else 0.0) if key else 0.0
         if kind in KINDS:
-            near = near.then(Frame(np.array([0.0, 0.0, value])))
+            offset = line.amount("offset", 0.0) if kind == "PlanarJoint" else 0.0
+            near = near.then(Frame(np.array([0.0, 0.0, offset])))
             one, other = (
                 model.frame_of(body).then(at) for body, at in zip(bodies, (near, far), strict=True)
             )
             far = far.then(Frame(axes=_half_turn(KINDS[kind], one.relative(other).axes)))
             name = model.add(Joint, stated, where, KINDS[kind], *bodies, near, far)
         else:
+            key, rows = TIES[kind]
+            value = line.amount(key, None if kind == "GearJoint" else 0.0) if key else 0.0
             if kind == "GearJoint":
                 radius = line.amount("radiusJ")
                 if not value or not radius:
                     raise model.refuse(where, "a radius of zero is impossible")
                 value = model.number(where, value / radius, "ratio of radii")
             if kind == "AngleJoint" and abs(math.sin(value)) < 1e-9:
-                kind, key = "ParallelAxesJoint", ""  # the slope of the angle's cosine is zero
-            rows = tuple(_numbered(row, key, value) for row in TIES[kind])
-            name = model.add(Tie, stated, where, *bodies, near, far, rows)
+                _, rows = TIES["ParallelAxesJoint"]  # the slope of the angle's cosine is zero
+            name = model.add(Tie, stated, where, *bodies, near, far, rows(value))
         self.named[f"{self.path}/{line.attribute('Name')}"] = name
 
     def motion(self, line: _Line) -> None:
@@ -255,22 +251,6 @@ class _Reader:
         if stop > start:  # a drawing that was assembled only has no duration
             count = round(steps) + 1 if 0.5 < steps <= 100_000 else 101
             self.model.span = (start, stop, count)
-
-
-def _numbered(row: Row, key: str, value: float) -> Row:
-    """Return a row of a joint with the number that a property of the file gives."""
-    match key, row.kind:
-        case "offset", "slide":
-            return replace(row, value=value)
-        case "distanceIJ", "distance" | "distance across":
-            return replace(row, value=value**2)
-        case "theIzJz", _:
-            return replace(row, value=math.cos(value))
-        case "pitch", _:
-            return replace(row, factor=-value / math.tau)
-        case "pitchRadius" | "radiusI", _:
-            return replace(row, factor=value)
-    return row
 
 
 def _half_turn(kind: str, axes: Array) -> Array:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from ...base.arrays import Array
 
@@ -30,15 +30,7 @@ class Frame:
     @classmethod
     def posed(cls, place: Array, angles: Array) -> Frame:
         """Return a frame turned by roll, pitch and yaw about fixed x, y and z [rad]."""
-        (cr, cp, cy), (sr, sp, sy) = np.cos(angles), np.sin(angles)
-        axes = np.array(
-            [
-                [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
-                [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
-                [-sp, cp * sr, cp * cr],
-            ]
-        )
-        return cls(place, right_angled(axes))
+        return cls(place, right_angled(Rotation.from_euler("xyz", angles).as_matrix()))
 
     def then(self, inner: Frame) -> Frame:
         """Return a frame given relative to this one, relative to the reference of this one."""
@@ -61,11 +53,9 @@ class Frame:
         return np.asarray(self.axes @ own @ self.axes.T)
 
 
-def turned(axis: Array, angle: float) -> Array:
-    """Return the rotation about a direction of length 1 by an angle [rad]."""
-    x, y, z = axis
-    skew = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    return np.asarray(np.eye(3) + math.sin(angle) * skew + (1 - math.cos(angle)) * skew @ skew)
+def turned(vector: Sequence[float] | Array) -> Array:
+    """Return the rotation about a vector by its length [rad]."""
+    return np.asarray(Rotation.from_rotvec(vector).as_matrix())
 
 
 def right_angled(axes: Array) -> Array:

@@ -100,7 +100,7 @@ def _frame(solution: Solution, body: str) -> Frame:
     if pose.axes is not None:
         return Frame(place, pose.axes[0].T)
     angle = 0.0 if pose.angle is None else float(pose.angle[0])
-    return Frame(place, turned(np.array([0.0, 0.0, 1.0]), angle))
+    return Frame(place, turned([0.0, 0.0, angle]))
 
 
 def _body(name: str, body: BodyNumbers, frame: Frame, space: bool) -> Body:

@@ -15,7 +15,7 @@ import numpy as np
 from ...base.arrays import Array
 from .file_frames import Frame
 from .posture import extent
-from .python_text import Call, Place, Short, text_of
+from .python_text import Call, Place, short, text_of, vector
 from .record import GROUND, Body, Joint, Model
 
 
@@ -27,46 +27,43 @@ class Places:
     """
 
     def __init__(self, model: Model, opened: Collection[str], own: Collection[str]) -> None:
-        self.model, self.size, self.short = model, extent(model), Short(extent(model))
+        self.model, self.size = model, extent(model)
         self.variables: dict[str, str] = {GROUND: "m.ground"}
         self._used = set(own)
         closed = [one for one in model.joints.values() if one.name not in opened]
         self.held = {GROUND, *(end for one in closed for end in (one.parent, one.child))}
-        self.at = {one.name: self.short.place(model.frames(one)[1].place) for one in closed}
+        self.at = {one.name: self.place(model.frames(one)[1].place) for one in closed}
         self.on = model.joints_on()
         self.between = {
             name: self._ends(body, [model.joints[one] for one in self.on[name]])
             for name, body in model.bodies.items()
         }
         self._named: dict[Place, str] = {}
-        self._lengths: dict[tuple[int, float], str] = {}
         self._masses: dict[float, str] = {}
         self._loaded: dict[str, str] = {}
         self.mu = ""
 
     def _ends(self, body: Body, mine: list[Joint]) -> tuple[Place, Place]:
         """Return two places that a link lies between: a joint, and the place farthest from it."""
-        place = self.short.place
         if body.rod is not None:
-            return place(body.frame.at(body.rod[0])), place(body.frame.at(body.rod[1]))
+            base, tip = (self.place(body.frame.at(one)) for one in body.rod)
+            return base, tip
         origins = []
         for joint in sorted(mine, key=lambda one: one.child != body.name):
             near, far = self.model.frames(joint)
-            origins.append(place((near if joint.parent == body.name else far).place))
+            origins.append(self.place((near if joint.parent == body.name else far).place))
             if joint.name in self.at:
                 origins[-1] = self.at[joint.name]
-        centre, base = place(body.frame.at(body.centre)), origins[0]
-        tip = max(origins, key=lambda place: math.dist(base, place))
+        centre, base = self.place(body.frame.at(body.centre)), origins[0]
+        tip = max(origins, key=lambda one: math.dist(base, one))
         if math.dist(base, tip) < 1e-6 * self.size:
             tip = centre
         if math.dist(base, tip) < 1e-6 * self.size:
-            tip = place(np.array(base) + body.frame.axes[:, 0] * self.size / 10.0)
+            tip = self.place(np.array(base) + body.frame.axes[:, 0] * self.size / 10.0)
         return base, tip
 
     def parameters(self) -> Iterator[str]:
-        """Yield lines that declare what repeats: masses of several bodies, and components of
-        several places.
-        """
+        """Yield lines that declare masses that several bodies have, and those of payloads."""
         own = [one for one in self.model.bodies.values() if one.name not in self.model.payloads]
         masses = Counter(body.mass for body in own if body.mass > 0.0)
         first = {body.mass: body.name for body in reversed(own)}
@@ -82,14 +79,6 @@ class Places:
         for joint, place in self.at.items():
             if place not in self._named and any(place):
                 self._named[place] = self.variable(f"at_{joint}")
-        joint_at = {place: joint for joint, place in reversed(self.at.items())}
-        sizes = Counter((k, abs(x)) for place in self._named for k, x in enumerate(place) if x)
-        named = reversed(self._named)
-        owners = {(k, abs(x)): place for place in named for k, x in enumerate(place)}
-        for k, size in (one for one, count in sizes.items() if count > 1):
-            owner = owners[k, size]
-            name = self._lengths[k, size] = self._parameter(f"{joint_at[owner]}_{'xyz'[k]}")
-            yield f'{name} = m.parameter("{name}", {text_of(size)}, "m")'
 
     def mass(self, body: Body) -> str:
         """Return a body's mass, as a parameter where it is one."""
@@ -97,7 +86,7 @@ class Places:
 
     def named(self) -> Iterator[str]:
         """Yield lines that name the places of joints."""
-        return (f"{name} = {Call('', self.components(at))}" for at, name in self._named.items())
+        return (f"{name} = {vector(at)}" for at, name in self._named.items())
 
     def _parameter(self, wanted: str) -> str:
         """Return a name for a parameter, which no part may have."""
@@ -119,25 +108,22 @@ class Places:
         base, tip = (np.array(place) for place in self.between[body])
         return Frame.about(tip - base).axes[:, [2, 0, 1]]
 
-    def components(self, place: Place) -> list[str]:
-        """Return the components of a place, by parameters where these have them."""
-        names = [self._lengths.get((k, abs(x))) for k, x in enumerate(place)]
-        return [
-            (f"-{name}" if x < 0 else name) if name else text_of(x)
-            for name, x in zip(names, place, strict=True)
-        ]
+    def place(self, place: Array) -> Place:
+        """Return a place without the rounding of sums."""
+        x, y, z = short(place, self.size).tolist()
+        return x, y, z
 
     def written(self, place: Place) -> object:
         """Return a place: its name, or its components."""
-        return self._named.get(place) or Call("", self.components(place))
+        return self._named.get(place) or vector(place)
 
     def point(self, body: str, place: Array) -> Call:
         """Return a point of a body that is at a place in the reference posture."""
         if body not in self.held:
             own = Frame(np.array(self.between[body][0]), self.link_axes(body))
-            local = self.short.place(own.relative(Frame(place)).place)
+            local = self.place(own.relative(Frame(place)).place)
             return Call(f"{self.variables[body]}.at", [text_of(one) for one in local])
-        at = self.components(self.short.place(place))
+        at = map(text_of, self.place(place))
         if body == GROUND:
-            return Call("m.ground.at", at)
+            return Call("m.ground.at", [*at])
         return Call("m.at", [self.variables[body], *at])

@@ -83,7 +83,7 @@ def posed(model: Model, posture: Mapping[str, float]) -> Model:
         across = joint.on_parent
         for name, (_, move, axis) in zip(joint.coordinates, MOVES[joint.kind], strict=True):
             along, q = np.eye(3)["xyz".index(axis)], posture.get(name, 0.0)
-            step = Frame(q * along) if move == "slide" else Frame(axes=turned(along, q))
+            step = Frame(q * along) if move == "slide" else Frame(axes=turned(q * along))
             across = across.then(step)
         across = across.then(joint.on_child.inverse())
         near, far = joint.parent, joint.child
@@ -153,7 +153,7 @@ def _closest(model: Model, joint: Joint) -> Frame:
     angle = about_z(known)
     if joint.kind == "screw":
         place[2] = joint.lead * angle / math.tau
-    return Frame(place, turned(np.array([0.0, 0.0, 1.0]), angle))
+    return Frame(place, turned([0.0, 0.0, angle]))
 
 
 def apart(model: Model, joint: Joint | Tie) -> tuple[float, float]:
@@ -284,9 +284,8 @@ def assemble(model: Model) -> None:
             # No motion brings a joint nearer, as of parallel axes that are to meet at an angle.
             step, largest, nudged = 0.01 * np.cos(np.arange(step.size)), 0.01, True
         moved = (step * min(1.0, 0.5 / largest)).reshape(-1, 6)
-        for body, (*speed, x, y, z) in zip(list(model.bodies.values()), moved, strict=True):
-            angle = math.hypot(x, y, z)
-            by = Frame(size * np.array(speed), turned(np.array([x, y, z]) / (angle or 1.0), angle))
+        for body, motion in zip(list(model.bodies.values()), moved, strict=True):
+            by = Frame(size * motion[:3], turned(motion[3:]))
             model.bodies[body.name] = replace(body, frame=by.then(body.frame))
     if left := opened(model):
         name = next((name for name in drawn if name in left), next(iter(left)))

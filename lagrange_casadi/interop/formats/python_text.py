@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import bisect
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -81,35 +80,17 @@ def comment(text: str) -> list[str]:
     return lines.wrap(words)
 
 
-class Short:
-    """Numbers without the rounding of sums, as far as it is of a mechanism's size."""
+def short(values: Array, size: float | None = None) -> Array:
+    """Return numbers without the rounding of sums, as far as it is of a size, else of the largest:
+    those that are short but for it as short ones.
+    """
+    scale = float(np.abs(values).max()) if size is None else size
+    if not scale:
+        return np.zeros_like(values)
+    found = np.round(values, 8 - math.floor(math.log10(scale)))
+    return np.asarray(np.where(np.abs(values - found) <= EXACT * scale, found, values) + 0.0)
 
-    def __init__(self, size: float) -> None:
-        self.size, self._known = size, [0.0]
 
-    def place(self, place: Array) -> Place:
-        """Return a place; its components are those of places before where they are so but for
-        rounding.
-        """
-        x, y, z = (self._component(one) for one in self.values(place, self.size).tolist())
-        return x, y, z
-
-    def _component(self, value: float) -> float:
-        at = bisect.bisect(self._known, abs(value))
-        for one in self._known[max(at - 1, 0) : at + 1]:
-            if abs(abs(value) - one) <= EXACT * self.size:
-                return math.copysign(one, value) if one else 0.0
-        self._known.insert(at, abs(value))
-        return value
-
-    def direction(self, axis: Array, name: str = "") -> Call:
-        """Return a unit vector as a tuple."""
-        return vector(self.values(axis, 1.0).tolist(), name)
-
-    def values(self, values: Array, size: float | None = None) -> Array:
-        """Return numbers, those that are short but for the rounding of sums as short ones."""
-        scale = float(np.abs(values).max()) if size is None else size
-        if not scale:
-            return np.zeros_like(values)
-        short = np.round(values, 8 - math.floor(math.log10(scale)))
-        return np.asarray(np.where(np.abs(values - short) <= EXACT * scale, short, values) + 0.0)
+def direction(axis: Array, name: str = "") -> Call:
+    """Return a unit vector as a tuple."""
+    return vector(short(axis, 1.0).tolist(), name)
