@@ -70,32 +70,8 @@ class _Kind(NamedTuple):
     optional: bool = False
 
 
-class _Asked(NamedTuple):
-    """Arguments that a function asks for: kinds and defaults of those that are ``known`` by name,
-    of ``others`` by name, the ``names`` of those that may be given by their place, and that of the
-    ``rest`` of these.
-    """
-
-    known: Mapping[str | None, tuple[_Kind | None, object]]
-    others: tuple[_Kind | None, object]
-    names: Sequence[str]
-    rest: str | None
-
-    @classmethod
-    def of(cls, function: Callable[..., object], kinds: bool) -> _Asked:
-        """Read them from a signature, or all but the ``kinds``."""
-        each = inspect.signature(function).parameters.values()
-        scope = vars(sys.modules[function.__module__])
-        known: dict[str | None, tuple[_Kind | None, object]] = {None: (None, None)}
-        for one in each:
-            known[one.name] = _said(one.annotation, scope) if kinds else None, one.default
-        stars = {one.kind: one.name for one in each}
-        return cls(
-            known,
-            known[stars.get(inspect.Parameter.VAR_KEYWORD)],
-            [one.name for one in each if one.kind <= inspect.Parameter.POSITIONAL_OR_KEYWORD],
-            stars.get(inspect.Parameter.VAR_POSITIONAL),
-        )
+_Known: TypeAlias = dict[str | None, tuple[_Kind | None, object]]
+"""Kinds and defaults of arguments by name; of None, of which a function has none."""
 
 
 def _looking(function: Callable[_P, _Result], kinds: bool = True) -> Callable[_P, _Result]:
@@ -104,15 +80,26 @@ def _looking(function: Callable[_P, _Result], kinds: bool = True) -> Callable[_P
     """
 
     @functools.cache
-    def asked() -> _Asked:  # a module's names are not all there when it is read
-        return _Asked.of(function, kinds)
+    def asked() -> tuple[_Known, str | None, Sequence[str], str | None]:
+        # A module's names are not all there when it is read.
+        each = inspect.signature(function).parameters.values()
+        scope = vars(sys.modules[function.__module__])
+        known: _Known = {
+            one.name: (_said(one.annotation, scope) if kinds else None, one.default) for one in each
+        }
+        stars = {one.kind: one.name for one in each}
+        names = [one.name for one in each if one.kind <= inspect.Parameter.POSITIONAL_OR_KEYWORD]
+        others, rest = map(
+            stars.get, (inspect.Parameter.VAR_KEYWORD, inspect.Parameter.VAR_POSITIONAL)
+        )
+        return known | {None: (None, None)}, others, names, rest
 
     @functools.wraps(function)
     def called(*given: _P.args, **named: _P.kwargs) -> _Result:
         known, others, names, rest = asked()
 
         def read(name: str | None, value: Any) -> Any:
-            kind, default = known.get(name, others)
+            kind, default = known.get(name) or known[others]
             if kind is None or value is default or (value is None and kind.optional):
                 return value
             found, why = None, ""

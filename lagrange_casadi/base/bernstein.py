@@ -141,17 +141,14 @@ def zeros(c: Array) -> Zeros:
     places, turns = np.zeros((2, n, flat.shape[1]))
     places[:] = np.abs(flat[n]) < np.abs(flat[0])  # the end that is nearer to a zero
     changes = np.diff(flat < 0.0, axis=0).sum(axis=0)
-    for some, inner in ((changes == 1, _no_zeros), (changes > 1, zeros)):
-        chosen = np.flatnonzero(some)
+    for single in (True, False):
+        chosen = np.flatnonzero(changes == 1 if single else changes > 1)
         if chosen.size:
             few = flat[:, chosen]
-            found = _between(few, np.sort(inner(slope(few)).places, axis=0))
+            inner = few[:0] if single else zeros(slope(few)).places
+            found = _between(few, np.sort(inner, axis=0))
             places[:, chosen], turns[: len(found.turns), chosen] = found
     return Zeros(places.reshape(n, *c.shape[1:]), turns.reshape(n, *c.shape[1:]))
-
-
-def _no_zeros(c: Array) -> Zeros:
-    return Zeros(c[:0], c[:0])
 
 
 def _roots(c: Array) -> Zeros:

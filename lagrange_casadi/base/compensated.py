@@ -223,8 +223,6 @@ class Pairs:
 
     def _turning(self, x: Pair, function: Callable[[Operand], Operand], slope: Operand) -> Pair:
         angle = self.reduced(x)
-        if angle.low is None:
-            return Pair(self._rounded(function(angle.high)))
         rough, change = self._rounded(function(angle.high)), self._rounded(slope(angle.high))
         return Pair(*self._sum(rough, self._times(change, angle.low)))
 
