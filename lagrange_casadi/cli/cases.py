@@ -116,11 +116,15 @@ def new(
             notes = [f"left out, as it prints or follows the scene: lines {', '.join(left)}"]
     else:
         from ..interop.formats import case_of
-        from ..interop.formats.standing import Standing
 
-        free = floating if floating else floating is not None
-        stands = Standing(free, posture or {}, contacts or ())
-        text = case_of(source, accept_inertias=accept_inertias, payload=payload, stands=stands)
+        text = case_of(
+            source,
+            accept_inertias=accept_inertias,
+            payload=payload,
+            floating=floating or floating is not None,
+            posture=posture,
+            contacts=contacts or (),
+        )
         files = {"case.py": text.encode()}
         notes = [line[2:] for line in text.splitlines() if line.startswith("# ")]
     if os.path.lexists(folder):

@@ -19,12 +19,12 @@ from ...base.units import Number
 from ...errors import LagrangeCasadiError, ModelFileError, PathError
 from ...model.scene import Scene
 from . import asmt, json_model, mjcf, sdf, urdf
-from .as_case import case_text
+from .as_case import CaseText
 from .checks import checked
 from .missing_drives import driven
 from .of_scene import model_of
-from .record import Model, Payload
-from .standing import Standing
+from .record import Model
+from .standing import free, placed
 
 __all__ = ["FORMATS", "case_of", "read", "save_model"]
 
@@ -81,8 +81,14 @@ def read(
         For what the package does not support, with file, line and element.
     """
     name: dict[str, Any] = {"__name__": "lagrange_casadi_case"}
-    stands = Standing(floating, posture or {}, contacts)
-    text = case_of(path, accept_inertias=accept_inertias, payload=payload, stands=stands)
+    text = case_of(
+        path,
+        accept_inertias=accept_inertias,
+        payload=payload,
+        floating=floating,
+        posture=posture,
+        contacts=contacts,
+    )
     exec(compile(text, f"<{Path(path).name}>", "exec"), name)  # our own text, see as_case
     try:
         scene: Scene = name["scene"]()
@@ -96,19 +102,21 @@ def case_of(
     *,
     accept_inertias: bool = False,
     payload: Sequence[str] = (),
-    stands: Standing | None = None,
+    floating: bool | str = False,
+    posture: Mapping[str, Number] | None = None,
+    contacts: Sequence[str] = (),
 ) -> str:
     """Return the text of a case for a file of another program, as of :func:`read`."""
-    stands = stands or Standing()
-    loads, model = [Payload.of(text) for text in payload], _model(Path(path), bool(stands.floating))
-    if stands.floating and model.file.suffix.lower() in (".json", ".asmt"):
+    model = _model(Path(path), bool(floating))
+    if floating and model.file.suffix.lower() in (".json", ".asmt"):
         raise model.refuse("", "only a URDF, SDF or MJCF has a base that floating= can free")
-    for load in loads:
-        model.load(load)
-    stands.free(model)
+    for text in payload:
+        model.load(text)
+    if isinstance(floating, str):
+        free(model, floating)
     model = checked(model, accept_inertias=accept_inertias)
-    driven(stands.placed(model))
-    return case_text(model)
+    driven(placed(model, posture or {}, contacts))
+    return CaseText(model).text()
 
 
 @public

@@ -57,13 +57,8 @@ NAMES = frozenset(compile(_OWN, "names", "exec").co_names)
 """The names that a case with all features uses by itself, which no variable of a part may have."""
 
 
-def case_text(model: Model) -> str:
-    """Return the text of a case file for a checked model."""
-    return _Case(model).text()
-
-
-class _Case:
-    """The lines of a case under way."""
+class CaseText:
+    """The lines of a case under way, of a checked model."""
 
     def __init__(self, model: Model) -> None:
         gaps = opened(model)
@@ -87,12 +82,12 @@ class _Case:
         }
 
     def text(self) -> str:
-        """Return the whole."""
+        """Return the text of the file."""
         model = self.model
         self.lines += self.places.parameters()
         if (gravity := model.gravity.tolist()) != [0.0, 0.0, -9.81]:
             self.call("m.set_gravity", *vector(gravity).arguments)
-        self.lines += self.places.named()
+        self.lines += [f"{name} = {vector(at)}" for at, name in self.places.named.items()]
         for body in model.bodies.values():
             self.body(body)
         for joint in model.joints.values():

@@ -35,10 +35,11 @@ _SWITCH = {"true": True, "1": True, "false": False, "0": False}
 
 @dataclass(eq=False)
 class Element:
-    """An element of a model's file: its name, line, attributes, text, and what is in it.
+    """An element of a model's file: its name, line, attributes, and what is in it. Its text is an
+    attribute of an empty name.
 
     ``part`` is the name of what it belongs to. ``seen`` is whether a reader took the element,
-    ``taken`` are the attributes that readers took, and an empty name for its text.
+    ``taken`` are the attributes that readers took.
     """
 
     form: ClassVar[str] = "<{}>"
@@ -48,7 +49,6 @@ class Element:
     name: str
     line: int
     given: dict[str, Any] = field(default_factory=dict)
-    pieces: list[str] = field(default_factory=list)
     inside: list[Self] = field(default_factory=list)
     part: str = ""
     seen: bool = False
@@ -115,8 +115,7 @@ class Element:
     @property
     def text(self) -> str:
         """The text in it, without blanks at its ends."""
-        self.taken.add("")
-        return "".join(self.pieces).strip()
+        return str(self.stated("", ""))
 
     def usual(self, name: str, value: object) -> None:
         """Keep for a note that a number is not given, and is what the format says."""
@@ -126,7 +125,7 @@ class Element:
         """Return the number in an attribute; ``usual`` if there is no such attribute."""
         given = self.stated(name, usual)
         if usual and given is usual:
-            self.usual(name, f"{usual:g}")
+            self.usual(what or name, f"{usual:g}")
         return self.model.number(self.at(name), given, what or name)
 
     def triple(self, name: str, usual: object = None, what: str = "") -> Array:
@@ -145,12 +144,7 @@ class Element:
         """Return the number that is the text of an element in it; ``usual`` if that is blank or
         missing.
         """
-        found = self.optional(name)
-        if not (data := found.text):
-            if usual:
-                self.usual(name, f"{usual:g}")
-            return usual
-        return self.model.number(found.where, data, name)
+        return self.optional(name).amount("", usual, name)
 
     def switch(self, name: str, usual: bool) -> bool:
         """Return what an attribute or an element in it switches on or off."""
@@ -167,9 +161,7 @@ class Element:
         """Yield what no reader took of it: the path where it stands, its name, and its part."""
         for key in self.given:
             if key not in (*self.taken, "name") and not key.startswith("xmlns"):
-                yield path, f"{key}=", self.part
-        if "" not in self.taken and self.text:
-            yield path, "text", self.part
+                yield path, f"{key}=" if key else "text", self.part
         for one in self.inside:
             if one.seen:
                 yield from one.left(f"{path}/{one.name}".lstrip("/"))
@@ -222,6 +214,7 @@ def parsed(model: Model, text: str, root: str) -> Element:
     """
     # The text is decoded, whatever encoding it states.
     parser, stack, count = expat.ParserCreate("utf-8"), [Element(model, "", 0)], 0
+    pieces: list[list[str]] = []
 
     def start(name: str, given: dict[str, str]) -> None:
         nonlocal count
@@ -232,19 +225,19 @@ def parsed(model: Model, text: str, root: str) -> Element:
             raise one.refuse("too deep, or too many elements")
         stack[-1].inside.append(one)
         stack.append(one)
+        pieces.append([])
 
     def end(_: str) -> None:
+        if data := "".join(pieces.pop()).strip():
+            stack[-1].given[""] = data
         stack.pop()
-
-    def characters(data: str) -> None:
-        stack[-1].pieces.append(data)
 
     def refuse(*_: object) -> None:
         where = f"line {parser.CurrentLineNumber}"
         raise model.refuse(where, "document types and entities are refused: a model is data")
 
     parser.StartElementHandler, parser.EndElementHandler = start, end
-    parser.CharacterDataHandler = characters
+    parser.CharacterDataHandler = lambda data: pieces[-1].append(data)
     parser.StartDoctypeDeclHandler = parser.EntityDeclHandler = refuse
     parser.buffer_text = True
     try:

@@ -20,7 +20,7 @@ import numpy as np
 
 from ...base.apart import LostError, run_apart
 from ...base.arrays import Array
-from ...errors import MissingPackageError, PathError, shown
+from ...errors import PathError, shown
 from .file_elements import Element, parsed
 from .file_frames import Frame
 from .mujoco_model import compiled
@@ -97,8 +97,6 @@ def read(model: Model, text: str) -> None:
     """
     try:
         found = _compiled(model, _files(model, text))
-    except MissingPackageError as error:
-        raise MissingPackageError(f"{model.file.name}: {error}") from None
     except subprocess.TimeoutExpired:
         raise model.refuse("", f"was not compiled within {LIMITS['seconds']:g} s") from None
     except LostError as error:

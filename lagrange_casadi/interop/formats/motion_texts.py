@@ -116,14 +116,6 @@ def _number(node: ast.expr, values: Sequence[float | None]) -> float | None:
     return None
 
 
-def python(text: str, less: float) -> Call:
-    """Return a law, less a number, as what a case has for it, in the words of ``motion``."""
-    written, value = parsed(text)
-    if value is None:
-        return Call("expression", [f"lambda t: {written}{signed(-less)}"])
-    return Call("polynomial", [of_pi(value - less)])
-
-
 class Motions:
     """Motions of a record as a case counts them: from the reference posture, and those of joints
     that are open as in the file.
@@ -149,10 +141,13 @@ class Motions:
             times, values = law.samples
             return Call("samples", [vector(times), vector(one - less for one in values)])
         try:
-            return python(law.text, less)
+            text, value = parsed(law.text)
         except LawError as error:
             words = f"motion of '{coordinate}': {error}"
             raise self.model.refuse(law.where, words) from None
+        if value is None:
+            return Call("expression", [f"lambda t: {text}{signed(-less)}"])
+        return Call("polynomial", [of_pi(value - less)])
 
     def counted(self, name: str) -> bool:
         """Return whether the turns of a joint are counted from another posture than the reference:

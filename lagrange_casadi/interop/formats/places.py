@@ -22,8 +22,8 @@ from .record import GROUND, Body, Joint, Model
 class Places:
     """Variables and parameters of a case, which has names of its own, and its places by these.
 
-    ``held`` are the bodies that a joint places, ``at`` the places of these joints, ``between`` the
-    two places that each link lies between.
+    ``held`` are the bodies that a joint places, ``at`` the places of these joints, ``named`` the
+    variables of places, ``between`` the two places that each link lies between.
     """
 
     def __init__(self, model: Model, opened: Collection[str], own: Collection[str]) -> None:
@@ -38,7 +38,7 @@ class Places:
             name: self._ends(body, [model.joints[one] for one in self.on[name]])
             for name, body in model.bodies.items()
         }
-        self._named: dict[Place, str] = {}
+        self.named: dict[Place, str] = {}
         self._masses: dict[float, str] = {}
         self._loaded: dict[str, str] = {}
         self.mu = ""
@@ -77,16 +77,12 @@ class Places:
             self.mu = self._parameter("friction")
             yield f'{self.mu} = m.parameter("{self.mu}", 0.6, low=0.0)'
         for joint, place in self.at.items():
-            if place not in self._named and any(place):
-                self._named[place] = self.variable(f"at_{joint}")
+            if place not in self.named and any(place):
+                self.named[place] = self.variable(f"at_{joint}")
 
     def mass(self, body: Body) -> str:
         """Return a body's mass, as a parameter where it is one."""
         return self._loaded.get(body.name) or self._masses.get(body.mass) or text_of(body.mass)
-
-    def named(self) -> Iterator[str]:
-        """Yield lines that name the places of joints."""
-        return (f"{name} = {vector(at)}" for at, name in self._named.items())
 
     def _parameter(self, wanted: str) -> str:
         """Return a name for a parameter, which no part may have."""
@@ -115,7 +111,7 @@ class Places:
 
     def written(self, place: Place) -> object:
         """Return a place: its name, or its components."""
-        return self._named.get(place) or vector(place)
+        return self.named.get(place) or vector(place)
 
     def point(self, body: str, place: Array) -> Call:
         """Return a point of a body that is at a place in the reference posture."""

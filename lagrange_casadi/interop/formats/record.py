@@ -91,11 +91,11 @@ class Body:
     where: str = ""
 
     @classmethod
-    def slender(cls, name: str, mass: float, rod: tuple[Array, Array], where: str = "") -> Body:
+    def slender(cls, name: str, mass: float, rod: tuple[Array, Array]) -> Body:
         """Return a uniform rod between two places."""
         along = rod[1] - rod[0]
         inertia = mass / 12.0 * (along @ along * np.eye(3) - np.outer(along, along))
-        return cls(name, mass, (rod[0] + rod[1]) / 2.0, inertia, rod=rod, where=where)
+        return cls(name, mass, (rod[0] + rod[1]) / 2.0, inertia, rod=rod)
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,33 +147,6 @@ class Spring:
     stiffness: float = 0.0
     rest: float = 0.0
     friction: float = 0.0
-
-
-@dataclass(frozen=True, eq=False)
-class Payload:
-    """A mass [kg] at a place on the axes of a link or frame that the file names [m]."""
-
-    on: str
-    mass: float
-    place: Array
-
-    @classmethod
-    def of(cls, text: str) -> Payload:
-        """Read ``FRAME=MASS`` or ``FRAME=MASS@(X,Y,Z)``; numbers may have units.
-
-        Raises :class:`.DeclarationError` for any other text.
-        """
-        found = re.fullmatch(r"(.+?)=([^@]+)(?:@\(([^,]+),([^,]+),([^,]+)\))?", text)
-        if found is None:
-            raise DeclarationError(
-                f"payload {shown(text)}: expected FRAME=MASS or FRAME=MASS@(X,Y,Z), as in"
-                " tool0=3kg@(0,0,100mm)"
-            )
-        what, place = f"payload '{found[1]}'", [one or "0" for one in found.groups()[2:]]
-        mass = _amount(f"{what}: mass", found[2], "kg")
-        if not mass > 0.0:
-            raise DeclarationError(f"{what}: mass must be positive, got {mass:g} kg")
-        return cls(found[1], mass, np.array([_amount(what, one, "m") for one in place]))
 
 
 def _amount(what: str, text: str, unit: str) -> float:
@@ -390,12 +363,28 @@ class Model:
             self.motors[joint] = self.motors.get(joint, {}) | given
         return True
 
-    def load(self, payload: Payload) -> None:
-        """Add a mass at a link or frame. Raises :class:`.ModelFileError` for an unknown one."""
-        on, frame = self.spot(payload.on)
-        place = self.frame_of(on).then(frame).then(Frame(payload.place))
-        words = f"{payload.on}_payload"
-        name = self.add(Body, words, "", payload.mass, np.zeros(3), None, place, point=True)
+    def load(self, text: str) -> None:
+        """Add a mass at a place on the axes of a link or frame: ``FRAME=MASS`` or
+        ``FRAME=MASS@(X,Y,Z)``; numbers may have units.
+
+        Raises :class:`.DeclarationError` for any other text, :class:`.ModelFileError` for an
+        unknown link or frame.
+        """
+        found = re.fullmatch(r"(.+?)=([^@]+)(?:@\(([^,]+),([^,]+),([^,]+)\))?", text)
+        if found is None:
+            raise DeclarationError(
+                f"payload {shown(text)}: expected FRAME=MASS or FRAME=MASS@(X,Y,Z), as in"
+                " tool0=3kg@(0,0,100mm)"
+            )
+        what, place = f"payload '{found[1]}'", [one or "0" for one in found.groups()[2:]]
+        mass = _amount(f"{what}: mass", found[2], "kg")
+        if not mass > 0.0:
+            raise DeclarationError(f"{what}: mass must be positive, got {mass:g} kg")
+        at = Frame(np.array([_amount(what, one, "m") for one in place]))
+        on, frame = self.spot(found[1])
+        at = self.frame_of(on).then(frame).then(at)
+        words = f"{found[1]}_payload"
+        name = self.add(Body, words, "", mass, np.zeros(3), None, at, point=True)
         self.attach(name, on, "weld", "")
         self.payloads.append(name)
 
