@@ -27,6 +27,28 @@ _ELEMENTS = 16
 _SAME = 1e-9
 """Distance of two nodes, as a share of the length, below which they are one."""
 
+_HEAD = """\
+*HEADING
+{title}
+** SI units, on the axes of the link: x leads from its base to its tip.
+*NODE, NSET={every}"""
+_STEP = """\
+*MATERIAL, NAME=MATERIAL
+** {material}
+*ELASTIC
+{moduli}
+*DENSITY
+{density}
+** The supports carry no load: the loads are in equilibrium.
+*BOUNDARY
+{base}, 1, 3
+{tip}, 2, 3
+{within}, 4
+*STEP
+*STATIC
+** Loads of joints, with inertia and weight as forces of nodes
+*CLOAD"""
+
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(6)
 _FORCES = np.array([_POINTS * (_POINTS - 1) / 2, 1 - _POINTS**2, _POINTS * (_POINTS + 1) / 2])
 """Shape functions of the three nodes of an element at the points of integration."""
@@ -63,18 +85,14 @@ def beam_model(case: LoadCase, _number: int, nodes: Mapping[str, str]) -> Iterat
     every, base, tip, within = (unlike(name, sets) for name in ("NODES", "BASE", "TIP", "WITHIN"))
     # CalculiX holds no node against twisting that bears a moment: one within an element bears none.
     sets |= {base: 0, tip: x.size - 1, within: x.size // 4 * 2 + 1}
-    yield from ("*HEADING", title(case))
-    yield "** SI units, on the axes of the link: x leads from its base to its tip."
-    yield f"*NODE, NSET={every}"
+    yield _HEAD.format(title=title(case), every=every)
     yield from (f"{k}, {listed([at, 0.0, 0.0])}" for k, at in enumerate(x, 1))
     yield from _elements(case.link, beam, x / rod.length_and_density[0])
     named = [(name, k + 1) for name, k in sets.items() if not name.isdecimal()]
     yield from (f"*NSET, NSET={name}\n{number}" for name, number in named)
-    yield from ("*MATERIAL, NAME=MATERIAL", f"** {beam.material.name}", "*ELASTIC")
-    yield from (listed([young, poisson]), "*DENSITY", listed([beam.material.density]))
-    yield "** The supports carry no load: the loads are in equilibrium."
-    yield from ("*BOUNDARY", f"{base}, 1, 3", f"{tip}, 2, 3", f"{within}, 4", "*STEP", "*STATIC")
-    yield from ("** Loads of joints, with inertia and weight as forces of nodes", "*CLOAD")
+    moduli, density = listed([young, poisson]), listed([beam.material.density])
+    words = {"material": beam.material.name, "moduli": moduli, "density": density}
+    yield _STEP.format(**words, base=base, tip=tip, within=within)
     for number, row in enumerate(loads.tolist(), 1):
         yield from (f"{number}, {k}, {value:.12g}" for k, value in enumerate(row, 1) if value)
     yield from ("*NODE FILE", "U", "*EL FILE", "S", "*END STEP")
