@@ -103,10 +103,8 @@ def _given(description: Description) -> Iterable[str]:
 
 def _put(c: Contract, name: str, value: str) -> Iterable[str]:
     """Statements that give an input a double; in single precision also what that leaves of it."""
-    whole, *rests = c.parts_of(name)
-    yield f"inputs->{whole} = ({c.prefix}_real) {value};"
-    for rest in rests:
-        yield f"inputs->{rest} = ({c.prefix}_real) ({value} - (double) inputs->{whole});"
+    for member, part in zip(c.parts_of(name), c.split(value), strict=False):  # rates have no rest
+        yield f"inputs->{member} = {part};"
 
 
 def _reached(description: Description) -> str:

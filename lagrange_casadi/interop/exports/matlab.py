@@ -8,7 +8,7 @@ from ...engine.codegen.printer import literal
 from ..portable.contract import Contract, Member
 from ..portable.naming import taken_words
 from ..portable.source import Source
-from ..portable.text import listed, octave, octave_printed, template
+from ..portable.text import listed, octave, template
 
 _RESTS = """
    Numbers are doubles here: what single precision would round off a coordinate or a time is kept,
@@ -105,7 +105,7 @@ def _more(c: Contract, output: Member) -> Iterable[str]:
         first = c.settings[0]
         yield f"parameters = struct('{first.name}', 1.01*{literal('double')(first.default)});"
         yield f"other = {c.prefix}_mex({c.prefix}_mex('motion', t, parameters), parameters);"
-        unit = octave_printed(output.unit)
+        unit = octave(output.unit).replace("\\", "\\\\").replace("%", "%%")  # in a format
         yield (
             f"fprintf('{output.name} changes by at most %g {unit} where {first.name} is 1 %%"
             " larger\\n', ..."

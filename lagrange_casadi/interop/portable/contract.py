@@ -272,23 +272,17 @@ def _timed(program: Program) -> bool:
 
 def _setting(key: str, parameter: ParameterNumbers) -> Setting:
     low, high = parameter.low, parameter.high
-    within = f"{_bracket(low, '[', '(')}{low:.6g}, {high:.6g}{_bracket(high, ']', ')')}"
-    unit = parameter.unit
-    default = parameter.value
+    begin, end = "[" if math.isfinite(low) else "(", "]" if math.isfinite(high) else ")"
     return Setting(
         name="",
         source=key,
-        unit=unit,
+        unit=parameter.unit,
         meaning=f"parameter {key}",
-        range=f"in {within}; default {default:.6g}",
-        default=default,
+        range=f"in {begin}{low:.6g}, {high:.6g}{end}; default {parameter.value:.6g}",
+        default=parameter.value,
         low=low,
         high=high,
     )
-
-
-def _bracket(value: float, closed: str, opened: str) -> str:
-    return closed if math.isfinite(value) else opened
 
 
 def _inputs(program: Program, precision: Precision, timed: bool) -> Iterator[Member]:

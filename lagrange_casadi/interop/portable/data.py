@@ -21,25 +21,20 @@ LARGEST: dict[Precision, int] = {"double": 16_000_000, "single": 64_000}
 _LINE = 6
 
 
-def table_bytes(exported: ExportedProgram) -> dict[str, int]:
-    """The size of each table of numbers, by what it is."""
-    size = 4 if exported.precision == "single" else 8
-    found = {}
+def check_size(exported: ExportedProgram, limit: int) -> None:
+    """Raise :class:`SizeError` where a table is larger than ``limit`` bytes."""
     called = {
         inner.name(): lookup(inner)
         for function in exported.functions.values()
         for inner in function.find_functions()
     }
-    if curves := sum(table.numbers.size for table in called.values() if table is not None):
-        found["what curves and motions by samples look up"] = size * curves
-    if exported.cycle is not None:
-        found["the table of the cycle"] = exported.cycle.coefficients.size * size
-    return found
-
-
-def check_size(exported: ExportedProgram, limit: int) -> None:
-    """Raise :class:`SizeError` where a table is larger than ``limit`` bytes."""
-    for what, size in table_bytes(exported).items():
+    curves = sum(table.numbers.size for table in called.values() if table is not None)
+    cycle = 0 if exported.cycle is None else exported.cycle.coefficients.size
+    for what, numbers in (
+        ("what curves and motions by samples look up", curves),
+        ("the table of the cycle", cycle),
+    ):
+        size = numbers * (4 if exported.precision == "single" else 8)
         if size > limit:
             raise SizeError(
                 f"{what} takes {size} bytes of constants, and the limit is {limit}: take fewer"

@@ -20,7 +20,7 @@ from .golden import Golden
 from .sections import functions
 from .statements import Statements
 from .statuses import STATUSES
-from .text import comment, indented, printed, template
+from .text import comment, indented, quoted, template
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +76,7 @@ class Source:
         c = self.contract
         return c.words | {
             "name": comment(c.name),
-            "called": printed(c.name),
+            "called": quoted(c.name).replace("%", "%%"),  # in a format of printf's
             "space": " " * (2 * len(c.prefix) + 9),
             "and_parameters": f", const {c.prefix}_parameters* parameters" if c.settings else "",
             "and_defaults": ", 0" if c.settings else "",

@@ -28,10 +28,7 @@ the fraction of these.
 
 
 def deepest(source: str) -> int:
-    """Bytes, with 8 for every variable, also where a compiler keeps it in a register.
-
-    Raises ``ValueError`` where calls recur.
-    """
+    """Bytes, with 8 for every variable, also where a compiler keeps it in a register."""
     bodies = {found[1]: found[2] or found[3] or "" for found in _DEFINITION.finditer(source)}
     sizes = {
         name: _FRAME + _SLOT * _kept(sum(_slots(x[2]) for x in _DECLARATION.finditer(body)))
@@ -42,12 +39,10 @@ def deepest(source: str) -> int:
     }
 
     @functools.cache
-    def depth(name: str, above: tuple[str, ...] = ()) -> int:
-        if name in above:
-            raise ValueError(f"{name} calls itself")
-        return sizes[name] + max((depth(other, (*above, name)) for other in calls[name]), default=0)
+    def depth(name: str) -> int:
+        return sizes[name] + max(map(depth, calls[name]), default=0)
 
-    return max(depth(name) for name in bodies)
+    return max(map(depth, bodies))
 
 
 def _kept(slots: int) -> int:

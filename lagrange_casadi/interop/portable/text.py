@@ -37,19 +37,9 @@ def quoted(text: str) -> str:
     )
 
 
-def printed(text: str) -> str:
-    """Text for a format of printf's."""
-    return quoted(text).replace("%", "%%")
-
-
 def octave(text: str) -> str:
     """A user's text between the quotes of a string of MATLAB and Octave."""
     return text.replace("'", "''")
-
-
-def octave_printed(text: str) -> str:
-    """Text for a format of fprintf's."""
-    return octave(text).replace("\\", "\\\\").replace("%", "%%")
 
 
 def markdown(text: str) -> str:
