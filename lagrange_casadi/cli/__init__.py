@@ -10,7 +10,7 @@ import signal
 import sys
 import threading
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from types import FrameType
 from typing import Any
@@ -183,7 +183,9 @@ class _Insistent:
         # What Python ignores, as in a callback of a weak reference, arrives a second later, and is
         # no one's concern.
         self._ignored = sys.unraisablehook
-        sys.unraisablehook = _unless_interrupted(self._ignored)
+        sys.unraisablehook = lambda ignored: (
+            None if issubclass(ignored.exc_type, KeyboardInterrupt) else self._ignored(ignored)
+        )
         caught = (*interrupts(), signal.SIGALRM) if self._able else ()
         self._before = [(number, signal.signal(number, self._interrupt)) for number in caught]
 
@@ -206,22 +208,14 @@ class _Insistent:
             return
         self._noticed.set()
         callers = list(_callers(frame))
+        packages = {one.f_globals.get("__name__", "").partition(".")[0] for one in callers}
         if any(caller.f_code is _Insistent.__exit__.__code__ for caller in callers):
             return  # it has arrived
-        if any(_of_casadi(caller) for caller in callers) and next(self._waits) % _WAITS:
+        if "casadi" in packages and next(self._waits) % _WAITS:
             signal.setitimer(signal.ITIMER_REAL, _MOMENT)
             return
         signal.setitimer(signal.ITIMER_REAL, 1.0)
         raise KeyboardInterrupt
-
-
-def _unless_interrupted(
-    report: Callable[[sys.UnraisableHookArgs], object],
-) -> Callable[[sys.UnraisableHookArgs], object]:
-    """Report exceptions that Python ignores, except interrupts."""
-    return lambda ignored: (
-        None if issubclass(ignored.exc_type, KeyboardInterrupt) else report(ignored)
-    )
 
 
 def _callers(frame: FrameType | None) -> Iterator[FrameType]:
@@ -229,10 +223,6 @@ def _callers(frame: FrameType | None) -> Iterator[FrameType]:
     while frame is not None:
         yield frame
         frame = frame.f_back
-
-
-def _of_casadi(frame: FrameType) -> bool:
-    return bool(frame.f_globals.get("__name__", "").partition(".")[0] == "casadi")
 
 
 def _fail(message: str, status: int) -> int:

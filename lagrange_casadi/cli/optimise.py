@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from ..base.files import check_writable, writing
+from ..base.files import writing
 from ..studies.case import load_case
 from ..studies.optimise import Front, Optimum
 from ..studies.optimise import optimise as search
@@ -66,9 +66,7 @@ def optimise(
     """
     loaded = load_case(case)
     out = target("--out", out, f"{loaded.name}_optimum.h5", HDF5)
-    check_writable(out, hdf5=True)
     figure = target("--figure", figure, f"{loaded.name}_optimum.png", PICTURES)
-    check_writable(figure)
     with executor_at(dask) as executor, bar_of("programs") as bar:
 
         def progress(start: int, objective: float, excess: float) -> None:

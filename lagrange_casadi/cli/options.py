@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, get_args
 import click
 
 from ..base import vocabulary
+from ..base.files import check_writable
 from ..base.numerals import real, whole
 from ..base.space import MOST_THREADS
 from ..errors import DeclarationError
@@ -234,13 +235,14 @@ def ratios(
 
 def target(option: str, given: Path | None, usual: str, endings: Collection[str]) -> Path:
     """The file that an option names, else the ``usual`` one. Raises ``click.UsageError`` for a name
-    that has none of some endings.
+    that has none of some endings, and as :func:`.check_writable`.
     """
     path = given or Path(usual)
     if path.suffix not in endings:
         raise click.UsageError(
             f"{option} {path}: expected a name that ends in {' or '.join(endings)}"
         )
+    check_writable(path, hdf5=endings is HDF5)
     return path
 
 

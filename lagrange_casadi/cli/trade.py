@@ -7,7 +7,7 @@ import math
 from pathlib import Path
 from typing import Any
 
-from ..base.files import check_writable, writing
+from ..base.files import writing
 from ..base.table_writers import aligned
 from ..engine.instants.evaluation_method import EvaluationMethod
 from ..errors import DeclarationError
@@ -49,9 +49,7 @@ def trade(
         raise DeclarationError(f"accuracy: expected a finite number above 0, got {accuracy!r}")
     loaded = load_case(case)
     out = target("--out", out, f"{loaded.name}_trade.json", (".json",))
-    check_writable(out)
     figure = target("--figure", figure, f"{loaded.name}_trade.png", PICTURES)
-    check_writable(figure)
     with bar_of("methods", total=len(METHODS)) as bar:
 
         def progress(method: EvaluationMethod) -> None:
