@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from ...base.arrays import Array
 from .record import Model
@@ -33,21 +35,20 @@ def blocks(
 
     Raises :class:`.ModelFileError` for a block that is too large.
     """
-    of = {name: [name] for rows in equations for name in rows}
-    for rows in equations:
-        first, *others = sorted({id(of[name]): of[name] for name in rows}.values(), key=len)[::-1]
-        for other in others:
-            first += other
-            of |= dict.fromkeys(other, first)
-    place = {name: k for k, name in enumerate(order)}
-    groups: dict[int, list[int]] = {}
+    number = {name: k for k, name in enumerate(order)}
+    both = [(number[next(iter(rows))], number[name]) for rows in equations for name in rows]
+    one, other = np.array(both, int).reshape(-1, 2).T
+    joined = coo_array((np.ones(one.size), (one, other)), (len(order), len(order)))
+    label = connected_components(joined, directed=False)[1].tolist()
+    names, groups = dict[int, list[str]](), dict[int, list[int]]()
+    for name in order:
+        names.setdefault(label[number[name]], []).append(name)
     for k, rows in enumerate(equations):
-        groups.setdefault(id(of[next(iter(rows))]), []).append(k)
-    found = []
-    for group in groups.values():
-        names = sorted(of[next(iter(equations[group[0]]))], key=place.__getitem__)
-        found.append((_matrix(model, [equations[k] for k in group], names), names, group))
-    return found
+        groups.setdefault(label[number[next(iter(rows))]], []).append(k)
+    return [
+        (_matrix(model, [equations[k] for k in group], names[at]), names[at], group)
+        for at, group in groups.items()
+    ]
 
 
 def _matrix(model: Model, equations: Sequence[Rows], names: list[str]) -> Array:
