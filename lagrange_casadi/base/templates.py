@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass
+from functools import cache
 from typing import Any, Generic, TypeVar, cast
 
 import casadi as ca
@@ -30,18 +31,20 @@ def mapped(tree: Any, leaf: Callable[[Any], object]) -> Any:
     if kind is tuple or kind is list:
         return kind([mapped(part, leaf) for part in tree])
     if is_dataclass(kind):
-        return _again(kind, [mapped(part, leaf) for part in _parts(tree)])
+        return _again(kind, [mapped(getattr(tree, name), leaf) for name in _names(tree.__class__)])
     return leaf(tree)
 
 
-def _parts(tree: Any) -> list[Any]:
-    return [getattr(tree, entry.name) for entry in fields(tree)]
+@cache
+def _names(kind: Any) -> tuple[str, ...]:
+    """Return the names of a dataclass's fields."""
+    return tuple([entry.name for entry in fields(kind)])
 
 
-def _again(kind: type[Any], parts: Iterable[object]) -> object:
+def _again(kind: Any, parts: Iterable[object]) -> object:
     """Make a dataclass of parts that were checked when the first of the kind was made."""
     made = object.__new__(kind)
-    vars(made).update(zip((entry.name for entry in fields(kind)), parts, strict=True))
+    vars(made).update(zip(_names(kind), parts, strict=True))
     return made
 
 
@@ -151,5 +154,6 @@ def _plain(tree: Any, leaf: Callable[[object], Json]) -> Json:
     if isinstance(tree, Mapping):
         return {"mapping": [[_plain(part, leaf) for part in item] for item in tree.items()]}
     if is_dataclass(tree) and not isinstance(tree, type):
-        return {kind.__name__: [_plain(part, leaf) for part in _parts(tree)]}
+        parts = [_plain(getattr(tree, name), leaf) for name in _names(tree.__class__)]
+        return {kind.__name__: parts}
     return leaf(tree)

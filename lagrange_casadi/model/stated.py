@@ -148,9 +148,9 @@ class Equation(Graphs):
             slopes=ca.Function("slopes", [places, rates, t, p], [slopes]),
         )
 
-    def touching(self, moved: Callable[[], tuple[Array, ...]]) -> Iterator[Touch]:
+    def touching(self, moved: Callable[[], Array]) -> Iterator[Touch]:
         """The touches with what acts there; if it varies, by the places that entries ``moved``
-        to, (entries, t), the first of a tuple.
+        to, the first rows of what they measure.
         """
         if self.wrenches is None:
             yield from self.touches
@@ -160,15 +160,15 @@ class Equation(Graphs):
         for touch, (along, apart, braking) in zip(self.touches, each, strict=True):
             yield replace(touch, along=along, apart=apart, braking=braking)
 
-    def at(self, places: Array, rates: Array, accelerations: Array, t: Array) -> Array:
-        """The equation over instants and, of a constraint, its derivatives: a row each, from
-        entries (entries, t).
+    def at(self, moved: Array, t: Array) -> Array:
+        """The equation over instants and, of a constraint, its derivatives: a row each, from the
+        places, rates and accelerations of entries, (3, entries, t).
         """
-        return np.asarray(self.values(places, rates, accelerations, t[None], list(self.p)).full())
+        return np.asarray(self.values(*moved, t[None], list(self.p)).full())
 
-    def slopes_at(self, places: Array, rates: Array, t: Array) -> Array:
+    def slopes_at(self, moved: Array, t: Array) -> Array:
         """Derivatives by each entry, (entries, t)."""
-        return np.asarray(self.slopes(places, rates, t[None], list(self.p)).full())
+        return np.asarray(self.slopes(*moved[:2], t[None], list(self.p)).full())
 
 
 @dataclass(frozen=True, eq=False)
@@ -204,9 +204,9 @@ class LoadLaw(Graphs):
             ca.Function("values", given, [numbers]),
         )
 
-    def at(self, places: Array, rates: Array, t: Array) -> Array:
-        """Numbers over instants, a row each, from entries (entries, t)."""
-        return np.asarray(self.values(places, rates, t[None], list(self.p)).full())
+    def at(self, moved: Array, t: Array) -> Array:
+        """Numbers over instants, a row each, from what entries measure, (3, entries, t)."""
+        return np.asarray(self.values(*moved[:2], t[None], list(self.p)).full())
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from ..base.arguments import public
 from ..base.arrays import Array, during
 from ..base.brief import no_attribute
-from ..base.quantities import Kinds, Output, motions_of
+from ..base.quantities import Output, motions_of
 from ..base.tables import Table, table_of
 from ..engine.instants.evaluation_method import Provenance
 from ..errors import DeclarationError, UnknownNameError, shown
@@ -89,11 +89,6 @@ class Histories:
     def table(self) -> Table:
         """Table of quantities: that of planar mechanisms, or that of spatial ones."""
         return table_of(self.description.space)
-
-    @cached_property
-    def _kinds(self) -> Kinds:
-        """Kinds of coordinates, which determine the units of outputs."""
-        return self.description.kinds
 
     @cached_property
     def series(self) -> Mapping[str, Array]:
@@ -354,7 +349,7 @@ class Histories:
         output = self._output(name)
         if output.group not in ("certificate", "holding") and not self._series(output):
             self._of_section(output)
-        return output.unit(self._kinds)
+        return output.unit(self.description.kinds)
 
     def array(self, name: str | Output) -> Array:
         """Return a quantity.

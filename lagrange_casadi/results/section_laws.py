@@ -163,7 +163,9 @@ class SectionLaw(Brief):
             [edge(u, self.slack, side) < load.station[:, None] for side in SIDES]
             for load in self.loads
         ]
-        rows, found = self.basis(u), dict[str, tuple[Array, Array]]()
+        # Mostly no place moves, and one instant's functions serve all.
+        rows = self.basis(u[:1] if (u == u[:1]).all() else u)
+        found = dict[str, tuple[Array, Array]]()
         for force in self.table.sections:
             terms = [*zip(self._terms(force), changes._terms(force), strict=True)]
             gaps = np.asarray(sum(moved.column[..., None] * moved.of(rows) for _, moved in terms))

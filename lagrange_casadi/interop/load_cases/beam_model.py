@@ -18,8 +18,8 @@ from ...base.arrays import Array
 from ...model.beams.beam import Beam
 from ...model.beams.shape import Shape, between
 from ...model.description import BodyNumbers
-from ...results.verification.instant_vectors import Axes, Vector
-from .load_case import LoadCase, listed, nodes_of, on_own_axes, refused, title, turning, unlike
+from ...results.verification.instant_vectors import constant
+from .load_case import LoadCase, listed, nodes_of, on_own_axes, refused, title, unlike
 
 _ELEMENTS = 16
 """Elements of a link, where no load point and no step of the section asks for more."""
@@ -115,19 +115,20 @@ def _mesh(rod: BodyNumbers, beam: Beam, places: Iterable[float]) -> Array:
 
 def _inertia(case: LoadCase, rod: BodyNumbers, x: Array) -> Array:
     """Return forces and moments of nodes (nodes, 6) of weight and inertia."""
-    moved = on_own_axes(*(Vector(*one) for one in (case.acceleration, case.omega, case.alpha)))
+    moved = on_own_axes(*map(constant, (case.acceleration, case.omega, case.alpha)))
     start, stop = x[:-2:2, None], x[2::2, None]
     at, share = (start + stop) / 2 + (stop - start) / 2 * _POINTS, stop - start
     length, density = rod.length_and_density
     ratio, share = at / length, _WEIGHTS * share / (2 * length)
     mass = share * density.at(ratio)
-    force = mass * (Vector(*case.gravity) - moved.change_at(Vector(at, 0.0, 0.0)))
+    change = moved.origin[2] + moved.rotation[2, 0] * at.ravel()
+    force = mass.ravel() * (constant(case.gravity) - change)
     yy, zz, yz = [share * one.at(ratio) for one in rod.slices] or np.zeros((3, *ratio.shape))
-    slices = Axes(Vector(yy + zz, 0.0, 0.0), Vector(0.0, zz, -yz), Vector(0.0, -yz, yy))
+    no = np.zeros_like(yy)
+    slices = np.array([[yy + zz, no, no], [no, zz, -yz], [no, -yz, yy]]).reshape(3, 3, -1)
     loads = np.zeros((x.size, 6))
-    for shapes, first, vector in ((_FORCES, 0, force), (_COUPLES, 3, -turning(moved, slices))):
-        for column, component in enumerate(vector.components, first):
-            along = np.broadcast_to(component, at.shape)
+    for shapes, first, vector in ((_FORCES, 0, force), (_COUPLES, 3, -moved.turning(slices))):
+        for column, along in enumerate(vector.reshape(3, *at.shape), first):
             for node, shape in enumerate(shapes):
                 loads[node : x.size - 2 + node : 2, column] += along @ shape
     return loads

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.arguments import public
+from ...base.arrays import Array
 from ...engine.derive import compile_scene
 from ...errors import CertificateError, DeclarationError, UnknownNameError
 from ...model.description import BodyNumbers, Triple
@@ -20,10 +21,10 @@ from ...model.stated import Stated
 from ...results.solution import Solution
 from ...results.verification.balance import Action, all_actions, forces_needed
 from ...results.verification.certificate import placed_of, reported_of
-from ...results.verification.instant_vectors import NIL, Axes, Scalar, Vector, most, total
+from ...results.verification.instant_vectors import NIL, constant, cross, resolve, size
 from ...results.verification.placing import Moving, Placed
 from ...studies.case import Case, scene_of
-from .load_case import Load, LoadCase, on_own_axes, refused, turning
+from .load_case import Load, LoadCase, on_own_axes, refused
 
 _SLIGHT = 1e-9
 """Share of the largest load below which a peak is rounding, and governs nothing."""
@@ -91,8 +92,8 @@ def link_load_cases(
     loads, body = _loads_on(placed, link), described[link]
     known = _known(solution, link, loads, numbers)
     placing = placed.bodies[link]
-    vectors = placing.change, placing.rate, placing.acceleration, Vector(*declared.gravity)
-    *moved, gravity = map(placing.axes.resolve, vectors)
+    vectors = placing.origin[2], *placing.spin, constant(declared.gravity)
+    *moved, gravity = (resolve(placing.axes, vector) for vector in vectors)
     motion = on_own_axes(*moved)
     residual, largest = _residual(body, motion, gravity, loads, known)
     if numbers is None:
@@ -110,14 +111,14 @@ def link_load_cases(
                 Load(one.name, _at(one.at, i), _at(one.force, i), _at(one.couple, i))
                 for one in loads
             ),
-            acceleration=_at(motion.change, i),
-            omega=_at(motion.rate, i),
-            alpha=_at(motion.acceleration, i),
+            acceleration=_at(motion.origin[2], i),
+            omega=_at(motion.spin[0], i),
+            alpha=_at(motion.spin[1], i),
             gravity=_at(gravity, i),
             mass=body.whole.mass,
             centre=body.whole.centre,
             inertia=body.whole.inertia,
-            residual=_at(residual, i)[:2],
+            residual=(float(residual[0, i]), float(residual[1, i])),
             rod=described[link] if described[link].beam else None,
         )
         if not all(one <= solution.tolerance for one in case.residual):
@@ -156,13 +157,12 @@ def _stated(solution: Solution, link: str, scene: Scene | Case | None) -> Stated
 def _loads_on(placed: Placed, link: str) -> list[Action]:
     """Return loads on a link, on its axes; of one name, those at one place are added up."""
     motion, found = placed.bodies[link], dict[str, Action]()
-    resolve = motion.axes.resolve
     for one in all_actions(placed):
         if not (sign := one.sign_on(link)):
             continue
-        at, number, name = resolve(one.at - motion.at), 1, one.name
-        force, couple = resolve(sign * one.force), resolve(sign * one.couple)
-        while name in found and np.any((found[name].at - at).size):
+        at, number, name = resolve(motion.axes, one.at - motion.at), 1, one.name
+        force, couple = (resolve(motion.axes, sign * acts) for acts in (one.force, one.couple))
+        while name in found and np.any(found[name].at != at):
             number, name = number + 1, f"{one.name}:{number + 1}"
         if name in found:
             force, couple = found[name].force + force, found[name].couple + couple
@@ -185,7 +185,7 @@ def _known(
     solution: Solution, link: str, loads: Sequence[Action], numbers: Sequence[int] | None
 ) -> _Instants:
     """Return the instants at which all loads are known: those of the numbers, or some, must be."""
-    finite = np.isfinite([np.broadcast_to(total(*x.sizes), solution.t.shape) for x in loads])
+    finite = np.isfinite([np.broadcast_to(sum(x.sizes), solution.t.shape) for x in loads])
     known = np.asarray(finite.all(axis=0))
     if known.any() if numbers is None else known[numbers].all():
         return known
@@ -202,25 +202,27 @@ def _known(
 
 
 def _residual(
-    body: BodyNumbers, motion: Moving, gravity: Vector, loads: Sequence[Action], known: _Instants
-) -> tuple[Vector, float]:
+    body: BodyNumbers, motion: Moving, gravity: Array, loads: Sequence[Action], known: _Instants
+) -> tuple[Array, float]:
     """Return the residuals of forces and of moments about the centre, and the largest force."""
     whole = body.whole
-    centre, force, moment = Vector(*whole.centre), NIL, NIL
-    weight = whole.mass * (gravity - motion.change_at(centre))
-    inertia = Action("", "", centre, weight, -turning(motion, Axes.of(whole.inertia)))
+    centre, force, moment = constant(whole.centre), NIL, NIL
+    weight = whole.mass * (gravity - motion.point(whole.centre)[2])
+    inertia = Action("", "", centre, weight, -motion.turning(constant(whole.inertia)))
     for one in (acting := [inertia, *loads]):
         force = force + one.force
-        moment = moment + one.couple + (one.at - centre).cross(one.force)
-    sizes = zip(*((*one.sizes, (one.at - centre).size) for one in acting), strict=True)
-    push, twist, reach = (float(np.broadcast_to(most(x), known.shape)[known].max()) for x in sizes)
+        moment = moment + one.couple + cross(one.at - centre, one.force)
+    sizes = zip(*((*one.sizes, size(one.at - centre)) for one in acting), strict=True)
+    push, twist, reach = (
+        max(float(np.broadcast_to(one, known.shape)[known].max()) for one in x) for x in sizes
+    )
     scale = max(twist, push * max(reach, body.length or 0.0)) or 1.0
-    turns = 0.0 if body.length is None else moment.size / scale
-    return Vector(force.size / (push or 1.0), turns, 0.0), push
+    turns = np.zeros(known.shape) if body.length is None else size(moment) / scale
+    return np.array([size(force) / (push or 1.0), turns]), push
 
 
 def _governing(
-    peaks: Iterable[tuple[str, Scalar, str]], known: _Instants, scales: Mapping[str, float]
+    peaks: Iterable[tuple[str, Array, str]], known: _Instants, scales: Mapping[str, float]
 ) -> dict[int, list[str]]:
     """Return the names of what is largest in size at an instant, by its number; ``scales`` are what
     peaks are compared with, by their units.
@@ -236,7 +238,7 @@ def _governing(
 
 def _peaks(
     solution: Solution, link: str, loads: Sequence[Action]
-) -> Iterator[tuple[str, Scalar, str]]:
+) -> Iterator[tuple[str, Array, str]]:
     """Yield quantities whose peaks govern, over time, with their units."""
     if link in solution.links_with_sections:
         for force in solution.table.forces:
@@ -253,7 +255,7 @@ def _peaks(
                 yield f"{load.name}:{member}", size, unit
 
 
-def _at(vector: Vector, i: int) -> Triple:
+def _at(vector: Array, i: int) -> Triple:
     """Return a vector at an instant, without zeros of a negative sign."""
-    x, y, z = (one[i] if isinstance(one, np.ndarray) else one for one in vector.components)
-    return float(x) + 0.0, float(y) + 0.0, float(z) + 0.0
+    x, y, z = (vector[:, min(i, vector.shape[1] - 1)] + 0.0).tolist()
+    return x, y, z

@@ -12,7 +12,7 @@ from ...base.arrays import Array
 from ...base.brief import Brief
 from ...errors import DeclarationError
 from ...model.description import BodyNumbers, Triple
-from ...results.verification.instant_vectors import GROUND, NIL, Axes, Vector
+from ...results.verification.instant_vectors import GROUND
 from ...results.verification.placing import Moving
 
 _SAME = 1e-9
@@ -61,14 +61,10 @@ class LoadCase(Brief):
     rod: BodyNumbers | None = field(default=None, repr=False, compare=False)
 
 
-def on_own_axes(acceleration: Vector, omega: Vector, alpha: Vector) -> Moving:
+def on_own_axes(acceleration: Array, omega: Array, alpha: Array) -> Moving:
     """Return the motion of a link whose vectors are on its own axes, from its origin."""
-    return Moving(NIL, NIL, acceleration, GROUND, omega, alpha)
-
-
-def turning(motion: Moving, inertia: Axes) -> Vector:
-    """Return the moment that turns what has an inertia about its centre, on the axes of both."""
-    return inertia.turn(motion.acceleration) + motion.rate.cross(inertia.turn(motion.rate))
+    origin = np.multiply.outer([0.0, 0.0, 1.0], acceleration)
+    return Moving.of(origin, GROUND, np.array([omega, alpha]))
 
 
 def title(case: LoadCase) -> str:

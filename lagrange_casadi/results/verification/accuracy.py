@@ -83,12 +83,12 @@ def estimate(
     errors = {output: max(least, factor * error) for output, error in worst.items()}
     # Coefficients of section laws are in no result.
     read = {output: values for output, values in histories.outputs.items() if not output.along}
-    largest_of_unit = by_unit(replace(histories, outputs=read))
+    largest_of_unit, kinds = by_unit(replace(histories, outputs=read)), histories.description.kinds
     for output in errors.keys() & histories.outputs.keys():
         # The last digit is never sure; nor is, of what vanishes, that of the largest of its unit.
         size = most(histories.outputs[output])
         vanishes = size <= 2.0 * errors[output]
-        beside = largest_of_unit.get(histories.unit(output), size) if vanishes else size
+        beside = largest_of_unit.get(output.unit(kinds), size) if vanishes else size
         errors[output] = max(errors[output], unit * beside)
     return errors
 
@@ -110,6 +110,8 @@ def _worst(
             errors[Output("section", link, force)] = most(
                 np.abs(residuals) + 2.0 * ROUNDING["double"] * sizes
             )
+    if not histories.indeterminate:
+        return errors
     return {output: error for output, error in errors.items() if histories.determined(output)}
 
 
@@ -117,7 +119,7 @@ def by_unit(histories: Histories) -> dict[str, float]:
     """The largest size of any output, by unit."""
     found: dict[str, float] = {}
     for output, values in histories.outputs.items():
-        unit = histories.unit(output)
+        unit = output.unit(histories.description.kinds)
         found[unit] = max(found.get(unit, 0.0), most(values))
     return found
 
@@ -158,11 +160,12 @@ def _of_cycle(program: Program, cycle: CycleTable, histories: Histories) -> dict
     rounding = _SUMS * ROUNDING["double"] if cycle.dtype.itemsize == 8 else 2 * ROUNDING["single"]
     missed = cycle.errors * cycle.peaks
     sizes: dict[str, float] = {}
+    units = {output: output.unit(histories.description.kinds) for output in program.outputs}
     for output, k in program.outputs.items():
         reached = max(float(cycle.peaks[k]), most(histories.outputs[output]))
-        sizes[histories.unit(output)] = max(sizes.get(histories.unit(output), 0.0), reached)
+        sizes[units[output]] = max(sizes.get(units[output], 0.0), reached)
     errors = {
-        output: float(missed[k]) + rounding * sizes[histories.unit(output)]
+        output: float(missed[k]) + rounding * sizes[units[output]]
         for output, k in program.outputs.items()
     }
     nothing = {output: np.zeros(1) for output in histories.indeterminate}

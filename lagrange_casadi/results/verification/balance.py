@@ -6,20 +6,22 @@ All are from reported forces. Multipliers act along what stands in their equatio
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property, partial
 
 import numpy as np
 
+from ...base.arrays import Array
 from ...base.quantities import Output
 from ...model.description import Description, DriveNumbers
 from ...model.stated import Equation
 from .closure import Residuals
 from .contacts import actions, sense
-from .instant_vectors import NIL, Axes, Scalar, Vector, less, product, total
+from .instant_vectors import NIL, constant, cross, dot, resolve, size, turn
 from .load_laws import off_laws
-from .placing import Motion, Placed
+from .placing import Placed
 from .unplaced import stacked
 
 
@@ -34,29 +36,26 @@ class Action:
 
     name: str
     body: str
-    at: Vector
-    force: Vector
-    couple: Vector
+    at: Array
+    force: Array
+    couple: Array
     against: str = "ground"
     works: bool = True
 
     @property
-    def moving(self) -> Iterator[tuple[str, bool]]:
-        """The bodies but for the ground, and whether they bear the opposite."""
-        return (
-            (body, opposite)
-            for body, opposite in ((self.body, False), (self.against, True))
-            if body != "ground"
-        )
+    def moving(self) -> Iterator[tuple[str, float]]:
+        """The bodies but for the ground, with 1, or with -1 where they bear the opposite."""
+        ends = (self.body, 1.0), (self.against, -1.0)
+        return ((body, sign) for body, sign in ends if body != "ground")
 
     def sign_on(self, body: str) -> float:
         """Return 1 for the body, -1 for the one that bears the opposite, and 0 for any other."""
-        return 1.0 if body == self.body else -1.0 if body == self.against else 0.0
+        return dict(self.moving).get(body, 0.0)
 
     @cached_property
-    def sizes(self) -> tuple[Scalar, Scalar]:
+    def sizes(self) -> tuple[Array, Array]:
         """The sizes of force and couple."""
-        return self.force.size, self.couple.size
+        return size(self.force), size(self.couple)
 
 
 @dataclass(eq=False)
@@ -68,18 +67,18 @@ class _Sums:
     all, and ``flow`` of powers.
     """
 
-    force: dict[str, Vector] = field(default_factory=dict)
-    moment: dict[str, Vector] = field(default_factory=dict)
-    power: Scalar = 0.0
-    largest: Scalar = 0.0
-    pushes: Scalar = 0.0
-    twists: Scalar = 0.0
-    flow: Scalar = 0.0
+    force: dict[str, Array]
+    moment: dict[str, Array]
+    power: Array
+    largest: Array
+    pushes: Array
+    twists: Array
+    flow: Array
 
-    def bear(self, push: Scalar, twist: Scalar, size: float) -> None:
+    def bear(self, push: Array, twist: Array, size: float) -> None:
         """Take a force and a couple into the sizes; ``size`` is the mechanism's."""
-        self.largest = np.maximum(self.largest, total(push, twist / size))
-        self.pushes, self.twists = total(self.pushes, push), total(self.twists, twist)
+        self.largest = np.maximum(self.largest, push + twist / size)
+        self.pushes, self.twists = self.pushes + push, self.twists + twist
 
 
 def forces_reported(placed: Placed) -> bool:
@@ -112,32 +111,30 @@ def balance(placed: Placed) -> dict[str, list[Residuals]]:
     """The residuals of forces, each with what it is to be compared with."""
     acting = list(all_actions(placed))
     centres = {
-        name: placed.bodies[name].point(Vector(*body.whole.centre))
+        name: placed.bodies[name].point(body.whole.centre)
         for name, body in placed.declared.bodies.items()
     }
     sums = _sums(placed, acting, centres)
     worst, power = np.zeros_like(placed.reported.t), sums.power
-    gravity, size = Vector(*placed.declared.gravity), placed.declared.size
+    gravity, length = constant(placed.declared.gravity), placed.declared.size
     for name, body in placed.declared.bodies.items():
         motion = placed.bodies[name]
-        (_, speed, change) = centres[name]
-        inertia = Axes.of(body.whole.inertia)
+        (_, speed, change), (rate, _) = centres[name], motion.spin
         inertial = body.whole.mass * (change - gravity)
-        spin = motion.axes.turn(inertia.turn(motion.axes.resolve(motion.rate)))
-        gains = motion.axes.turn(inertia.turn(motion.axes.resolve(motion.acceleration)))
-        turning, rate = gains + motion.rate.cross(spin), motion.sizes[2]
-        weight = _weight(placed, name, Vector(*body.whole.centre).size)
-        sums.bear(weight, gains.size + rate * spin.size, size)
-        worst = np.maximum(worst, (sums.force.get(name, NIL) - inertial).size)
+        turning = motion.turning(constant(body.whole.inertia))
+        weight = _weight(placed, name, math.hypot(*body.whole.centre))
+        _, _, rotates, gains = motion.sizes
+        sums.bear(weight, np.max(np.abs(body.whole.inertia)) * (gains + rotates**2), length)
+        worst = np.maximum(worst, size(sums.force[name] - inertial))
         if placed.declared.oriented(name):
-            worst = np.maximum(worst, (sums.moment.get(name, NIL) - turning).size / size)
-        power = power - speed.dot(inertial) - motion.rate.dot(turning)
-        sums.flow = sums.flow + speed.size * weight + rate * turning.size
+            worst = np.maximum(worst, size(sums.moment[name] - turning) / length)
+        power = power - dot(speed, inertial) - dot(rate, turning)
+        sums.flow = sums.flow + size(speed) * weight + rotates * size(turning)
     worst = np.maximum(worst, _unlike(placed))
     turned, fastest, _ = placed.rates
     # Reported digits leave open places, which give arms, and the joints' rates, of which the rates
     # of bodies are sums.
-    largest = sums.largest * (1.0 + placed.reported.coarseness * placed.declared.extent / size)
+    largest = sums.largest * (1.0 + placed.reported.coarseness * placed.declared.extent / length)
     worst = np.maximum(worst, off_laws(placed, float(np.max(largest))))
     scale = max(float(np.max(largest)), placed.reported.least)
     flow = (
@@ -180,7 +177,7 @@ def all_actions(placed: Placed) -> Iterator[Action]:
         for point, sign in zip(load.points, (1.0, -1.0), strict=False):
             # Friction is where the joint's child is, on both.
             place = load.points[0] if load.friction is not None else point
-            at = placed.bodies[place.body].point(Vector(*place.at))[0]
+            at = placed.bodies[place.body].point(place.at)[0]
             yield Action(f"load:{name}", point.body, at, sign * force, sign * couple)
     for name, motor in declared.motors.items():
         yield from _of_rotor(placed, f"drive:{name}", motor)
@@ -192,12 +189,12 @@ def _of_rotor(placed: Placed, name: str, motor: DriveNumbers) -> Iterator[Action
     """Action of a drive's rotor on the bodies of its joint, by its acceleration."""
     joint = placed.declared.joints[motor.coordinate]
     at, near = placed.pins[joint.name][0], placed.bodies[joint.parent.body]
-    rate, change = (f(joint.name) for f in (placed.reported.rate, placed.reported.acceleration))
-    about = near.axes.turn(Vector(*joint.axes[0].direction))
-    taken = motor.reflected * change + motor.spin * about.dot(near.acceleration)
+    _, rate, change = placed.reported.motion(joint.name)
+    about = turn(near.axes, constant(joint.axes[0].direction))
+    taken = motor.reflected * change + motor.spin * dot(about, near.spin[1])
     acts = placed.along(joint.name, joint.axes[0], -taken)
     yield Action(name, joint.child.body, at, *acts, joint.parent.body)
-    turning = change * about + rate * near.rate.cross(about)
+    turning = change * about + rate * cross(near.spin[0], about)
     yield Action(name, joint.parent.body, at, NIL, -motor.spin * turning)
 
 
@@ -215,8 +212,7 @@ def _held(placed: Placed, equation: Equation) -> Iterator[Action]:
             yield Action(name, *part)
     if equation.touches:
         return
-    places, moving, _ = stacked(placed, equation)
-    forces = multiplier * equation.slopes_at(places, moving, reported.t)
+    forces = multiplier * equation.slopes_at(stacked(placed, equation), reported.t)
     axes = {
         axis.coordinate: (joint_name, axis)
         for joint_name, joint in declared.joints.items()
@@ -234,61 +230,57 @@ def _held(placed: Placed, equation: Equation) -> Iterator[Action]:
                 joint.parent.body,
             )
         elif entry.kind == "direction":
-            couple = Vector(0.0, 0.0, force)
+            couple = np.array([0.0 * force, 0.0 * force, force])
             yield Action(name, entry.part, placed.bodies[entry.part].at, NIL, couple)
         else:
-            push = Vector(*(force if entry.kind == x else 0.0 for x in "xyz"))
-            at = placed.bodies[entry.part].point(Vector(*entry.point))[0]
+            push = np.array([force if entry.kind == x else 0.0 * force for x in "xyz"])
+            at = placed.bodies[entry.part].point(entry.point)[0]
             yield Action(name, entry.part, at, push, NIL)
 
 
-def _sums(placed: Placed, acting: Sequence[Action], centres: Mapping[str, Motion]) -> _Sums:
+def _sums(placed: Placed, acting: Sequence[Action], centres: Mapping[str, Array]) -> _Sums:
     """Sums of the actions on the bodies."""
-    found, size = _Sums(), placed.declared.size
+    nothing = np.zeros_like(placed.reported.t)
+    force, moment = ({name: np.zeros((3, nothing.size)) for name in centres} for _ in "fm")
+    found = _Sums(force, moment, *[nothing] * 5)
     for act in acting:
         push, twist = act.sizes
-        for body, opposite in act.moving:
+        for body, sign in act.moving:
             motion = placed.bodies[body]
-            force, moment = found.force.get(body, NIL), found.moment.get(body, NIL)
-            turning = (act.at - centres[body][0]).cross(act.force) + act.couple
-            found.force[body] = force - act.force if opposite else force + act.force
-            found.moment[body] = moment - turning if opposite else moment + turning
-            found.bear(push, twist, size)
+            turning = cross(act.at - centres[body][0], act.force) + act.couple
+            force[body] += sign * act.force
+            moment[body] += sign * turning
+            found.bear(push, twist, placed.declared.size)
             if act.works:
-                speed = motion.speed_at(act.at)
-                power = total(speed.dot(act.force), motion.rate.dot(act.couple))
-                found.power = less(found.power, power) if opposite else total(found.power, power)
-                found.flow = total(
-                    found.flow, total(product(speed.size, push), product(motion.sizes[2], twist))
-                )
+                speed, (rate, _) = motion.speed_at(act.at), motion.spin
+                power = dot(speed, act.force) + dot(rate, act.couple)
+                found.power = found.power + sign * power
+                found.flow = found.flow + size(speed) * push + size(rate) * twist
     return found
 
 
-def _weight(placed: Placed, body: str, reach: float) -> Scalar:
+def _weight(placed: Placed, body: str, reach: float) -> Array:
     """The inertia of a body and its weight [N], none against another: of its origin, of what turns
     about it, and of uniform motion, whose accelerations are rounding of speed^2 / size.
     """
     _, change, rate, acceleration = placed.bodies[body].sizes
-    weight = Vector(*placed.declared.gravity).size + placed.rates[1] ** 2 / placed.declared.size
-    return placed.declared.bodies[body].whole.mass * (
-        change + (rate**2 + acceleration) * reach + weight
-    )
+    weight = math.hypot(*placed.declared.gravity) + placed.rates[1] ** 2 / placed.declared.size
+    inertial = change + (rate**2 + acceleration) * reach + weight
+    return np.asarray(placed.declared.bodies[body].whole.mass * inertial)
 
 
-def _unlike(placed: Placed) -> Scalar:
+def _unlike(placed: Placed) -> Array:
     """Difference between reactions on the joints' own axes and those in ground axes: forces, and
     moments over the size.
     """
-    reported, worst = placed.reported, 0.0
+    reported, worst = placed.reported, np.zeros_like(placed.reported.t)
     for name, joint in placed.declared.joints.items():
         if Output("reaction", name, "fu") in reported.outputs:
-            axes = placed.ends(name)[0].axes.carry(Axes.of(joint.triad))
+            axes = placed.ends(name)[0].axes
             for letter, arm in (("f", 1.0), ("m", placed.declared.size)):
-                there, anchor = (
-                    reported.force("reaction", name, letter, components)
-                    for components in ("xyz", "uvw")
-                )
-                worst = np.maximum(worst, (there - axes.turn(anchor)).size / arm)
+                there, own = (reported.force("reaction", name, letter, x) for x in ("xyz", "uvw"))
+                anchor = turn(constant(joint.triad), own)
+                worst = np.maximum(worst, size(there - turn(axes, anchor)) / arm)
     return worst
 
 
@@ -306,29 +298,27 @@ def _ends(placed: Placed, acting: Sequence[Action], scale: float) -> Residuals:
         inside, twisted = reported.inside(link)
         force, moment, flow = _before(placed, link, acting, law.slack * law.length)
         flow = np.maximum(flow, _weight(placed, link, law.length))
-        worst = np.maximum(worst, (force + inside).size / (1.0 + blurred / law.length))
-        worst = np.maximum(worst, (moment + twisted).size / (declared.size + blurred))
+        worst = np.maximum(worst, size(force + inside) / (1.0 + blurred / law.length))
+        worst = np.maximum(worst, size(moment + twisted) / (declared.size + blurred))
         scale = max(scale, float(np.max(flow)))
     return worst, scale
 
 
 def _before(
     placed: Placed, link: str, acting: Sequence[Action], edge: float
-) -> tuple[Vector, Vector, Scalar]:
+) -> tuple[Array, Array, Array]:
     """The force and the moment about a link's base, in its axes, of all that acts at its base or
     before it; and the largest.
     """
-    motion, force, moment, largest = placed.bodies[link], NIL, NIL, 0.0
+    motion, largest = placed.bodies[link], np.zeros_like(placed.reported.t)
+    force = moment = NIL
     for act in acting:
         if not (sign := act.sign_on(link)):
             continue
         push, twist = act.sizes
-        largest = np.maximum(largest, total(push, twist / placed.declared.size))
+        largest = np.maximum(largest, push + twist / placed.declared.size)
         arm = act.at - motion.at
-        there = motion.axes.x.dot(arm)
-        if not np.any(there <= edge):
-            continue
-        here = np.where(there <= edge, sign, 0.0)
+        here = np.where(dot(motion.axes[0], arm) <= edge, sign, 0.0)
         force = force + here * act.force
-        moment = moment + here * (arm.cross(act.force) + act.couple)
-    return motion.axes.resolve(force), motion.axes.resolve(moment), largest
+        moment = moment + here * (cross(arm, act.force) + act.couple)
+    return resolve(motion.axes, force), resolve(motion.axes, moment), largest

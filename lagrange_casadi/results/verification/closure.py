@@ -4,8 +4,8 @@ they are said to be.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from functools import partial
+from collections.abc import Iterator
+from functools import partial, reduce
 
 import numpy as np
 
@@ -13,57 +13,36 @@ from ...base.arrays import Array
 from ...base.quantities import Output
 from ...model.stated import Equation
 from .contacts import idle
-from .instant_vectors import Scalar, Vector, most
+from .instant_vectors import GROUND, constant, cross, dot, most, resolve, size
 from .placing import Placed
 from .reported import NEARBY
-from .unplaced import joint_residuals, stacked
+from .unplaced import stacked
 
 Residuals = tuple[Array, float]
 """Gaps (t,), and what they are to be compared with."""
 
 
 def closure(placed: Placed) -> list[Residuals]:
-    """The largest gap of places and angles, beside the length of all links; and those of rates,
-    beside the largest there are.
+    """The largest gap of places and angles, beside the length of all links; and those of rates and
+    of accelerations, beside the largest there are. An angle is taken at that length.
     """
-    worst = np.zeros_like(placed.reported.t)
-    for residuals in (_of_joints, _of_angles, _of_poses, _of_equations):
-        for residual in residuals(placed):
-            worst = np.maximum(worst, residual)
-    motions = list(_of_motions(placed))
-    for rotations, (residual, _, _) in motions:
-        worst = np.maximum(worst, residual * placed.declared.size if rotations else residual)
-    return [(worst, placed.declared.size), *_of_rates(placed, motions)]
-
-
-def _of_joints(placed: Placed) -> Iterator[Scalar]:
-    """Residual of a joint: the child's position and direction against the joint's reported
-    motion.
-    """
-    for name, joint in placed.declared.joints.items():
-        (near, far), motion = placed.ends(name), placed.relatives[name]
-        there = near.at + near.axes.turn(Vector(*joint.parent.at) + motion.slide[0])
-        yield (placed.pins[name][0] - there).size
-        if motion.whole:
-            yield near.axes.under(far.axes).off(motion.turned) * placed.declared.size
-
-
-def _of_rates(placed: Placed, motions: Sequence[tuple[bool, Array]]) -> list[Residuals]:
-    """Residuals of velocities, angular velocities, and the changes of both, by joints and
-    motions.
-    """
-    size = placed.declared.size
-    _, fastest, changes = placed.rates
-    residuals = [
-        joint_residuals(placed, name, placed.pins[name]) for name in placed.declared.joints
+    length, (_, *fastest) = placed.declared.size, placed.rates
+    gaps: list[list[Array]] = [[], [], []]
+    for name in placed.closing:
+        points, axes, spins = placed.missed(name)
+        turns = most(axes.reshape(9, -1)), *map(size, spins)
+        for of_order, point, turned in zip(gaps, points, turns, strict=True):
+            of_order += [size(point), turned * length]
+    for rotations, off in _of_motions(placed):
+        for of_order, residual in zip(gaps, off, strict=True):
+            of_order.append(residual * length if rotations else residual)
+    for residuals in (_of_angles, _of_poses, _of_equations):
+        gaps[0] += residuals(placed)
+    nothing = np.zeros_like(placed.reported.t)
+    return [
+        (reduce(np.maximum, of_order, nothing), float(np.max(largest)))
+        for of_order, largest in zip(gaps, (nothing + length, *fastest), strict=True)
     ]
-    largest = (fastest, fastest / size, changes, changes / size)
-    found: list[Residuals] = []
-    for k, one in enumerate(largest):
-        moved = (off[1 + k // 2] for rotations, off in motions if rotations == bool(k % 2))
-        off = most([*(each[k].size for each in residuals), *moved])
-        found.append((np.zeros_like(placed.reported.t) + off, float(np.max(one))))
-    return found
 
 
 def _of_motions(placed: Placed) -> Iterator[tuple[bool, Array]]:
@@ -72,32 +51,32 @@ def _of_motions(placed: Placed) -> Iterator[tuple[bool, Array]]:
 
     Where a law jumps, rounding decides on which side of that an instant is.
     """
-    t, size, (_, *fastest) = placed.reported.t, placed.declared.size, placed.rates
+    t, length, (_, *fastest) = placed.reported.t, placed.declared.size, placed.rates
     for motion in placed.stated.motions:
         (entry,) = motion.entries
         if entry.part in placed.reported.unmeasured:
             continue
         moving, rotations = stacked(placed, motion), placed.is_angle(entry)
-        found = motion.at(*moving, t)
+        found = motion.at(moving, t)
         off = np.abs(found)
         if entry.kind == "direction":
             off[0] = np.abs(2.0 * np.sin(found[0] / 2.0))
         off[0] = np.maximum(off[0] - placed.reported.rounded(moving[0][0]), 0.0)
-        largest = [size, *(float(np.max(one)) for one in fastest)]
+        largest = [length, *(float(np.max(one)) for one in fastest)]
         if any(
-            np.max(residual) * (size if rotations else 1.0) > placed.reported.doubted * one
+            np.max(residual) * (length if rotations else 1.0) > placed.reported.doubted * one
             for residual, one in zip(off, largest, strict=True)
         ):
             blur = NEARBY * placed.reported.rounding * np.max(np.abs(t))
             blurred = np.nansum(
-                [np.abs(motion.at(*moving, t + direction) - found) for direction in (-blur, blur)],
+                [np.abs(motion.at(moving, t + direction) - found) for direction in (-blur, blur)],
                 axis=0,
             )
             off = np.maximum(off - blurred, 0.0)
         yield rotations, off
 
 
-def _of_angles(placed: Placed) -> Iterator[Scalar]:
+def _of_angles(placed: Placed) -> Iterator[Array]:
     """Residual of reported angles against phases that are known more closely; an angle of many
     turns has fewer digits.
     """
@@ -108,7 +87,7 @@ def _of_angles(placed: Placed) -> Iterator[Scalar]:
             yield (np.abs(2.0 * np.sin((angle - phase) / 2.0)) - known) * placed.declared.size
 
 
-def _of_poses(placed: Placed) -> Iterator[Scalar]:
+def _of_poses(placed: Placed) -> Iterator[Array]:
     """Residual of bodies against their reported poses, whose axes must be at right angles.
 
     The y axis of a bar must be in the plane of the bar and the direction that was declared for it.
@@ -116,34 +95,25 @@ def _of_poses(placed: Placed) -> Iterator[Scalar]:
     declared, reported = placed.declared, placed.reported
     for name in declared.bodies:
         body = placed.bodies[name]
-        yield (reported.place(name) - body.at).size
+        yield size(reported.place(name) - body.at)
         if not declared.oriented(name):
             continue
         axes = reported.axes(name)
+        off = most((axes - body.axes).reshape(9, -1))
         if not reported.space:
             known = reported.rounded(reported.outputs[Output("pose", name, "angle")])
-            yield (axes.off(body.axes) - known) * declared.size
+            yield (off - known) * declared.size
             continue
-        x, y, z = axes.x, axes.y, axes.z
-        yield axes.off(body.axes) * declared.size
-        yield (
-            most(
-                [
-                    *(direction.dot(direction) - 1.0 for direction in (x, y, z)),
-                    x.dot(y),
-                    y.dot(z),
-                    z.dot(x),
-                ]
-            )
-            * declared.size
-        )
-        yield (x.cross(y) - z).size * declared.size
+        x, y, z = axes
+        yield off * declared.size
+        yield most([resolve(axes, axis) for axis in axes] - GROUND) * declared.size
+        yield size(cross(x, y) - z) * declared.size
         if name in reported.two_force_links and name in declared.beside:
-            beside = Vector(*declared.beside[name])
-            yield np.where(beside.dot(y) >= 0.0, np.abs(beside.dot(z)), 1.0) * declared.size
+            beside = constant(declared.beside[name])
+            yield np.where(dot(beside, y) >= 0.0, np.abs(dot(beside, z)), 1.0) * declared.size
 
 
-def _of_equations(placed: Placed) -> Iterator[Scalar]:
+def _of_equations(placed: Placed) -> Iterator[Array]:
     """Residuals of users' equations, over their slopes; and of the work of transmissions."""
     for equation in placed.stated.equations:
         yield _missed(placed, equation) * placed.declared.size
@@ -152,12 +122,12 @@ def _of_equations(placed: Placed) -> Iterator[Scalar]:
 
 
 def _missed(placed: Placed, equation: Equation) -> Array:
-    size, t = placed.declared.size, placed.reported.t
-    places, moving, changes = stacked(placed, equation)
+    length, t = placed.declared.size, placed.reported.t
+    moving = stacked(placed, equation)
     units = [
-        1.0 if entry.kind in ("coordinate", "direction") else size for entry in equation.entries
+        1.0 if entry.kind in ("coordinate", "direction") else length for entry in equation.entries
     ]
-    sizes = np.reshape(units, (-1, 1)) + np.abs(moving if equation.row else places)
-    scale = np.sum(np.abs(equation.slopes_at(places, moving, t)) * sizes, axis=0)
-    missed = np.abs(equation.at(places, moving, changes, t)[0])
+    sizes = np.reshape(units, (-1, 1)) + np.abs(moving[1 if equation.row else 0])
+    scale = np.sum(np.abs(equation.slopes_at(moving, t)) * sizes, axis=0)
+    missed = np.abs(equation.at(moving, t)[0])
     return np.asarray(np.divide(missed, scale, out=missed.copy(), where=scale > 0.0))

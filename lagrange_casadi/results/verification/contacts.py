@@ -13,7 +13,7 @@ from ...base.arrays import Array
 from ...base.quantities import Output
 from ...model.description import Description
 from ...model.stated import Touch
-from .instant_vectors import Scalar, Vector, most
+from .instant_vectors import NIL, constant, cross, dot, most, size, turn
 from .placing import Moving
 from .reported import Reported
 
@@ -21,22 +21,22 @@ _REST = 1e-12
 """Fraction of the fastest given motion below which a rate is that of rest."""
 
 
-def sense(touch: Touch, declared: Description, reported: Reported) -> Scalar:
+def sense(touch: Touch, declared: Description, reported: Reported) -> Array | float:
     """The sign with which the first turns on the carrier; where it turns back, that of the instants
     right after.
     """
     if not touch.rotations:
         return 0.0
-    rate = np.sum([sign * reported.rate(name) for sign, name in touch.rotations], axis=0)
-    change = np.sum([sign * reported.acceleration(name) for sign, name in touch.rotations], axis=0)
+    turning = [sign * reported.motion(name) for sign, name in touch.rotations]
+    _, rate, change = np.sum(turning, axis=0)
     driven = (name for name in declared.driven if Output("motion", name) in reported.outputs)
-    fastest = sum((np.abs(reported.rate(name)) for name in driven), np.zeros_like(reported.t))
-    return np.sign(np.where(np.abs(rate) > _REST * fastest, rate, change))
+    fastest = sum((np.abs(reported.motion(name)[1]) for name in driven), np.zeros_like(rate))
+    return np.asarray(np.sign(np.where(np.abs(rate) > _REST * fastest, rate, change)))
 
 
 def actions(
-    touch: Touch, carrier: Moving, multiplier: Array, sense: Scalar
-) -> Iterator[tuple[str, Vector, Vector, Vector]]:
+    touch: Touch, carrier: Moving, multiplier: Array, sense: Array | float
+) -> Iterator[tuple[str, Array, Array, Array]]:
     """Action on each of the two bodies: its name, the place, the force and the couple, in ground
     axes.
 
@@ -46,34 +46,32 @@ def actions(
     arm, lean = touch.loss
     taken = -(sense * arm * np.abs(multiplier) + sense**2 * lean * multiplier)
     shares = ((multiplier, touch.along), (pressed, touch.apart), (taken, touch.braking))
-    force, couple = Vector(0.0, 0.0, 0.0), Vector(0.0, 0.0, 0.0)
-    for size, (pushes, twists) in shares:
-        force, couple = force + size * Vector(*pushes), couple + size * Vector(*twists)
-    reach = Vector(*touch.reach)
-    at, turn = carrier.at + carrier.axes.turn(Vector(*touch.centre)), carrier.axes.turn
-    yield touch.first, at, turn(force), turn(couple)
-    yield touch.second, at + turn(reach), -turn(force), turn(reach.cross(force) - couple)
+    force, couple = (
+        sum((share * np.reshape(of[k], (3, -1)) for share, of in shares), NIL) for k in (0, 1)
+    )
+    reach, axes = constant(touch.reach), carrier.axes
+    at, pushed = carrier.at + turn(axes, constant(touch.centre)), turn(axes, force)
+    yield touch.first, at, pushed, turn(axes, couple)
+    yield touch.second, at + turn(axes, reach), -pushed, turn(axes, cross(reach, force) - couple)
 
 
-def idle(touch: Touch, bodies: Mapping[str, Moving], turned: Scalar, fastest: Scalar) -> Array:
+def idle(touch: Touch, bodies: Mapping[str, Moving], turned: Array, fastest: Array) -> Array:
     """The power of a unit of the multiplier (t,), over the largest that it has along the largest
     rates there are: zero, but for rounding.
 
     Its own bodies may rest while others move: a rack that rolls on a pinion at rest has no speed.
     """
-    one, residuals = np.ones_like(fastest), []
-    sizes: list[Scalar] = []
+    residuals: list[Array] = []
+    sizes: list[Array] = []
     for sign in (1.0, -1.0):
         # What presses apart takes none either.
-        terms: list[Scalar] = []
+        power = np.zeros_like(fastest)
         for name, at, force, couple in actions(
-            replace(touch, slack=0.0), bodies[touch.carrier], sign * one, 0.0
+            replace(touch, slack=0.0), bodies[touch.carrier], np.array([sign]), 0.0
         ):
             body = bodies[name]
-            moves = body.speed, body.rate.cross(at - body.at)
-            for effort, rate in ((force, moves[0]), (force, moves[1]), (couple, body.rate)):
-                terms += [a * b for a, b in zip(effort.components, rate.components, strict=True)]
-            sizes += [force.size * fastest, couple.size * turned]
-        residuals.append(sum(terms, np.zeros_like(one)))
-    residual, size = most(residuals), float(np.max(most(sizes)))
-    return np.asarray(residual / size if size > 0.0 else residual)
+            power += dot(force, body.speed_at(at)) + dot(couple, body.spin[0])
+            sizes += [size(force) * fastest, size(couple) * turned]
+        residuals.append(power)
+    residual, largest = most(residuals), float(np.max(most(sizes)))
+    return residual / largest if largest > 0.0 else residual

@@ -12,7 +12,7 @@ from ...base.arrays import Array
 from ...base.quantities import Output
 from ...model.description import JointNumbers, LoadNumbers
 from ..vector_sizes import most
-from .instant_vectors import Axes, Scalar, Vector
+from .instant_vectors import carry, constant, resolve, size
 from .placing import Placed
 from .reported import Reported
 
@@ -23,7 +23,7 @@ rate may have either sign.
 
 _BESIDE = {"slide": "turn", "turn": "slide"}
 
-Pressing = Callable[[Array], Scalar]
+Pressing = Callable[[Array], Array | float]
 """Factor of mu, for signs of the rate."""
 
 
@@ -42,7 +42,7 @@ def friction_residuals(placed: Placed) -> Array | None:
 
 def _sliding(
     placed: Placed,
-) -> Iterator[tuple[str, LoadNumbers, str, Array, Vector | None, bool]]:
+) -> Iterator[tuple[str, LoadNumbers, str, Array, Array | None, bool]]:
     """Each friction whose rate is known: its name, its load and its joint, that rate, the vector of
     which it is the size in a spherical joint, and whether it is of an angle.
     """
@@ -52,8 +52,8 @@ def _sliding(
         rate = reported.outputs.get(Output("motion", load.coordinate, "rate"))
         if declared.joints[joint].kind == "spherical":
             near, far = placed.ends(joint)
-            spin = far.rate - near.rate
-            rate = np.broadcast_to(spin.size, reported.t.shape)
+            spin = far.spin[0] - near.spin[0]
+            rate = np.broadcast_to(size(spin), reported.t.shape)
         if rate is not None:
             yield name, load, joint, rate, spin, rotates
 
@@ -135,15 +135,15 @@ def _of_laws(placed: Placed) -> Array | None:
     return worst
 
 
-def _aside(reported: Reported, name: str, value: Array, spin: Vector) -> Scalar:
+def _aside(reported: Reported, name: str, value: Array, spin: Array) -> Array:
     """Residual of a spherical joint's friction couple against one of that size about the axis of
     turning.
     """
     if not all(Output("load", name, member) in reported.outputs for member in ("mx", "my", "mz")):
-        return 0.0
-    size = np.broadcast_to(spin.size, value.shape)
-    each = np.divide(value, size, out=np.zeros_like(value), where=size > 0.0)
-    return (reported.force("load", name, "m") - each * spin).size
+        return np.zeros_like(value)
+    rate = np.broadcast_to(size(spin), value.shape)
+    each = np.divide(value, rate, out=np.zeros_like(value), where=rate > 0.0)
+    return size(reported.force("load", name, "m") - each * spin)
 
 
 def _quick(placed: Placed, coordinate: str, rotates: bool) -> float:
@@ -181,22 +181,22 @@ def _pressing(placed: Placed, name: str, numbers: Mapping[str, float], rotates: 
     joint, reported = placed.declared.joints[name], placed.reported
     if "coulomb" in numbers:
         return lambda _: 1.0
-    axes = placed.ends(name)[0].axes.carry(Axes.of(joint.triad))
-    force, moment = (axes.resolve(reported.force("reaction", name, letter)) for letter in "fm")
+    axes = carry(placed.ends(name)[0].axes, constant(joint.triad))
+    force, moment = (resolve(axes, reported.force("reaction", name, letter)) for letter in "fm")
     radius = numbers.get("radius", 0.0)
     if joint.kind == "screw" and "mu" in numbers:
-        return _thread(joint, numbers, force.x)
+        return _thread(joint, numbers, force[0])
     if joint.kind == "spherical":
-        return lambda _: radius * force.size
-    arm = numbers.get("length", np.inf)
-    halves = Vector(0.0, force.y / 2, force.z / 2), Vector(0.0, moment.z / arm, -(moment.y / arm))
-    size = (halves[0] + halves[1]).size + (halves[0] - halves[1]).size
+        return lambda _: radius * size(force)
+    (along, *across), (about, y, z) = force, moment
+    halves, turned = np.array(across) / 2, np.array([z, -y]) / numbers.get("length", np.inf)
+    pressed = np.hypot(*(halves + turned)) + np.hypot(*(halves - turned))
     if joint.kind == "revolute":
-        size = size + np.abs(force.x)
+        pressed = pressed + np.abs(along)
     elif joint.kind == "prismatic" and radius:
-        size = size + np.abs(moment.x) / radius
-    size = size * (radius if rotates else 1.0)
-    return lambda _: size
+        pressed = pressed + np.abs(about) / radius
+    pressed = pressed * (radius if rotates else 1.0)
+    return lambda _: pressed
 
 
 def _thread(joint: JointNumbers, numbers: Mapping[str, float], force: Array) -> Pressing:

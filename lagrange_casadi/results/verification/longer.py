@@ -10,8 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import casadi as ca
 import numpy as np
@@ -83,8 +82,7 @@ def missed(
     return picked(gaps), picked(map(_real, columns))
 
 
-@dataclass(frozen=True, eq=False)
-class _Number:
+class _Number(NamedTuple):
     """A longer number, (n,) or (sides, n), and the double (sides, n) that decides."""
 
     exact: Any

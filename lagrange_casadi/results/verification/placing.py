@@ -7,107 +7,123 @@ it is reported (:mod:`.unplaced`).
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+import numpy.typing as npt
 
 from ...base.arrays import Array
 from ...base.quantities import Output
 from ...model.description import AxisNumbers, Description, JointNumbers, LoadNumbers
 from ...model.stated import Entry, Stated
-from .instant_vectors import GROUND, NIL, Axes, Scalar, Vector, most
+from .instant_vectors import (
+    GROUND,
+    NIL,
+    about,
+    carry,
+    constant,
+    cross,
+    dot,
+    most,
+    resolve,
+    size,
+    turn,
+)
 from .reported import Reported
 
-Motion = tuple[Vector, Vector, Vector]
-"""A vector over time, its rate, and its acceleration."""
+NO_SLIDE = np.zeros((3, 3, 1))
+"""The motion of a point that does not move."""
 
 
 @dataclass(frozen=True, eq=False)
 class Moving:
-    """Place of a body's origin, the directions of its axes, and both their derivatives, in ground
-    axes.
+    """Motion of a body: of its origin, (3, 3, t), and of the directions of its axes, (3, 3, 3, t):
+    their places, rates and accelerations; and its angular velocity and acceleration, (2, 3, t).
     """
 
-    at: Vector
-    speed: Vector
-    change: Vector
-    axes: Axes
-    rate: Vector
-    acceleration: Vector
+    origin: Array
+    rotation: Array
+    spin: Array
 
     @classmethod
-    def holding(
-        cls, at: Motion, point: Vector, axes: Axes, rate: Vector, acceleration: Vector
-    ) -> Moving:
-        """The motion of a body that turns as said and whose ``point`` has the given place, velocity
-        and acceleration.
+    def of(cls, origin: Array, axes: Array, spin: Array) -> Moving:
+        """The motion of a body by its axes and its angular velocity and acceleration."""
+        (rate, acceleration), directions = spin[:, :, None], axes.swapaxes(0, 1)
+        moves = cross(rate, directions)
+        changes = cross(acceleration, directions) + cross(rate, moves)
+        rotation = np.array(np.broadcast_arrays(directions, moves, changes))
+        return cls(origin, rotation.swapaxes(1, 2), spin)
+
+    def holding(self, point: npt.ArrayLike, motion: Array, slide: Array = NO_SLIDE) -> Moving:
+        """The motion of a body that turns like this, and whose point, which slides, moves as
+        said.
         """
-        anchor = cls(NIL, NIL, NIL, axes, rate, acceleration).point(point)
-        return cls(
-            at[0] - anchor[0], at[1] - anchor[1], at[2] - anchor[2], axes, rate, acceleration
-        )
+        return replace(self, origin=motion + self.origin - self.point(point, slide))
 
-    @classmethod
-    def directionless(cls, at: Motion, point: Vector) -> Moving:
-        """The motion of a body without a direction whose ``point`` moves as said."""
-        return cls.holding(at, point, GROUND, NIL, NIL)
+    @property
+    def at(self) -> Array:
+        """The place of the origin."""
+        return np.asarray(self.origin[0])
 
-    def point(self, point: Vector) -> Motion:
-        """Place, velocity and acceleration of the body's point."""
-        arm = self.axes.turn(point)
-        moves = self.rate.cross(arm)
-        return (
-            self.at + arm,
-            self.speed + moves,
-            self.change + self.acceleration.cross(arm) + self.rate.cross(moves),
-        )
-
-    def under(self, place: Vector) -> Vector:
-        """The body's point at a place."""
-        return self.axes.resolve(place - self.at)
-
-    def speed_at(self, place: Vector) -> Vector:
-        """The velocity of the body's point at a place."""
-        return self.speed + self.rate.cross(place - self.at)
-
-    def change_at(self, place: Vector) -> Vector:
-        """The acceleration of the body's point at a place."""
-        arm = place - self.at
-        return self.change + self.acceleration.cross(arm) + self.rate.cross(self.rate.cross(arm))
+    @property
+    def axes(self) -> Array:
+        """The directions of the axes."""
+        return np.asarray(self.rotation[0])
 
     @cached_property
-    def sizes(self) -> tuple[Scalar, Scalar, Scalar, Scalar]:
+    def sizes(self) -> tuple[Array, Array, Array, Array]:
         """The sizes of speed, change, rate and acceleration."""
-        return self.speed.size, self.change.size, self.rate.size, self.acceleration.size
+        speed, change, rate, acceleration = map(size, (*self.origin[1:], *self.spin))
+        return speed, change, rate, acceleration
+
+    def point(self, point: npt.ArrayLike, slide: Array = NO_SLIDE) -> Array:
+        """The motion of the body's point, (3, 3, t), which slides on the body's axes."""
+        arm = np.einsum("okit,k->oit", self.rotation, np.asarray(point, float))
+        found = np.asarray(self.origin + arm)
+        if not slide.any():
+            return found
+        (place, moves, changes), (axes, rates, accelerations) = slide, self.rotation
+        speed = turn(axes, moves) + turn(rates, place)
+        change = turn(axes, changes) + 2.0 * turn(rates, moves) + turn(accelerations, place)
+        return np.asarray(found + np.array([turn(axes, place), speed, change]))
+
+    def speed_at(self, place: Array) -> Array:
+        """The velocity of the body's point at a place."""
+        return np.asarray(self.origin[1] + cross(self.spin[0], place - self.at))
+
+    def turning(self, inertia: Array) -> Array:
+        """The moment that turns what has an inertia about its centre, on the body's axes."""
+        rate, acceleration = (resolve(self.axes, one) for one in self.spin)
+        return turn(self.axes, turn(inertia, acceleration) + cross(rate, turn(inertia, rate)))
 
 
-AT_REST = Moving(NIL, NIL, NIL, GROUND, NIL, NIL)
+AT_REST = Moving.of(NO_SLIDE, GROUND, NO_SLIDE[1:])
 """Motion of what lies along the ground's axes, at its origin."""
 
 
 @dataclass(frozen=True, eq=False)
 class Relative:
-    """Motion of a joint's child against its parent, in the parent's axes: its point by a ``slide``,
-    and its rotation ``turned``.
+    """Motion of a joint's child against its parent, in the parent's axes: of its point by a
+    ``slide`` (3, 3, t), its axes, and its angular velocity and acceleration ``spin`` (2, 3, t).
 
     ``about`` are the directions of its turns at the moment, by coordinate. ``whole`` says whether
     all of its turning is known.
     """
 
-    slide: Motion
-    turned: Axes
-    rate: Vector
-    acceleration: Vector
-    about: Mapping[str, Vector]
+    slide: Array
+    axes: Array
+    spin: Array
+    about: Mapping[str, Array]
     whole: bool
 
 
 @dataclass(frozen=True, eq=False)
 class Placed:
     """A mechanism as it was declared in numbers, and what was ``stated`` of it as expressions, its
-    results, how each of its joints moves, and the bodies that are placed.
+    results, how each of its joints moves, the bodies that are placed, and the joints that place
+    none.
     """
 
     declared: Description
@@ -115,24 +131,25 @@ class Placed:
     reported: Reported
     relatives: Mapping[str, Relative]
     bodies: Mapping[str, Moving]
+    closing: Collection[str]
 
     def ends(self, joint: str) -> tuple[Moving, Moving]:
         """The motions of a joint's parent and child."""
         numbers = self.declared.joints[joint]
         return self.bodies[numbers.parent.body], self.bodies[numbers.child.body]
 
-    def pin(self, joint: str) -> Motion:
+    def pin(self, joint: str) -> Array:
         """Motion of a joint's point on its child."""
         child = self.declared.joints[joint].child
-        return self.bodies[child.body].point(Vector(*child.at))
+        return self.bodies[child.body].point(child.at)
 
     @cached_property
-    def pins(self) -> Mapping[str, Motion]:
+    def pins(self) -> Mapping[str, Array]:
         """Motions of all joints' points on their children."""
         return {name: self.pin(name) for name in self.declared.joints}
 
     @cached_property
-    def rates(self) -> tuple[Scalar, Scalar, Scalar]:
+    def rates(self) -> tuple[Array, Array, Array]:
         """The largest rate of turning at each instant, of joints too; and a speed and an
         acceleration that none exceeds.
 
@@ -140,15 +157,14 @@ class Placed:
         """
         reported, declared = self.reported, self.declared
         angles = [
-            name
+            reported.motion(name)
             for name, kind in declared.coordinates.items()
             if kind == "angle" and name not in reported.unmeasured
         ]
-        speeds, changes, turning, gains = zip(
-            *(body.sizes for body in self.bodies.values()), strict=True
-        )
-        turned = most([*turning, *map(reported.rate, angles)])
-        gained = most([*gains, *map(reported.acceleration, angles)])
+        sizes = (np.broadcast_arrays(reported.t, *body.sizes) for body in self.bodies.values())
+        _, speeds, changes, turning, gains = zip(*sizes, strict=True)
+        turned = most([*turning, *(rate for _, rate, _ in angles)])
+        gained = most([*gains, *(change for _, _, change in angles)])
         fastest = most(speeds) + turned * declared.extent
         changed = most(changes) + (gained + turned**2) * declared.extent
         return turned, fastest, np.maximum(changed, fastest**2 / declared.size)
@@ -160,19 +176,37 @@ class Placed:
             if load.friction is not None:
                 yield name, load, load.coordinate.partition(":")[0]
 
-    def along(self, joint: str, axis: AxisNumbers, effort: Array) -> tuple[Vector, Vector]:
+    def along(self, joint: str, axis: AxisNumbers, effort: Array) -> tuple[Array, Array]:
         """The force and the couple of an effort along an axis of a joint, on its child at the
         joint's point.
 
         It does no work along other coordinates: along a slide it is a force, about one of several
         axes a couple at right angles to the other axes.
         """
-        near = self.ends(joint)[0]
+        axes = self.ends(joint)[0].axes
         if axis.kind == "slide":
-            return effort * near.axes.turn(Vector(*axis.direction)), NIL
+            return effort * turn(axes, constant(axis.direction)), NIL
         about = self.relatives[joint].about
-        rotations = [near.axes.turn(direction) for direction in about.values()]
-        return NIL, effort * _reciprocal(rotations, [*about].index(axis.coordinate))
+        turns = [turn(axes, direction) for direction in about.values()]
+        number = [*about].index(axis.coordinate)
+        first, *others = turns[number:] + turns[:number]
+        if len(others) < 2:
+            return NIL, effort * first
+        across = cross(*others)
+        with np.errstate(all="ignore"):
+            return NIL, effort / dot(first, across) * across
+
+    def missed(self, joint: str) -> tuple[Array, Array, Array]:
+        """Residuals of a joint against its reported motion: of its point's motion, (3, 3, t), of
+        its child's axes, (3, 3, t), and of their angular velocity and acceleration, (2, 3, t); nil
+        where it is not known how the joint turns.
+        """
+        (near, far), motion = self.ends(joint), self.relatives[joint]
+        there = near.point(self.declared.joints[joint].parent.at, motion.slide)
+        if not motion.whole:
+            return self.pin(joint) - there, 0.0 * GROUND, np.zeros((2, 3, self.reported.t.size))
+        axes, spin = _turned(motion, near)
+        return self.pin(joint) - there, far.axes - axes, far.spin - spin
 
     def is_angle(self, entry: Entry) -> bool:
         """Return whether an entry of an equation is an angle."""
@@ -180,24 +214,15 @@ class Placed:
             entry.kind == "coordinate" and self.declared.coordinates[entry.part] == "angle"
         )
 
-    def measured(self, entry: Entry) -> tuple[Scalar, Scalar, Scalar]:
-        """An entry of an equation, its rate and its acceleration."""
-        reported = self.reported
+    def measured(self, entry: Entry) -> Array:
+        """An entry of an equation, its rate and its acceleration, (3, t)."""
         if entry.kind == "coordinate":
-            return (
-                reported.value(entry.part),
-                reported.rate(entry.part),
-                reported.acceleration(entry.part),
-            )
+            return self.reported.motion(entry.part)
         body = self.bodies[entry.part]
         if entry.kind == "direction":
-            return (
-                reported.outputs[Output("pose", entry.part, "angle")],
-                body.rate.z,
-                body.acceleration.z,
-            )
-        place, speed, change = body.point(Vector(*entry.point))
-        return getattr(place, entry.kind), getattr(speed, entry.kind), getattr(change, entry.kind)
+            angle = self.reported.outputs[Output("pose", entry.part, "angle")]
+            return np.array(np.broadcast_arrays(angle, *(vector[2] for vector in body.spin)))
+        return body.point(entry.point)[:, "xyz".index(entry.kind)]
 
 
 def place(declared: Description, stated: Stated, reported: Reported) -> Placed:
@@ -206,22 +231,18 @@ def place(declared: Description, stated: Stated, reported: Reported) -> Placed:
         name: _relative(declared, reported, joint) for name, joint in declared.joints.items()
     }
     bodies = {"ground": AT_REST}
-    waiting, moved = dict(declared.joints), True
-    while waiting and moved:
-        moved = False
+    waiting = dict(declared.joints)
+    for _ in declared.joints:
         for name, joint in list(waiting.items()):
             parent, child = joint.parent.body, joint.child.body
             if (parent in bodies) == (child in bodies):
                 continue
-            outward = parent in bodies
-            found = (_outward if outward else _inward)(
-                declared, joint, relatives[name], bodies[parent if outward else child]
-            )
-            if found is not None:
-                bodies[child if outward else parent] = found
+            known, sought = (parent, child) if parent in bodies else (child, parent)
+            if relatives[name].whole or not declared.oriented(sought):
+                carried = _outward if known == parent else _inward
+                bodies[sought] = carried(joint, relatives[name], bodies[known])
                 del waiting[name]
-                moved = True
-    return Placed(declared, stated, reported, relatives, bodies)
+    return Placed(declared, stated, reported, relatives, bodies, [*waiting])
 
 
 def _relative(declared: Description, reported: Reported, joint: JointNumbers) -> Relative:
@@ -229,84 +250,49 @@ def _relative(declared: Description, reported: Reported, joint: JointNumbers) ->
 
     A screw slides by its turns too.
     """
-    slide, speed, change, turned, rate, acceleration = NIL, NIL, NIL, GROUND, NIL, NIL
-    about: dict[str, Vector] = {}
+    slide, turned, spin, directions = NO_SLIDE, GROUND, NO_SLIDE[1:], dict[str, Array]()
     for axis in joint.axes:
-        if axis.coordinate in reported.unmeasured:
+        if (name := axis.coordinate) in reported.unmeasured:
             continue
-        direction, name = Vector(*axis.direction), axis.coordinate
-        moves, gains = reported.rate(name), reported.acceleration(name)
-        along = direction if axis.kind == "slide" else joint.pitch * direction
-        if any(along.components):
-            slide = slide + reported.value(name) * along
-            speed = speed + moves * along
-            change = change + gains * along
-        if axis.kind == "slide":
-            continue
-        about[name] = turned.turn(direction)
-        # Each turn is carried by those before it.
-        acceleration = acceleration + gains * about[name] + rate.cross(moves * about[name])
-        rate = rate + moves * about[name]
-        turned = turned.carry(Axes.about(direction, reported.phase(Output("motion", name))))
+        along, motion = constant(axis.direction), reported.motion(name)
+        pitch = 1.0 if axis.kind == "slide" else joint.pitch
+        slide = slide + pitch * motion[:, None] * along if pitch else slide
+        if axis.kind == "angle":
+            directions[name] = turn(turned, along)
+            # Each turn is carried by those before it.
+            carried = cross(spin[0], motion[1] * directions[name])
+            spin = spin + motion[1:, None] * directions[name]
+            spin[1] += carried
+            angle = reported.phase(Output("motion", name))
+            turned = carry(turned, about(axis.direction, angle))
     # In a plane a slot turns about an axis that no coordinate describes.
     whole = (
         (declared.space or joint.kind != "slot")
         and reported.unmeasured.isdisjoint(axis.coordinate for axis in joint.axes)
         and all(declared.oriented(end.body) for end in joint.ends)
     )
-    return Relative(
-        (slide, speed, change),
-        turned.carry(Axes.of(joint.turned)),
-        rate,
-        acceleration,
-        about,
-        whole,
-    )
+    return Relative(slide, carry(turned, constant(joint.turned)), spin, directions, whole)
 
 
-def _reciprocal(axes: Sequence[Vector], number: int) -> Vector:
-    """The couple that does a unit of work for a turn about one of axes, and none for turns about
-    the others.
-    """
-    if len(axes) < 3:
-        return axes[number]
-    first, second, third = (axes[(number + k) % 3] for k in range(3))
-    across = second.cross(third)
-    with np.errstate(all="ignore"):
-        return (1.0 / np.asarray(first.dot(across))) * across
+def _turned(motion: Relative, base: Moving) -> tuple[Array, Array]:
+    """The axes of a joint's child, and their angular velocity and acceleration."""
+    spin = base.spin + [turn(base.axes, one) for one in motion.spin]
+    spin[1] += cross(base.spin[0], spin[0])
+    return carry(base.axes, motion.axes), spin
 
 
-def _outward(
-    declared: Description, joint: JointNumbers, motion: Relative, base: Moving
-) -> Moving | None:
-    """The motion of a joint's child, or None where the joint does not give it."""
-    if not motion.whole and declared.oriented(joint.child.body):
-        return None
-    at, speed, change = motion.slide
-    place, moves, changes = base.point(Vector(*joint.parent.at) + at)
-    slides = base.axes.turn(speed)
-    there = place, moves + slides, changes + 2.0 * base.rate.cross(slides) + base.axes.turn(change)
-    if not motion.whole:
-        return Moving.directionless(there, Vector(*joint.child.at))
-    spin = base.axes.turn(motion.rate)
-    gains = base.axes.turn(motion.acceleration) + base.rate.cross(spin)
-    turning = base.axes.carry(motion.turned), base.rate + spin, base.acceleration + gains
-    return Moving.holding(there, Vector(*joint.child.at), *turning)
+def _outward(joint: JointNumbers, motion: Relative, base: Moving) -> Moving:
+    """The motion of a joint's child by that of its parent."""
+    found = Moving.of(AT_REST.origin, *_turned(motion, base)) if motion.whole else AT_REST
+    return found.holding(joint.child.at, base.point(joint.parent.at, motion.slide))
 
 
-def _inward(
-    declared: Description, joint: JointNumbers, motion: Relative, far: Moving
-) -> Moving | None:
-    """The motion of a joint's parent, or None where the joint does not give it."""
-    place, moves, changes = far.point(Vector(*joint.child.at))
-    if not motion.whole:
-        if declared.oriented(joint.parent.body):
-            return None
-        return Moving.directionless((place, moves, changes), Vector(*joint.parent.at))
-    at, speed, change = motion.slide
-    axes = far.axes.carry(motion.turned.inverse)
-    spin, slides = axes.turn(motion.rate), axes.turn(speed)
-    rate = far.rate - spin
-    acceleration = far.acceleration - axes.turn(motion.acceleration) - rate.cross(spin)
-    under = place, moves - slides, changes - 2.0 * rate.cross(slides) - axes.turn(change)
-    return Moving.holding(under, Vector(*joint.parent.at) + at, axes, rate, acceleration)
+def _inward(joint: JointNumbers, motion: Relative, far: Moving) -> Moving:
+    """The motion of a joint's parent by that of its child."""
+    found = AT_REST
+    if motion.whole:
+        axes = carry(far.axes, motion.axes.swapaxes(0, 1))
+        spin = far.spin - [turn(axes, one) for one in motion.spin]
+        spin[1] += cross(far.spin[0], spin[0])
+        found = Moving.of(AT_REST.origin, axes, spin)
+    return found.holding(joint.parent.at, far.point(joint.child.at), motion.slide)

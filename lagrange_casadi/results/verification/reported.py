@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,7 +14,7 @@ from ...base.vocabulary import Precision
 from ...model.description import Description, JointNumbers
 from ..histories import Histories
 from ..section_laws import SectionLaw
-from .instant_vectors import GROUND, Axes, Scalar, Vector
+from .instant_vectors import GROUND, about
 
 _ROUNDINGS = 4.0
 """So many roundings may be in what is reported."""
@@ -121,54 +121,48 @@ class Reported:
         second = self.outputs[Output("motion", rotations[1])]
         return [] if np.min(np.cos(second) ** 2) > _NEAR else rotations
 
-    def value(self, coordinate: str) -> Array:
-        """The value of a coordinate."""
-        return self.outputs[Output("motion", coordinate)]
-
-    def rate(self, coordinate: str) -> Array:
-        """The rate of a coordinate."""
-        return self.outputs[Output("motion", coordinate, "rate")]
-
-    def acceleration(self, coordinate: str) -> Array:
-        """The acceleration of a coordinate."""
-        return self.outputs[Output("motion", coordinate, "acceleration")]
+    def motion(self, coordinate: str) -> Array:
+        """The value of a coordinate, its rate and its acceleration, (3, t)."""
+        members = ("", "rate", "acceleration")
+        return np.array([self.outputs[Output("motion", coordinate, one)] for one in members], float)
 
     def phase(self, output: Output) -> Array:
         """An angle up to whole turns, as closely as it is known."""
         return self.phases.get(output, self.outputs[output])
 
-    def place(self, body: str) -> Vector:
+    def place(self, body: str) -> Array:
         """The place of a body's origin."""
-        return Vector(*(self.outputs.get(Output("pose", body, x), 0.0) for x in "xyz"))
+        return self._vector("pose", body, "xyz")
 
-    def axes(self, body: str) -> Axes:
+    def axes(self, body: str) -> Array:
         """The axes of a body; those of the ground where it has none."""
         if self.space:
             if Output("pose", body, "xx") not in self.outputs:
                 return GROUND
-            return Axes(
-                *(
-                    Vector(*(self.outputs[Output("pose", body, axis + x)] for x in "xyz"))
-                    for axis in "xyz"
-                )
-            )
+            return np.array([self._vector("pose", body, (a + x for x in "xyz")) for a in "xyz"])
         angle = Output("pose", body, "angle")
-        return Axes.about(GROUND.z, self.phase(angle)) if angle in self.outputs else GROUND
+        return about((0.0, 0.0, 1.0), self.phase(angle)) if angle in self.outputs else GROUND
 
-    def force(self, group: str, part: str, letter: str = "f", axes: str = "xyz") -> Vector:
+    def force(self, group: str, part: str, letter: str = "f", axes: str = "xyz") -> Array:
         """The force of a part, or by the ``letter`` "m" its moment; components that it has none of
         are zero.
         """
-        return Vector(*(self.outputs.get(Output(group, part, letter + x), 0.0) for x in axes))
+        return self._vector(group, part, (letter + x for x in axes))
 
-    def inside(self, link: str) -> tuple[Vector, Vector]:
+    def _vector(self, group: str, part: str, members: Iterable[str]) -> Array:
+        found = np.zeros((3, self.t.size))
+        for row, member in zip(found, members, strict=True):
+            row[:] = self.outputs.get(Output(group, part, member), 0.0)
+        return found
+
+    def inside(self, link: str) -> tuple[Array, Array]:
         """The force and the moment of a link's section at its base, in the link's axes."""
         law, base = self.laws[link], np.zeros((self.t.size, 1))
-
-        def at(name: str) -> Scalar:
-            return law.at(name, base)[:, 0]
-
+        names = ("axial", "shear", "", "", "", "bending")
         if self.space:
-            force, moment = ("axial", "shear_y", "shear_z"), ("torsion", "bending_y", "bending_z")
-            return Vector(*map(at, force)), Vector(*map(at, moment))
-        return Vector(at("axial"), at("shear"), 0.0), Vector(0.0, 0.0, at("bending"))
+            names = ("axial", "shear_y", "shear_z", "torsion", "bending_y", "bending_z")
+        found = np.zeros((2, 3, self.t.size))
+        for row, name in zip(found.reshape(6, -1), names, strict=True):
+            if name:
+                row[:] = law.at(name, base)[:, 0]
+        return found[0], found[1]
