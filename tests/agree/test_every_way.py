@@ -113,7 +113,7 @@ def interpreted(name):
     return scene, solution, size
 
 
-@pytest.mark.sampled(9)
+@pytest.mark.sampled(13)
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("name", SCENES)
 def test_every_way_gives_the_same_within_its_errors(name, way, tmp_path):

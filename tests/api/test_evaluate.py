@@ -101,7 +101,7 @@ def test_steps_are_of_iterated_loops_alone():
 TURN = math.tau
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("law", [motion.polynomial, uneven])
 @pytest.mark.parametrize("rpm", [600.0, 77.0])
 def test_instants_over_a_drive_are_equal_steps_of_it(law, rpm):

@@ -342,7 +342,7 @@ def test_what_cannot_be_swept_is_named(slider_crank, ask, error, says):
 CASE_NAMES = ["slider_crank", "beam_pump", "quick_return", "arm6", "engine"]
 
 
-@pytest.mark.sampled(6)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("count", [5, 19, 64])
 @pytest.mark.parametrize("drawn", [*CASE_NAMES, *range(12)])
 def test_the_error_of_sampled_peaks_covers_what_the_instants_miss(drawn, count):

@@ -104,7 +104,7 @@ WAITS = {
 }
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("number", [INT, TERM])
 @pytest.mark.parametrize("text", WAITS)
 def test_an_interrupt_in_a_case_is_one_line(here, tmp_path_factory, text, number):

@@ -194,11 +194,12 @@ class Oracle:
                 before is not None and before / 2 < left < 1000 * DOUBLE.tolerance * size
             ):
                 break
-        left = max(left, np.max(np.abs(self.gaps(q, rest, drives)[0]), initial=0.0))
+        gaps, rates, _ = self.gaps(q, rest, drives)
+        left = max(left, np.max(np.abs(gaps), initial=0.0))
         if not left < 1000 * DOUBLE.tolerance * size:
             raise OpenLoopError("the oracle does not close its loops")
         slope = self.slope(q, drives)
-        rate = DOUBLE.solve(slope, -self.gaps(q, rest, drives)[1], _LEAST)
+        rate = DOUBLE.solve(slope, -rates, _LEAST)
         acceleration = DOUBLE.solve(slope, -self.gaps(q, rate, drives)[2], _LEAST)
         jets = [Jet(*x) for x in zip(q, rate, acceleration, strict=True)]
         result = Result({n: tuple(jets[3 * i : 3 * i + 3]) for i, n in enumerate(names)})
@@ -269,15 +270,13 @@ class Oracle:
         return np.array([(g.v, g.d, g.a) for g in found]).reshape(-1, 3).T
 
     def slope(self, q, drives):
-        """Slope of the gaps by q."""
+        """Slope of the gaps by q: beside a rate of zero, at which a guide's gap changes too."""
         still = {joint: (coordinate, 0, 0) for joint, (coordinate, *_) in drives.items()}
-        rest = self.gaps(q, np.zeros_like(q), still)[1]
-        along = self._gap_jets(
-            [Jet(x, row) for x, row in zip(q, np.eye(q.size, dtype=q.dtype), strict=True)], still
-        )
-        return np.array(
-            [np.broadcast_to(g.d, q.size) - x for g, x in zip(along, rest, strict=True)]
-        ).reshape(-1, q.size)
+        rows = np.eye(q.size, q.size + 1, dtype=q.dtype)
+        along = self._gap_jets([Jet(x, row) for x, row in zip(q, rows, strict=True)], still)
+        rates = np.array([np.broadcast_to(g.d, q.size + 1) for g in along])
+        rates = rates.reshape(-1, q.size + 1)
+        return rates[:, :-1] - rates[:, -1:]
 
     def _gap_jets(self, jets, drives):
         frames = self.frames(

@@ -46,7 +46,7 @@ def rail(end):
     ), at
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("end", ["tip", "base"])
 @pytest.mark.parametrize("way", SHIFT)
 def test_sections_see_it_at_the_tip_and_never_at_the_base(way, end):

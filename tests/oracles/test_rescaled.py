@@ -87,7 +87,7 @@ def assert_the_same(scene, units, keywords=None, rescaled=None):
             assert there.errors[output] / size == pytest.approx(error, rel=1e-6), output
 
 
-@pytest.mark.sampled(16)
+@pytest.mark.sampled(17)
 @pytest.mark.parametrize("units", OTHER, ids=str)
 @pytest.mark.parametrize("name", sorted(path.parent.name for path in CASES.glob("*/case.py")))
 def test_cases_do_not_depend_on_units(name, units):
@@ -107,7 +107,7 @@ def assert_drawn_the_same(seed):
     assert_the_same(scene, units, drawn.keywords | times, again)
 
 
-@pytest.mark.sampled(100)
+@pytest.mark.sampled(101)
 @pytest.mark.parametrize("seed", range(1200))
 def test_random_mechanisms_do_not_depend_on_units(seed):
     assert_drawn_the_same(seed)
@@ -119,7 +119,7 @@ def test_nor_do_these_that_did(seed):
     assert_drawn_the_same(seed)
 
 
-@pytest.mark.sampled(100)
+@pytest.mark.sampled(101)
 @pytest.mark.parametrize("seed", range(1200))
 def test_random_mechanisms_in_space_do_not_depend_on_units(seed):
     draw = SPATIAL[seed % len(SPATIAL)]

@@ -65,7 +65,7 @@ def holds(solution, name, base, axis, point, force):
     assert moment == pytest.approx(-(lever - np.dot(lever, axis) * axis), abs=1e-12 * size)
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("moment", [50.0, -50.0])
 @pytest.mark.parametrize("helix", [20.0, -35.0])
@@ -97,7 +97,7 @@ def test_helical_gears(seed, moment, helix):
     assert solution.output("mesh_axial")[0] == pytest.approx(way * math.tan(psi))
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize("angle", [90.0, 60.0, 110.0])
 @pytest.mark.parametrize("moment", [50.0, -50.0])
@@ -202,7 +202,7 @@ def worm(mu, driven, speed=3.0, hand="right", moment=-50.0):
     return Scene(m, {driven: polynomial(0.0, speed)}, t=(0, 1, 3)), math.atan(4 * r2 / (z * r1))
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("mu", [0.0, 0.03, 0.1])
 @pytest.mark.parametrize("hand", ["right", "left"])
 def test_a_worm_drives_its_wheel(mu, hand):

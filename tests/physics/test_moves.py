@@ -115,7 +115,7 @@ def test_the_timetable_tells_times_peaks_and_jumps():
     ]
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize(
     "law",
     [
