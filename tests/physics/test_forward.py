@@ -197,6 +197,14 @@ def test_a_dead_centre_ends_a_run():
     assert found.energy.max() < 1e-9
 
 
+def test_a_jam_ends_a_run():
+    """Where the rod leans by the angle of friction."""
+    found = free(slider_crank({"O": polynomial(0.3)}, 4.0), drive=2.0, start=(0.3, 20.0))
+    assert (found.ended.kind, found.ended.joints) == ("jam", "'guide'")
+    leans = math.asin(3.0 * math.sin(math.atan(1.0 / 4.0)))
+    assert found.ended.angle == pytest.approx(leans, rel=1e-9)
+
+
 def steel(length, diameter, along):
     """Mass, inertia about the centre of a cylinder of steel, its axis along a unit vector."""
     mass = 7700.0 * math.pi * length * diameter**2 / 4.0
