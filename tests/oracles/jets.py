@@ -42,8 +42,6 @@ class Jet:
     def __mul__(self, o):
         if not isinstance(o, Jet):
             return Jet(self.v * o, self.d * o, self.a * o)
-        # Derivatives, which may be arrays, come first: mpmath would try to read an array as a
-        # number.
         return Jet(
             self.v * o.v,
             self.d * o.v + o.d * self.v,

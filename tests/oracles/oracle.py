@@ -18,7 +18,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from arithmetic import DOUBLE
+from arithmetic import GAUSS, TOLERANCE, least_squares
 from jets import Jet
 from spread import forces
 
@@ -70,7 +70,7 @@ def _moments(density, breaks, start):
     """Integrals of density, density u and density u^2 from ``start`` to 1, by Gauss' rule on each
     smooth piece.
     """
-    nodes, weights = DOUBLE.gauss
+    nodes, weights = GAUSS
     total = np.zeros(3)
     for a, b in itertools.pairwise(breaks):
         a = max(a, start)
@@ -187,20 +187,20 @@ class Oracle:
             # Near the end the slope is as good as before.
             if left is None or left > _SAME_SLOPE:
                 slope = self.slope(q, drives)
-            step = DOUBLE.solve(slope, -self.gaps(q, rest, drives)[0], _LEAST)
+            step = least_squares(slope, -self.gaps(q, rest, drives)[0], _LEAST)
             q, before = q + step, left
             left, size = np.max(np.abs(step)), 1 + np.max(np.abs(q))
-            if left < DOUBLE.tolerance * size or (
-                before is not None and before / 2 < left < 1000 * DOUBLE.tolerance * size
+            if left < TOLERANCE * size or (
+                before is not None and before / 2 < left < 1000 * TOLERANCE * size
             ):
                 break
         gaps, rates, _ = self.gaps(q, rest, drives)
         left = max(left, np.max(np.abs(gaps), initial=0.0))
-        if not left < 1000 * DOUBLE.tolerance * size:
+        if not left < 1000 * TOLERANCE * size:
             raise OpenLoopError("the oracle does not close its loops")
         slope = self.slope(q, drives)
-        rate = DOUBLE.solve(slope, -rates, _LEAST)
-        acceleration = DOUBLE.solve(slope, -self.gaps(q, rate, drives)[2], _LEAST)
+        rate = least_squares(slope, -rates, _LEAST)
+        acceleration = least_squares(slope, -self.gaps(q, rate, drives)[2], _LEAST)
         jets = [Jet(*x) for x in zip(q, rate, acceleration, strict=True)]
         result = Result({n: tuple(jets[3 * i : 3 * i + 3]) for i, n in enumerate(names)})
         scaled = self.scaled(slope)
@@ -335,7 +335,7 @@ class Oracle:
                 b.mass * (cy.a - self.gravity[1]),
                 b.inertia * phi.a,
             ]
-        right = np.array(inertia) - self._on_bodies(frames, given + forces(spread, DOUBLE))
+        right = np.array(inertia) - self._on_bodies(frames, given + forces(spread))
         keep = np.array([b.oriented or k < 2 for b in self.bodies for k in range(3)])
         matrix, right = matrix[keep], right[keep]
         scales = np.array([1.0, 1.0, self.size] * len(self.bodies))[keep, None]
@@ -344,16 +344,14 @@ class Oracle:
 
         def solved(parts):
             left = right - self._on_bodies(frames, parts)[keep]
-            found = DOUBLE.solve(matrix, left, 1e-11)
+            found = least_squares(matrix, left, 1e-11)
             return found if least is None else found + least @ found
 
         found, pressed = self._pressed(solved, labels, place)
         right, given = right - self._on_bodies(frames, pressed)[keep], given + pressed
         left = np.max(np.abs(matrix @ found - right))
         size = np.max(np.abs(right)) + np.max(np.abs(found))
-        assert left <= 1000 * DOUBLE.tolerance * size, (
-            "the oracle's forces do not balance its bodies"
-        )
+        assert left <= 1000 * TOLERANCE * size, "the oracle's forces do not balance its bodies"
         for (name, label, (fx, fy, mz)), x in zip(labels, found, strict=True):
             if label == "reaction":
                 before = result.reactions.get(name, (0.0, 0.0, 0.0))
@@ -380,7 +378,7 @@ class Oracle:
             sizes = {name: x for (name, *_), x in zip(labels, found, strict=True)}
             pressed = [p for extra in pressing for p in extra.presses(place, sizes[extra.name])]
             found, last = solved(pressed), found
-            near = 100 * DOUBLE.tolerance * np.max(np.abs(found))
+            near = 100 * TOLERANCE * np.max(np.abs(found))
             if np.max(np.abs(found - last)) <= near:
                 return found, pressed
         assert not pressing, "what presses on the oracle's bodies does not converge"
@@ -459,7 +457,7 @@ class Oracle:
 
         def at(ratio: float) -> tuple[float, float, float]:
             l = body.length
-            near = 100 * DOUBLE.tolerance * body.length
+            near = 100 * TOLERANCE * body.length
             phi, c, s = frames[body.name][2], frames[body.name][3].v, frames[body.name][4].v
             cut = place_in(frames, (body.name, ratio * l, 0.0))
             fx = fy = mz = 0.0  # what acts on the piece towards the tip
@@ -470,7 +468,7 @@ class Oracle:
                 for p in own
                 if p[0][1] > ratio * l + near or (ratio == 1 and abs(p[0][1] - l) < near)
             ]
-            for place, gx, gy, couple in seen + forces(spread, DOUBLE, body.name, ratio * l):
+            for place, gx, gy, couple in seen + forces(spread, body.name, ratio * l):
                 point = place_in(frames, place)
                 arm = (point[0].v - cut[0].v, point[1].v - cut[1].v)
                 fx, fy, mz = fx + gx, fy + gy, mz + arm[0] * gy - arm[1] * gx + couple
@@ -513,7 +511,6 @@ def place_in(frames, point):
     bx, by, phi, c, s = frames[name]
     if not (x or y):
         return bx, by, phi
-    # The jets first: mpmath would try to read one as a number.
     return bx + c * x - s * y, by + s * x + c * y, phi
 
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-from arithmetic import DOUBLE
+from arithmetic import TOLERANCE
 from oracle import Joint, Oracle, Result
 from random_formula import Measure, axis_of, joint_coordinate
 
@@ -78,11 +78,11 @@ def converge(balanced: Callable, laws: Sequence[Callable]) -> tuple[Any, Any]:
         for _ in range(PASSES):
             before, reactions = forces, alone + slopes @ forces
             forces = np.array([law(r) for law, r in zip(laws, reactions, strict=True)])
-            if np.max(np.abs(forces - before)) <= DOUBLE.tolerance / 10 * size:
+            if np.max(np.abs(forces - before)) <= TOLERANCE / 10 * size:
                 break
         result, reactions = balanced(forces)
         left = max(abs(law(r) - x) for law, r, x in zip(laws, reactions, forces, strict=True))
-        if left <= 1000 * DOUBLE.tolerance * size:
+        if left <= 1000 * TOLERANCE * size:
             return result, forces
         # What presses gears apart has kinks, beside which reactions are linear.
         alone = reactions - slopes @ forces

@@ -11,7 +11,6 @@ from __future__ import annotations
 import dataclasses
 
 import numpy as np
-from arithmetic import DOUBLE
 from spatial_bodies import AXES, GROUND, Coupling, Joint, Mechanism, Rigid, Rod
 from spatial_bridge import across_axis
 from spatial_draft import (
@@ -178,7 +177,7 @@ def _driven(rng, mechanism, guess, idle):
     found, left = [], None
     for key in [None, *(keys[k] for k in rng.permutation(len(keys)))]:
         zero = dict.fromkeys([*found, *([] if key is None else [key])], (0.0, 0.0, 0.0))
-        motion = Motion(mechanism, zero, DOUBLE)
+        motion = Motion(mechanism, zero)
         slope = motion.factored(*motion.start(guess, zero))
         many = slope.null.shape[1]
         if left is None or (many < left and slope.least > STEADY):

@@ -10,15 +10,16 @@ fulfils it.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
-from spatial_algebra import Factored, InconsistentError, cross, identity, skew, vector
+from arithmetic import GAUSS, TOLERANCE
+from spatial_algebra import Factored, InconsistentError, cross, skew, vector
 from spatial_bodies import GROUND, Joint, Mechanism, Spread
 from spatial_motion import Motion
-from spread import weights
 
 
 @dataclass(frozen=True)
@@ -34,21 +35,15 @@ class Acting:
     of: Spread | None = None
 
 
-def shares(arithmetic, spread, pose, low, high) -> list[Acting]:
+def shares(spread, pose, low, high) -> list[Acting]:
     """Forces that do what a load along a body does between two distances."""
     found = []
-    for place, weight in weights() if low < high else ():
-        place, weight = (
-            arithmetic.number(x.numerator) / arithmetic.number(x.denominator)
-            for x in (place, weight)
-        )
-        x = low + (high - low) * place
-        force = arithmetic.array(spread.at(x)) * (weight * (high - low))
+    for node, weight in zip(*GAUSS, strict=True) if low < high else ():
+        x = low + (high - low) * (node + 1.0) / 2.0
+        force = vector(spread.at(x)) * (weight * (high - low) / 2.0)
         force = pose.R @ force if spread.turning else force
         found.append(
-            Acting(
-                spread.body, pose.at(arithmetic.array([x, x * 0, x * 0])), force, force * 0, spread
-            )
+            Acting(spread.body, pose.at(np.array([x, 0.0, 0.0])), force, force * 0, spread)
         )
     return found
 
@@ -66,8 +61,8 @@ class Tie:
 
 @dataclass(frozen=True)
 class Wrenches:
-    """What all joints pass, ``found`` six numbers each, and multipliers by tie; ``null`` (in
-    doubles) varies them at will.
+    """What all joints pass, ``found`` six numbers each, and multipliers by tie; ``null`` varies
+    them at will.
     """
 
     found: dict[str, Any]
@@ -94,35 +89,34 @@ class Balance:
 
         Raises :class:`spatial_algebra.InconsistentError` where the motion does not fulfil a row.
         """
-        a = self.motion.arithmetic
         found = [
             Tie(
                 c.name,
-                {key: a.number(x) for key, x in c.terms.items()},
+                {key: float(x) for key, x in c.terms.items()},
                 [
-                    (body, self.poses[body].at(vector(a, point)), vector(a, way))
+                    (body, self.poses[body].at(vector(point)), vector(way))
                     for (body, point), way in c.points.items()
                 ],
             )
             for c in self.mechanism.couplings
         ]
         for row in self.mechanism.rows:
-            terms, directions = row.of(a, {key: self.values[key][0] for key in row.keys})
-            points = [(body, vector(a, point), way) for (body, point), way in directions.items()]
+            terms, directions = row.of(math, {key: self.values[key][0] for key in row.keys})
+            points = [(body, vector(point), way) for (body, point), way in directions.items()]
             parts = [x * self.values[key][1] for key, x in terms.items()]
             parts += [
                 x * v
                 for body, point, way in points
                 for x, v in zip(way, self.poses[body].velocity(point), strict=True)
             ]
-            if abs(sum(parts)) > 1000 * a.tolerance * max(map(abs, parts)):
+            if abs(sum(parts)) > 1000 * TOLERANCE * max(map(abs, parts)):
                 raise InconsistentError(f"the motion does not fulfil '{row.name}'")
             found.append(
                 Tie(
                     row.name,
                     terms,
                     [
-                        (body, self.poses[body].at(point), a.array(way))
+                        (body, self.poses[body].at(point), vector(way))
                         for body, point, way in points
                     ],
                 )
@@ -153,37 +147,33 @@ class Balance:
         if idle:
             # Three turns, whatever their axes: no moment about any, so that nothing is singular
             # where axes meet.
-            for e in identity(self.motion.arithmetic):
+            for e in np.eye(3):
                 yield None, e * 0, e
 
     def given(self) -> list[Acting]:
         """Loads, springs and dampers."""
-        arithmetic, found = self.motion.arithmetic, []
+        found = []
         for load in self.mechanism.loads:
             pose = self.poses[load.body]
-            force, torque = vector(arithmetic, load.force), vector(arithmetic, load.torque)
+            force, torque = vector(load.force), vector(load.torque)
             if load.turning:
                 force, torque = pose.R @ force, pose.R @ torque
-            found.append(Acting(load.body, pose.at(vector(arithmetic, load.point)), force, torque))
+            found.append(Acting(load.body, pose.at(vector(load.point)), force, torque))
         for spring in self.mechanism.springs:
-            (a, at_a), (b, at_b) = (
-                (name, vector(arithmetic, point)) for name, point in spring.ends
-            )
+            (a, at_a), (b, at_b) = ((name, vector(point)) for name, point in spring.ends)
             way = self.poses[b].at(at_b) - self.poses[a].at(at_a)
-            length = arithmetic.sqrt(way @ way)
+            length = math.sqrt(way @ way)
             speed = (self.poses[b].velocity(at_b) - self.poses[a].velocity(at_a)) @ way / length
-            tension = arithmetic.number(spring.stiffness) * (
-                length - arithmetic.number(spring.free)
-            )
-            tension += arithmetic.number(spring.damping) * speed
+            tension = float(spring.stiffness) * (length - float(spring.free))
+            tension += float(spring.damping) * speed
             pull = way * (tension / length)
             found += [
                 Acting(a, self.poses[a].at(at_a), pull, way * 0),
                 Acting(b, self.poses[b].at(at_b), -pull, way * 0),
             ]
         for spread in self.mechanism.spreads:
-            ends = arithmetic.number(spread.start), arithmetic.number(spread.end)
-            found += shares(arithmetic, spread, self.poses[spread.body], *ends)
+            ends = float(spread.start), float(spread.end)
+            found += shares(spread, self.poses[spread.body], *ends)
         return [one for one in found if one.body != GROUND]
 
     def passed(self, wrenches) -> list[Acting]:
@@ -205,10 +195,9 @@ class Balance:
 
     def inertia(self, body):
         """What a body needs: force, and moment about its centre; and that centre's place."""
-        arithmetic, pose = self.motion.arithmetic, self.poses[body.name]
-        mass, centre, inertia = body.inertias(arithmetic)
+        pose, (mass, centre, inertia) = self.poses[body.name], body.inertias()
         inertia = pose.R @ inertia @ pose.R.T
-        force = (pose.acceleration(centre) - vector(arithmetic, self.mechanism.gravity)) * mass
+        force = (pose.acceleration(centre) - vector(self.mechanism.gravity)) * mass
         return force, inertia @ pose.alpha + cross(pose.w, inertia @ pose.w), pose.at(centre)
 
     def solve(self) -> Wrenches:
@@ -216,21 +205,20 @@ class Balance:
 
         Raises :class:`spatial_algebra.InconsistentError` where no forces balance the bodies.
         """
-        arithmetic = self.motion.arithmetic
         joints = self.mechanism.joints
         bodies = self.mechanism.bodies
-        nought, size = arithmetic.number(0), self.mechanism.size
+        size = self.mechanism.size
         needs = {b.name: self.inertia(b) for b in bodies}
         row = {b.name: 6 * i for i, b in enumerate(bodies)}
         width = 6 * len(joints) + len(self.ties)
-        matrix = arithmetic.zeros(6 * len(bodies), width) + nought
+        matrix = np.zeros((6 * len(bodies), width))
         right = np.concatenate([x for b in bodies for x in needs[b.name][:2]])
         for i, joint in enumerate(joints):
             for name, sign in ((joint.child, 1), (joint.parent, -1)):
                 if name != GROUND:
                     block = matrix[row[name] : row[name] + 6, 6 * i : 6 * i + 6]
-                    block[:3, :3] += identity(arithmetic) * sign
-                    block[3:, 3:] += identity(arithmetic) * sign
+                    block[:3, :3] += np.eye(3) * sign
+                    block[3:, 3:] += np.eye(3) * sign
                     block[3:, :3] += skew(self.point(joint) - needs[name][2]) * sign
         for c, tie in enumerate(self.ties, 6 * len(joints)):
             for name, place, force in tie.forces:
@@ -244,20 +232,18 @@ class Balance:
         for i, joint in enumerate(joints):
             for k, v, w in self.twists(joint):
                 if (joint.name, k) not in self.pushed:
-                    line = arithmetic.zeros(width) + nought
+                    line = np.zeros(width)
                     line[6 * i : 6 * i + 3], line[6 * i + 3 : 6 * i + 6] = v, w
                     for c, tie in enumerate(self.ties, 6 * len(joints)):
-                        line[c] = -tie.terms.get((joint.name, k), nought)
+                        line[c] = -tie.terms.get((joint.name, k), 0.0)
                     powers.append(line)
                     units.append(size if any(w) else 1.0)
         matrix = np.concatenate([matrix, *(line[None] for line in powers)])
-        right = np.concatenate([right, arithmetic.zeros(len(powers)) + nought])
+        right = np.concatenate([right, np.zeros(len(powers))])
         columns = np.array(([1.0] * 3 + [size] * 3) * len(joints) + [size] * len(self.ties))
         rows = np.array(([1.0] * 3 + [size] * 3) * len(bodies) + units)
         factored = Factored.of(matrix, rows, columns)
-        found = factored.solve(
-            arithmetic, right, "the spatial oracle's forces do not balance its bodies"
-        )
+        found = factored.solve(right, "the spatial oracle's forces do not balance its bodies")
 
         def named(column):
             multipliers = {tie.name: column[c] for c, tie in enumerate(self.ties, 6 * len(joints))}

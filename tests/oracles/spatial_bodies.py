@@ -1,18 +1,20 @@
 """What the spatial oracle is told of a mechanism: plain data of its own.
 
-Numbers may be doubles, strings or of any arithmetic.
+Numbers may be doubles, strings or mpmath's.
 """
 
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
 import numpy as np
-from spatial_algebra import cross, orthonormal, pi, unit, vector
+from arithmetic import GAUSS
+from spatial_algebra import cross, orthonormal, unit, vector
 
 Vector = Sequence[Any]
 Law = Callable[[Any], Any] | Sequence[Any]
@@ -47,12 +49,12 @@ class Rigid:
     centre: Vector = NIL
     inertia: Sequence[Vector] = (NIL, NIL, NIL)
 
-    def inertias(self, arithmetic):
+    def inertias(self):
         """Mass, centre, and inertia about it."""
         return (
-            arithmetic.number(self.mass),
-            vector(arithmetic, self.centre),
-            arithmetic.array([vector(arithmetic, row) for row in self.inertia]),
+            float(self.mass),
+            vector(self.centre),
+            vector(self.inertia),
         )
 
 
@@ -75,43 +77,40 @@ class Rod:
     product: Law = ()
     breaks: Vector = (0, 1)
 
-    def slices(self, arithmetic, start=0, end=1):
+    def slices(self, start=0, end=1):
         """Slices between two ratios: places along the rod, masses, and moments of inertia (3x3), by
         Gauss' rule.
         """
-        nodes, weights = arithmetic.gauss
-        length, zero = arithmetic.number(self.length), arithmetic.number(0)
-        for a, b in itertools.pairwise(vector(arithmetic, self.breaks)):
+        length = float(self.length)
+        for a, b in itertools.pairwise(vector(self.breaks)):
             a, b = max(a, start), min(b, end)
             if b <= a:
                 continue
-            for node, weight in zip(nodes, weights, strict=True):
+            for node, weight in zip(*GAUSS, strict=True):
                 xi, w = a + (node + 1) / 2 * (b - a), weight * (b - a) / 2 * length
                 j, y, z, p = (
-                    _value(arithmetic, law, xi) * w
+                    _value(law, xi) * w
                     for law in (self.polar, self.lateral_y, self.lateral_z, self.product)
                 )
-                inertia = arithmetic.array([[j, zero, zero], [zero, y, p], [zero, p, z]])
-                yield xi * length, _value(arithmetic, self.density, xi) * w, inertia
+                inertia = np.array([[j, 0.0, 0.0], [0.0, y, p], [0.0, p, z]])
+                yield xi * length, _value(self.density, xi) * w, inertia
 
-    def inertias(self, arithmetic):
+    def inertias(self):
         """Mass, centre, and inertia about it."""
-        slices = [*self.slices(arithmetic)]
-        zero = arithmetic.number(0)
-        mass = sum((m for _, m, _ in slices), zero)
-        place = sum((m * x for x, m, _ in slices), zero) / mass if mass else zero
-        across = sum((m * (x - place) ** 2 for x, m, _ in slices), zero)
-        inertia = sum((i for *_, i in slices), arithmetic.zeros(3, 3) * zero)
-        spread = arithmetic.array([[zero, zero, zero], [zero, across, zero], [zero, zero, across]])
-        return mass, arithmetic.array([place, zero, zero]), inertia + spread
+        slices = [*self.slices()]
+        mass = sum(m for _, m, _ in slices)
+        place = sum(m * x for x, m, _ in slices) / mass if mass else 0.0
+        across = sum(m * (x - place) ** 2 for x, m, _ in slices)
+        inertia = sum(i for *_, i in slices) + np.diag([0.0, across, across])
+        return mass, np.array([place, 0.0, 0.0]), inertia
 
 
-def _value(arithmetic, law, xi):
+def _value(law, xi):
     if callable(law):
-        return arithmetic.number(law(xi))
-    found = arithmetic.number(0)
+        return float(law(xi))
+    found = 0.0
     for coefficient in reversed(law):
-        found = found * xi + arithmetic.number(coefficient)
+        found = found * xi + float(coefficient)
     return found
 
 
@@ -182,19 +181,18 @@ class Joint:
         """The indices of its turns."""
         return [k for k, told in enumerate(_KINDS[self.kind]) if not told.endswith("slides")]
 
-    def axes(self, arithmetic) -> list[Axis]:
+    def axes(self) -> list[Axis]:
         """Its axes, in the parent's axes at coordinates zero."""
-        one = arithmetic.number(1)
-        frame = orthonormal(arithmetic, [*zip(*self.frame, strict=True)]).T
-        ways = {"u": unit(arithmetic, vector(arithmetic, self.axis))}
+        frame = orthonormal([*zip(*self.frame, strict=True)]).T
+        ways = {"u": unit(vector(self.axis))}
         ways |= dict(zip("123", frame, strict=True))
         if self.axis2 is not None:
-            given, u = unit(arithmetic, vector(arithmetic, self.axis2)), ways["u"]
+            given, u = unit(vector(self.axis2)), ways["u"]
             assert abs(given @ u) < 1e-9, f"the axes of '{self.name}' are not at right angles"
-            ways["v"] = unit(arithmetic, given - u * (given @ u))
+            ways["v"] = unit(given - u * (given @ u))
             ways["w"] = cross(u, ways["v"])
-        lead = arithmetic.number(self.lead) / (2 * pi(arithmetic))
-        kinds = {"turns": (True, 0 * one), "slides": (False, one), "winds": (True, lead)}
+        lead = float(self.lead) / math.tau
+        kinds = {"turns": (True, 0.0), "slides": (False, 1.0), "winds": (True, lead)}
         told = (words.split() for words in _KINDS[self.kind])
         return [Axis(ways[way], *kinds[kind]) for way, kind in told]
 
@@ -258,7 +256,7 @@ class Row:
     """A non-holonomic constraint: coefficients times rates of coordinates, and directions times
     velocities of points, are nothing.
 
-    ``of(arithmetic, q)`` tells coefficients by (joint, index), and directions in ground axes by
+    ``of(functions, q)`` tells coefficients by (joint, index), and directions in ground axes by
     (body, point); ``q`` are the coordinates of ``keys``, all that it is written in. No effort is at
     the coordinate that it ``replaces``.
     """

@@ -10,7 +10,6 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-from arithmetic import DOUBLE
 from spatial_bodies import GROUND, Rigid, Rod
 from spatial_draft import Drawn
 from spatial_motion import Motion, coordinates
@@ -168,7 +167,7 @@ def postures(drawn: Drawn, t: float) -> dict[str, float]:
     """The coordinates at an instant, by the package's names, as they follow from the oracle's
     poses.
     """
-    motion = Motion(drawn.mechanism, drawn.laws, DOUBLE)
+    motion = Motion(drawn.mechanism, drawn.laws)
     poses = drawn.solve(t).poses | {GROUND: motion.ground}
     return {
         coordinate(joint, k): float(value)

@@ -8,8 +8,6 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from arithmetic import DOUBLE
-from spatial_algebra import arithmetic_of
 from spatial_bodies import (
     AXES,
     GROUND,
@@ -37,14 +35,14 @@ class Law:
     frequency: float = 0.0
     phase: float = 0.0
 
-    def at(self, t, digits=None):
+    def at(self, t):
         """The coordinate, its rate and its acceleration."""
-        a = arithmetic_of(digits)
-        t, w, size = a.number(t), a.number(self.frequency), a.number(self.amplitude)
-        s, c = a.sin(w * t + a.number(self.phase)), a.cos(w * t + a.number(self.phase))
+        turned = self.frequency * t + self.phase
+        s, c = math.sin(turned), math.cos(turned)
+        size, w = self.amplitude, self.frequency
         return (
-            a.number(self.offset) + a.number(self.speed) * t + size * s,
-            a.number(self.speed) + size * w * c,
+            self.offset + self.speed * t + size * s,
+            self.speed + size * w * c,
             -size * w * w * s,
         )
 
@@ -55,11 +53,11 @@ class Sum:
 
     parts: tuple[Law, ...]
 
-    def at(self, t, digits=None):
+    def at(self, t):
         """The coordinate, its rate and its acceleration."""
         return tuple(
             sum(values[1:], values[0])
-            for values in zip(*(law.at(t, digits) for law in self.parts), strict=True)
+            for values in zip(*(law.at(t) for law in self.parts), strict=True)
         )
 
 
@@ -86,14 +84,14 @@ class Drawn:
         """Whether a joint is told by its place: both its bodies are."""
         return {joint.parent, joint.child} <= self.hard
 
-    def drives(self, t, digits=None) -> dict:
+    def drives(self, t) -> dict:
         """(q, q', q'') by (joint, index)."""
-        return {key: law.at(t, digits) for key, law in self.laws.items()}
+        return {key: law.at(t) for key, law in self.laws.items()}
 
-    def solve(self, t, digits=None, guess=None) -> Result:
+    def solve(self, t, guess=None) -> Result:
         """The instant t; followed from the guess at 0 unless another one is given."""
         guess = guess or self.followed(t)
-        return solve(self.mechanism, self.drives(t, digits), guess, digits, self.pushed)
+        return solve(self.mechanism, self.drives(t), guess, self.pushed)
 
     def followed(self, t) -> dict:
         """The nearest of the postures that are followed from the one at 0; none of an open tree,
@@ -106,12 +104,12 @@ class Drawn:
 
     @cached_property
     def path(self) -> list:
-        """The postures in doubles, each a guess, at 0 and after every step to the end, with the
+        """The postures, each a guess, at 0 and after every step to the end, with the
         factored slope of the motion there.
         """
         guess, found = self.guess, []
         for k in range(self.steps + 1):
-            motion = Motion(self.mechanism, self.laws, DOUBLE, self.pushed or ())
+            motion = Motion(self.mechanism, self.laws, self.pushed or ())
             poses, coordinates, slope = solve_motion(
                 motion, self.drives(self.span * k / self.steps), guess
             )

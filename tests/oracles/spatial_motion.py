@@ -13,13 +13,12 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from arithmetic import DOUBLE
+from arithmetic import TOLERANCE
 from spatial_algebra import (
     Factored,
     InconsistentError,
     angle_about,
     cross,
-    identity,
     orthonormal,
     skew,
     small_turn,
@@ -80,16 +79,16 @@ class Motion:
     Coordinates of ``pushed`` and coupled ones are followed, though they be not known.
     """
 
-    def __init__(self, mechanism: Mechanism, known, arithmetic, pushed=()) -> None:
-        self.mechanism, self.arithmetic, self.known = mechanism, arithmetic, set(known)
+    def __init__(self, mechanism: Mechanism, known, pushed=()) -> None:
+        self.mechanism, self.known = mechanism, set(known)
         self.pushed = {*pushed}
         self.coupled = {key for coupling in mechanism.couplings for key in coupling.terms}
         self.coupled |= {key for row in mechanism.rows for key in row.keys}
         counted = self.known | self.pushed | self.coupled
-        self.axes = {j.name: j.axes(arithmetic) for j in mechanism.joints}
-        self.at_parent = {j.name: vector(arithmetic, j.at_parent) for j in mechanism.joints}
-        self.at_child = {j.name: vector(arithmetic, j.at_child) for j in mechanism.joints}
-        self.zero = {j.name: orthonormal(arithmetic, j.orientation) for j in mechanism.joints}
+        self.axes = {j.name: j.axes() for j in mechanism.joints}
+        self.at_parent = {j.name: vector(j.at_parent) for j in mechanism.joints}
+        self.at_child = {j.name: vector(j.at_child) for j in mechanism.joints}
+        self.zero = {j.name: orthonormal(j.orientation) for j in mechanism.joints}
         self.column = {b.name: 6 * i for i, b in enumerate(mechanism.bodies)}
         self.loose = {
             j.name
@@ -111,8 +110,8 @@ class Motion:
         size = mechanism.size
         free = [1.0 if self.axes[name][k].turns else size for name, k in self.free]
         self.units = np.array(([size] * 3 + [1.0] * 3) * len(mechanism.bodies) + free)
-        nil = arithmetic.array([arithmetic.number(0)] * 3)
-        self.ground = Pose(nil, identity(arithmetic), nil, nil, nil, nil)
+        nil = np.zeros(3)
+        self.ground = Pose(nil, np.eye(3), nil, nil, nil, nil)
 
     def kept(self, joint: Joint) -> list[int]:
         """The indices of the axes that lead from parent to child: all but the turns of a loose
@@ -138,7 +137,7 @@ class Motion:
             u, (q, rate, acceleration) = R @ axes[k].direction, values[joint.name, k]
             directions.append(u)
             if axes[k].turns:
-                R = R @ turn(self.arithmetic, axes[k].direction, q)
+                R = R @ turn(axes[k].direction, q)
                 if moving:
                     alpha = alpha + u * acceleration + cross(w, u) * rate
                     w = w + u * rate
@@ -170,32 +169,31 @@ class Motion:
                 pair = child.acceleration(point) - end.a, child.alpha - end.alpha
             found += pair[:1] if joint.name in self.loose else pair
         for coupling in self.mechanism.couplings:
-            a = self.arithmetic
-            total = -a.number(0 if kind else coupling.offset)
+            total = -float(0 if kind else coupling.offset)
             for key, coefficient in coupling.terms.items():
-                total += a.number(coefficient) * values[key][kind]
+                total += float(coefficient) * values[key][kind]
             for (body, point), way in coupling.points.items():
                 pose = poses[body]
                 of = (pose.at, pose.velocity, pose.acceleration)[kind]
-                total += vector(a, way) @ of(vector(a, point))
-            found.append(a.array([total]))
-        return np.concatenate(found) if found else self.arithmetic.zeros(0)
+                total += vector(way) @ of(vector(point))
+            found.append([total])
+        return np.concatenate(found) if found else np.zeros(0)
 
     def slope(self, poses, values):
         """The slope of the gaps' rates by all rates."""
         rows = []
         for joint in self.mechanism.joints:
             passage = self.passage(joint, poses[joint.parent], values)
-            block = self.arithmetic.zeros(6, self.count) * self.arithmetic.number(0)
+            block = np.zeros((6, self.count))
             for name, sign, point in (
                 (joint.child, 1, poses[joint.child].at(self.at_child[joint.name])),
                 (joint.parent, -1, passage.end.r),
             ):
                 if name != GROUND:
                     c = self.column[name]
-                    block[:3, c : c + 3] += identity(self.arithmetic) * sign
+                    block[:3, c : c + 3] += np.eye(3) * sign
                     block[:3, c + 3 : c + 6] += skew(point - poses[name].r) * -sign
-                    block[3:, c + 3 : c + 6] += identity(self.arithmetic) * sign
+                    block[3:, c + 3 : c + 6] += np.eye(3) * sign
             for k, u in zip(self.kept(joint), passage.directions, strict=True):
                 if (joint.name, k) in self.number:
                     axis, c = self.axes[joint.name][k], self.number[joint.name, k]
@@ -204,16 +202,16 @@ class Motion:
                         block[3:, c] = -u
             rows.append(block[:3] if joint.name in self.loose else block)
         for coupling in self.mechanism.couplings:
-            line = self.arithmetic.zeros(1, self.count) * self.arithmetic.number(0)
+            line = np.zeros((1, self.count))
             for key in {*coupling.terms} & {*self.number}:
-                line[0, self.number[key]] = self.arithmetic.number(coupling.terms[key])
+                line[0, self.number[key]] = float(coupling.terms[key])
             for (body, point), way in coupling.points.items():
-                way, c = vector(self.arithmetic, way), self.column[body]
-                arm = poses[body].R @ vector(self.arithmetic, point)
+                way, c = vector(way), self.column[body]
+                arm = poses[body].R @ vector(point)
                 line[0, c : c + 3] += way
                 line[0, c + 3 : c + 6] += cross(arm, way)
             rows.append(line)
-        return np.concatenate(rows) if rows else self.arithmetic.zeros(0, self.count)
+        return np.concatenate(rows) if rows else np.zeros((0, self.count))
 
     def factored(self, poses, values) -> Factored:
         size = self.mechanism.size
@@ -229,21 +227,17 @@ class Motion:
         """Poses and coordinates from a guess: poses by body's name, coordinates by (joint, index);
         what is missing follows.
         """
-        a = self.arithmetic
-        values = {key: vector(a, given) for key, given in drives.items()}
-        nil = a.number(0)
+        values = {key: vector(given) for key, given in drives.items()}
         poses = {GROUND: self.ground}
         for name, (r, R) in ((n, g) for n, g in guess.items() if isinstance(n, str)):
-            poses[name] = Pose(vector(a, r), orthonormal(a, R))
-        told = {
-            key: (a.number(q), nil, nil) for key, q in guess.items() if not isinstance(key, str)
-        }
+            poses[name] = Pose(vector(r), orthonormal(R))
+        told = {key: (float(q), 0.0, 0.0) for key, q in guess.items() if not isinstance(key, str)}
         told = (
-            {(j.name, k): (nil, nil, nil) for j in self.mechanism.joints for k in range(j.count)}
+            {(j.name, k): (0.0, 0.0, 0.0) for j in self.mechanism.joints for k in range(j.count)}
             | told
             | values
         )
-        whole = Motion(self.mechanism, told, a)
+        whole = Motion(self.mechanism, told)
         for _ in self.mechanism.bodies:
             for joint in self.mechanism.joints:
                 if joint.parent in poses and joint.child not in poses:
@@ -256,7 +250,7 @@ class Motion:
             if [key for key in self.free if key[0] == joint.name and key not in guess]:
                 found = coordinates(joint, self, poses)
                 values |= {
-                    (joint.name, k): (found[k], nil, nil)
+                    (joint.name, k): (found[k], 0.0, 0.0)
                     for k in self.kept(joint)
                     if (joint.name, k) not in values
                 }
@@ -268,7 +262,7 @@ class Motion:
         for name, c in self.column.items():
             new[name] = Pose(
                 poses[name].r + step[c : c + 3],
-                small_turn(self.arithmetic, step[c + 3 : c + 6]) @ poses[name].R,
+                small_turn(step[c + 3 : c + 6]) @ poses[name].R,
             )
         return new, values | {
             key: (values[key][0] + step[c], *values[key][1:]) for key, c in self.number.items()
@@ -295,16 +289,15 @@ def _between(a, b):
 
 
 def coordinates(joint: Joint, motion: Motion, poses) -> list:
-    """Coordinates of a joint whose bodies have these poses, about, in doubles: exact where the
+    """Coordinates of a joint whose bodies have these poses, about: exact where the
     poses fit the joint.
     """
     parent, child, axes = poses[joint.parent], poses[joint.child], motion.axes[joint.name]
-    e = [np.asarray(x.direction, dtype=float) for x in axes]
-    turned = (parent.R.T @ child.R @ motion.zero[joint.name].T).astype(float)
-    way = (
-        parent.R.T
-        @ (child.at(motion.at_child[joint.name]) - parent.at(motion.at_parent[joint.name]))
-    ).astype(float)
+    e = [x.direction for x in axes]
+    turned = parent.R.T @ child.R @ motion.zero[joint.name].T
+    way = parent.R.T @ (
+        child.at(motion.at_child[joint.name]) - parent.at(motion.at_parent[joint.name])
+    )
     found = [0.0 if x.turns else float(e[k] @ way) for k, x in enumerate(axes)]
     turning = [*joint.turning]
     if len(turning) == 1:
@@ -329,7 +322,7 @@ def coordinates(joint: Joint, motion: Motion, poses) -> list:
         found[turning[0]] = math.atan2(-m[1, 2], m[2, 2])
         found[turning[1]] = math.asin(max(-1.0, min(1.0, m[0, 2])))
         found[turning[2]] = math.atan2(-m[0, 1], m[0, 0])
-    return [motion.arithmetic.number(x) for x in found]
+    return [float(x) for x in found]
 
 
 def _turned(axis, angle, a):
@@ -346,14 +339,6 @@ def solve_motion(motion: Motion, drives, guess):
 
     Raises :class:`OpenLoopError` where Newton's method closes nothing.
     """
-    a = motion.arithmetic
-    if a is not DOUBLE:
-        # Newton's method goes most of the way in doubles.
-        rough = Motion(motion.mechanism, motion.known, DOUBLE, motion.pushed)
-        poses, values, _ = solve_motion(rough, drives, guess)
-        guess = {b.name: (poses[b.name].r, poses[b.name].R) for b in motion.mechanism.bodies} | {
-            k: values[k][0] for k in motion.free
-        }
     poses, values = motion.start(guess, drives)
     factored, before, left = None, math.inf, math.inf
     for _ in range(_STEPS):
@@ -362,45 +347,39 @@ def solve_motion(motion: Motion, drives, guess):
         gap = motion.gaps(poses, values, 0)
         if not gap.size or not motion.count:
             break
-        step = factored.inverse @ -gap.astype(float)
+        step = factored.inverse @ -gap
         turned = max((max(abs(step[c + 3 : c + 6])) for c in motion.column.values()), default=0.0)
         step = step * min(1.0, _TURN / turned if turned else 1.0)
-        poses, values = motion.moved(poses, values, vector(a, step))
-        before, left = left, float(max(abs(step / motion.units)))
-        if left < a.tolerance / 10 or (before <= 1e4 * float(a.tolerance) and left > before / 2):
+        poses, values = motion.moved(poses, values, step)
+        before, left = left, max(abs(step / motion.units))
+        if left < TOLERANCE / 10 or (before <= 1e4 * TOLERANCE and left > before / 2):
             break
-    left = (
-        max((float(abs(x)) for x in motion.gaps(poses, values, 0)), default=0.0)
-        / motion.mechanism.size
-    )
+    left = np.max(np.abs(motion.gaps(poses, values, 0)), initial=0.0) / motion.mechanism.size
     flipped = [
         j.name
         for j in motion.mechanism.joints
         if j.name not in motion.loose
-        and np.trace(
-            (motion.passage(j, poses[j.parent], values).end.R.T @ poses[j.child].R).astype(float)
-        )
-        < 2.9
+        and np.trace(motion.passage(j, poses[j.parent], values).end.R.T @ poses[j.child].R) < 2.9
     ]
-    if not left < 1e4 * float(a.tolerance) or flipped:
+    if not left < 1e4 * TOLERANCE or flipped:
         raise OpenLoopError(
             f"the spatial oracle does not close its loops: {left:.1e} open, turned over at"
             f" {flipped}"
         )
     factored = motion.factored(poses, values)
-    zeros = a.zeros(motion.count) * a.number(0)
+    zeros = np.zeros(motion.count)
     still = {
-        key: (q, a.number(0) if key in motion.number else rate, acceleration)
+        key: (q, 0.0 if key in motion.number else rate, acceleration)
         for key, (q, rate, acceleration) in values.items()
     }
     moving, still = motion.moving(poses, still, zeros, zeros)
     try:
         rates = factored.solve(
-            a, -motion.gaps(moving, still, 1), "the drives' rates contradict each other"
+            -motion.gaps(moving, still, 1), "the drives' rates contradict each other"
         )
         moving, rated = motion.moving(poses, values, rates, zeros)
         accelerations = factored.solve(
-            a, -motion.gaps(moving, rated, 2), "the drives' accelerations contradict each other"
+            -motion.gaps(moving, rated, 2), "the drives' accelerations contradict each other"
         )
     except InconsistentError as error:
         raise OpenLoopError(str(error)) from error

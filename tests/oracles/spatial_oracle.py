@@ -1,12 +1,11 @@
-"""An independent solution of mechanisms in space: Newton-Euler on free bodies, in any number of
-digits.
+"""An independent solution of mechanisms in space: Newton-Euler on free bodies.
 
 It imports nothing of the package. :mod:`spatial_bodies` says how a mechanism is told,
 :mod:`spatial_motion` finds how it moves, :mod:`spatial_balance` what its joints pass,
-:mod:`spatial_sections` what is inside its rods. A swinging rod, in 40 digits:
+:mod:`spatial_sections` what is inside its rods. A swinging rod:
 
     rod = Rod("rod", 0.6, [1.5]) found = solve(Mechanism([rod], [Joint("pin", "revolute", "ground",
-    "rod")]), {("pin", 0): ("0.2", 8, 10)}, digits=40) found.efforts["pin", 0],
+    "rod")]), {("pin", 0): ("0.2", 8, 10)}) found.efforts["pin", 0],
     found.reactions["pin"], found.sections["rod"].at("0.25"), found.open
 
 An effort's power is the effort times its coordinate's rate. A screw's effort is a couple; that of
@@ -19,7 +18,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from spatial_algebra import arithmetic_of, vector
+from spatial_algebra import vector
 from spatial_balance import Balance, Wrenches
 from spatial_bodies import Mechanism, Rod
 from spatial_motion import Motion, Pose, solve_motion
@@ -41,7 +40,7 @@ class Result:
     forces; ``sections`` by rod.
 
     ``idle`` are the motions that the drives leave open, six a body (v, w) in columns. Numbers that
-    are ``open`` are one choice of many. Both are known in doubles only.
+    are ``open`` are one choice of many.
     """
 
     poses: dict[str, Pose]
@@ -94,7 +93,7 @@ def _on(body, acting):
     return [one for one in acting if one.body == body]
 
 
-def solve(mechanism: Mechanism, drives, guess=None, digits=None, pushed=None) -> Result:
+def solve(mechanism: Mechanism, drives, guess=None, pushed=None) -> Result:
     """One instant.
 
     ``drives`` are (q, q', q'') by (joint, index), ``pushed`` the keys that bear efforts, by default
@@ -105,16 +104,15 @@ def solve(mechanism: Mechanism, drives, guess=None, digits=None, pushed=None) ->
     zero. Raises :class:`spatial_motion.OpenLoopError` or
     :class:`spatial_algebra.InconsistentError`.
     """
-    arithmetic = arithmetic_of(digits)
     pushed = frozenset(drives if pushed is None else pushed)
-    motion = Motion(mechanism, drives, arithmetic, pushed)
+    motion = Motion(mechanism, drives, pushed)
     poses, values, factored = solve_motion(motion, drives, guess or {})
     balance = Balance(motion, poses, values, pushed)
     wrenches = balance.solve()
     acting = balance.given() + balance.passed(wrenches.found)
-    gravity = vector(arithmetic, mechanism.gravity)
+    gravity = vector(mechanism.gravity)
     sections = {
-        rod.name: Section(arithmetic, rod, poses[rod.name], gravity, _on(rod.name, acting))
+        rod.name: Section(rod, poses[rod.name], gravity, _on(rod.name, acting))
         for rod in mechanism.bodies
         if isinstance(rod, Rod)
     }

@@ -4,7 +4,7 @@ Sources, each named in its file: SD/FAST's numbers in Simbody's TestMobilizerRea
 (``sdfast_*``); OpenSim's joint reactions of DoublePendulum3D (``opensim_*``); Adams' numbers in
 Chrono's data/testing/joints (``adams_*``); the rest were computed in 70 digits by equations of the
 one mechanism (the slider-crank is of IFToMM's library of benchmarks) and checked by two programs.
-Parts and drives are told as the oracle takes them, in 30 digits or more. Adams' forces are on the
+Parts and drives are told as the oracle takes them. Adams' forces are on the
 ground, their torque about the ground's point.
 """
 
@@ -15,20 +15,17 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-import mpmath
 import numpy as np
 from spatial_bodies import Joint, Load, Mechanism, Rigid, Rod
 
 FOLDER = Path(__file__).parent / "spatial_numbers"
 NAMES = sorted(path.stem for path in FOLDER.glob("*.json"))
-_CONTEXT = mpmath.MPContext()
-_CONTEXT.dps = 70
 _TEXTS = ("name", "kind", "body", "parent", "child")
 
 
 def numbers(x):
     """Numbers as they are printed, an array of them, or one."""
-    found = np.vectorize(_CONTEXT.mpf, otypes=[object])(np.array(x, dtype=object))
+    found = np.array(x, dtype=float)
     return found if found.shape else found.item()
 
 
@@ -57,7 +54,7 @@ class Entry:
 
     @cached_property
     def data(self) -> dict:
-        return json.loads((FOLDER / f"{self.name}.json").read_text(), parse_float=str)
+        return json.loads((FOLDER / f"{self.name}.json").read_text())
 
     @property
     def count(self) -> int:

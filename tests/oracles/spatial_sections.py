@@ -7,6 +7,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from arithmetic import TOLERANCE
 from spatial_algebra import cross
 from spatial_balance import Acting, shares
 from spatial_bodies import Rod
@@ -16,7 +17,6 @@ from spatial_bodies import Rod
 class Section:
     """A rod's sections at an instant; ``acting`` is everything on it but gravity."""
 
-    arithmetic: object
     rod: Rod
     pose: object
     gravity: np.ndarray
@@ -29,19 +29,18 @@ class Section:
         What acts at the section itself acts on the part towards the base; at the very tip beyond
         it. Without ``weight`` the slices are left out.
         """
-        arithmetic, pose = self.arithmetic, self.pose
-        xi, length = arithmetic.number(xi), arithmetic.number(self.rod.length)
-        place = pose.at(arithmetic.array([xi * length, xi * 0, xi * 0]))
-        force = moment = arithmetic.zeros(3) + xi * 0
+        pose, xi, length = self.pose, float(xi), float(self.rod.length)
+        place = pose.at(np.array([xi * length, 0.0, 0.0]))
+        force = moment = np.zeros(3)
         acting = [one for one in self.acting if one.of is None and self._beyond(one, xi, length)]
         for spread in {id(one.of): one.of for one in self.acting if one.of is not None}.values():
-            low, high = arithmetic.number(spread.start), arithmetic.number(spread.end)
-            acting += shares(arithmetic, spread, pose, max(low, xi * length), high)
+            low = max(float(spread.start), xi * length)
+            acting += shares(spread, pose, low, float(spread.end))
         for one in acting:
             force = force + one.force
             moment = moment + one.moment + cross(one.place - place, one.force)
-        for x, mass, inertia in self.rod.slices(arithmetic, xi) if weight else ():
-            point = arithmetic.array([x, x * 0, x * 0])
+        for x, mass, inertia in self.rod.slices(xi) if weight else ():
+            point = np.array([x, 0.0, 0.0])
             needed = (pose.acceleration(point) - self.gravity) * mass
             inertia = pose.R @ inertia @ pose.R.T
             couple = inertia @ pose.alpha + cross(pose.w, inertia @ pose.w)
@@ -51,5 +50,5 @@ class Section:
 
     def _beyond(self, one, xi, length):
         x = (one.place - self.pose.r) @ self.pose.R[:, 0]
-        near = 100 * self.arithmetic.tolerance * length
+        near = 100 * TOLERANCE * length
         return x > xi * length + near or (xi == 1 and x > length - near)

@@ -1,19 +1,15 @@
 """What a load along a link does, for the oracle: forces at points along the part of it that is
 beyond a cut.
 
-Newton and Cotes' rule on nine points is exact for the load and its arms, where the load is a
-polynomial of degree eight at most.
+Gauss' rule is exact for the load and its arms, where the load is a polynomial.
 """
 
 from __future__ import annotations
 
-import functools
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from fractions import Fraction
 
-_POINTS = 9
+from arithmetic import GAUSS
 
 
 @dataclass(frozen=True)
@@ -28,28 +24,7 @@ class Spread:
     at: Callable
 
 
-@functools.cache
-def weights():
-    """Places k/8 and the weights of the values there, by the moments of the powers: exact
-    fractions.
-    """
-    places = [Fraction(k, _POINTS - 1) for k in range(_POINTS)]
-    found = []
-    for k, own in enumerate(places):
-        others = [x for i, x in enumerate(places) if i != k]
-        powers = [Fraction(1)]
-        for x in others:
-            powers = [
-                a - x * b
-                for a, b in zip([Fraction(0), *powers], [*powers, Fraction(0)], strict=True)
-            ]
-        found.append(
-            sum(c / (j + 1) for j, c in enumerate(powers)) / math.prod(own - x for x in others)
-        )
-    return list(zip(places, found, strict=True))
-
-
-def forces(spreads, arithmetic, link=None, cut=None):
+def forces(spreads, link=None, cut=None):
     """Forces (point, fx, fy, 0): of all of them, or of those on a ``link``, so much of them as is
     beyond a ``cut`` [m].
     """
@@ -57,16 +32,16 @@ def forces(spreads, arithmetic, link=None, cut=None):
     for one in spreads:
         low = one.start if cut is None or cut < one.start else cut
         if link in (None, one.body) and low < one.end:
-            for place, weight in weights():
-                at = low + (one.end - low) * arithmetic.number(place.numerator) / place.denominator
-                share = (one.end - low) * arithmetic.number(weight.numerator) / weight.denominator
+            for node, weight in zip(*GAUSS, strict=True):
+                at = low + (one.end - low) * (node + 1.0) / 2.0
+                share = (one.end - low) * weight / 2.0
                 fx, fy = one.at(at)
                 found.append(
                     (
-                        (one.body, at, arithmetic.number(0)),
+                        (one.body, at, 0.0),
                         share * fx,
                         share * fy,
-                        arithmetic.number(0),
+                        0.0,
                     )
                 )
     return found

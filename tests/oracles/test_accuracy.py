@@ -16,6 +16,7 @@ from internals import run
 from mechanisms import slider_crank
 from outside import doubled
 from random_mechanisms import KINDS
+from spatial_solutions import scene_of
 from stepped import iterated
 from truth import true_errors, truth
 
@@ -72,6 +73,12 @@ def test_random_mechanisms(kind):
     every = [value for one in found for value in one.values()]
     assert np.mean([value < FACTOR for value in every]) > 0.9
     assert 1.0 < np.median(every) < 1.5
+
+
+@pytest.mark.parametrize("family", ["tree", "loop"])
+def test_random_mechanisms_in_space(family):
+    _, scene = scene_of(family, 0)
+    assert_near(looked_at(replace(scene, wanted=["effort", "reaction"]), {}))
 
 
 def test_a_friction_on_the_wrong_side_of_a_reversal_is_an_error_of_singles():
