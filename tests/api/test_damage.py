@@ -121,7 +121,7 @@ def told_by(read, capsys):
 
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("kind", READERS)
-@pytest.mark.parametrize("count", [50, pytest.param(10_000, marks=pytest.mark.long)])
+@pytest.mark.parametrize("count", [25, pytest.param(10_000, marks=pytest.mark.long)])
 def test_damage_is_refused(here, slider_crank, monkeypatch, capsys, kind, count):
     """By every reader, in one line; all of them take the file as it was written."""
     file = source(kind, here, slider_crank, monkeypatch)

@@ -18,7 +18,7 @@ from lagrange_casadi import Mechanism, Scene, evaluate, export, prepare, sweep, 
 from lagrange_casadi.errors import AssemblyError, DeclarationError
 from lagrange_casadi.motion import expression, polynomial
 
-pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
+pytestmark = pytest.mark.usefixtures("interpreted")
 
 X, Y, T = (ca.SX.sym(name) for name in "xyt")
 
@@ -95,6 +95,7 @@ BROKEN = {
 }
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("name", SMOOTH)
 def test_smooth(name):
     for span in ((-20.0, 20.0), (-0.2, 0.8)):

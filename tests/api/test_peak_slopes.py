@@ -18,7 +18,6 @@ from lagrange_casadi import (
     tolerances,
 )
 from lagrange_casadi.density import polynomial as density
-from lagrange_casadi.errors import UnknownNameError
 from lagrange_casadi.motion import dwell, harmonic, move, moves, polynomial, samples
 
 _, END, _, UNKNOWN, _ = range(5)
@@ -74,33 +73,6 @@ def rotor(**motion):
 
 MOMENT = 3.0 / 2 - 1.0 / 3
 """The first moment of its density, for a length of one."""
-
-
-@pytest.mark.parametrize("backend", ["auto", "c"])
-def test_a_turning_link_has_the_slopes_of_its_closed_form(backend):
-    m, speed, _ = rotor()
-    f = prepare(
-        Scene(m, {"O": polynomial(0.0, speed)}, t=(0.0, 0.1, 11)),
-        wanted=["section"],
-        backend=backend,
-    )
-    gradient = f.gradient(speed=30.0, l=0.5)
-    w, l = 30.0, 0.5
-    exact = {
-        "speed": 2 * w * l**2 * MOMENT,
-        "l": 2 * w**2 * l * MOMENT,
-        "heavy": w**2 * l**2 / 2,
-        "taper": w**2 * l**2 / 3,
-    }
-    for name, slope in gradient["section:arm:axial"].items():
-        assert abs(slope - exact[name]) <= 1e-14 * exact["l"]
-    curvature = f.curvature(speed=w, l=l)
-    bends = curvature["section:arm:axial"]
-    assert bends["speed"]["speed"] == pytest.approx(2 * l**2 * MOMENT, rel=1e-13)
-    assert bends["speed"]["l"] == pytest.approx(4 * w * l * MOMENT, rel=1e-13)
-    assert bends["l"]["l"] == pytest.approx(2 * w**2 * MOMENT, rel=1e-13)
-    with pytest.raises(UnknownNameError, match="quantity with a peak"):
-        curvature["effort:O"]
 
 
 @pytest.mark.parametrize("asked", ["times", "over", "samples"])

@@ -4,8 +4,6 @@ sweep was cut and goes on, and what is never overwritten.
 
 import contextlib
 import os
-import random
-import signal
 import subprocess
 import sys
 import threading
@@ -16,11 +14,10 @@ import pytest
 import sweeps
 import xarray
 from commands import command
-from forging import flip
 from sweeps import StopError, stop_after
 
 from lagrange_casadi import Scene, Sweep, motion, read_designs, sweep
-from lagrange_casadi.errors import BusyError, DeclarationError, PathError, StoppedError, StoreError
+from lagrange_casadi.errors import BusyError, DeclarationError, PathError, StoreError
 
 ASKED = {"t": (0, 0.08, 7)}
 GRID = {"l": (0.15, 0.4, 20), "r": [0.05, 0.1, 0.07]}
@@ -83,36 +80,6 @@ def test_every_reader_finds_every_number(tmp_path, kind, engine):
 @pytest.mark.parametrize("workers", [2, 5, None])
 def test_the_same_bytes_whatever_the_workers(whole, tmp_path, workers):
     assert run(tmp_path / "x.h5", workers=workers) == whole
-
-
-def test_the_same_bytes_whatever_the_stops_and_what_is_lost(whole, tmp_path):
-    """Stopped by its progress and by interrupts, which say how to go on, and with parts deleted or
-    damaged in between.
-    """
-    path, chance, stops, told = tmp_path / "x.h5", random.Random(5), 0, set()
-    while not path.exists():
-        progress = stop_after(chance.randint(2, 4)) if stops % 3 else interrupting
-        try:
-            run(path, resume=True, workers=2, progress=progress)
-        except (StopError, StoppedError, StoreError) as error:
-            stops += 1
-            told |= {word for word in SAID if word in str(error)}
-        parts = sorted((tmp_path / "x.h5.parts").glob("*.part"))
-        if stops % 4 == 1 and parts:
-            parts[0].unlink()
-        if stops % 4 == 2 and len(parts) > 1:
-            flip(parts[1], chance.randrange(parts[1].stat().st_size))
-    assert stops > 3
-    assert told == SAID
-    assert (path.read_bytes(), os.listdir(tmp_path)) == (whole, ["x.h5"])
-
-
-SAID = {"x.h5.parts: continue with resume=True"}
-
-
-def interrupting(what, done, _total):
-    if done and what == "designs":
-        signal.raise_signal(signal.SIGINT)
 
 
 def test_what_is_there_is_not_overwritten(whole, tmp_path):

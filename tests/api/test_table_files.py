@@ -22,8 +22,6 @@ from lagrange_casadi.beams import read_profiles
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, PathError
 
-pytestmark = pytest.mark.quick
-
 HEADS = {
     "designs": ["r", "l", "phi"],
     "motors": [

@@ -15,8 +15,6 @@ from model_files import SMALL
 
 from lagrange_casadi import errors
 
-pytestmark = pytest.mark.quick
-
 NAMES = [
     "origin", "inertial", "mass", "inertia", "visual", "collision", "axis", "axis2", "limit",
     "dynamics", "mimic", "safety_controller", "transmission", "gazebo", "turnGravityOff",

@@ -1,4 +1,6 @@
-"""Tutorials, how-to guides and answers: every block is run, and prints what its page says."""
+"""Tutorials, how-to guides and answers: every block is run, and prints what its page says. Examples
+of other pages are run too.
+"""
 
 import contextlib
 import io
@@ -90,3 +92,30 @@ def test_pages_run_and_print_what_they_say(page, tmp_path, monkeypatch, request)
         else:
             printed = run_commands(text)
         assert missing(stated, printed) is None, missing(stated, printed)
+
+
+EXAMPLES = [
+    "README.md",
+    "docs/method.md",
+    "docs/declaring.md",
+    "docs/loads.md",
+    "docs/machines.md",
+    "docs/models.md",
+    "docs/space.md",
+    "docs/strength.md",
+    "docs/sweeps.md",
+    "docs/report.md",
+    "docs/animations.md",
+    "docs/optimise.md",
+    "docs/reference/python.md",
+]
+
+
+@pytest.mark.sampled(2)
+@pytest.mark.parametrize("page", EXAMPLES)
+def test_examples_run(page, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    blocks = re.findall(r"```python\n(.*?)```", (DOCS.parent / page).read_text(), re.DOTALL)
+    assert blocks
+    for block in blocks:
+        exec(compile(block, page, "exec"), {})

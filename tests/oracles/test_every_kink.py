@@ -99,7 +99,7 @@ def parts(few, first, size, count):
     return [pytest.param(few, id="few"), *(pytest.param(s, marks=pytest.mark.long) for s in more)]
 
 
-@pytest.mark.parametrize("seeds", parts([*range(100, 107), 2187], 5000, 50, 4))
+@pytest.mark.parametrize("seeds", parts([*range(100, 104), 2187], 5000, 50, 4))
 @pytest.mark.parametrize("scene", [slide, constraint, lifted])
 def test_scenes_refuse_what_has_a_kink_and_nothing_else(scene, seeds):
     assert min(refused(scene, seeds).values()) >= 1

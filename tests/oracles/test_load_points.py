@@ -201,22 +201,6 @@ def test_what_is_nearly_at_one_place_is_not(apart):
     assert not any(solution.determined(f"section:bar:{force}") for force in SECTION)
 
 
-def test_a_beam_on_two_pins_at_one_place_is_the_one_of_a_textbook():
-    """Supports at 0 and s, weight W, load F at x: the bending over the second support is -(F (x -
-    s) + W (1 - s)^2 / 2).
-    """
-    solution = evaluate(beam(A, B), xi=(0, 1, 6))
-    section, over = solution.section("bar"), 7.0 * 0.5 + 2.0 * 9.81 * 0.6**2 / 2
-    np.testing.assert_allclose(section.bending[0, 2], -over, rtol=1e-13)
-    left = 2.0 * 9.81 * 0.4**2 / 2
-    np.testing.assert_allclose(section.shear[0, 0], (over - left) / 0.4, rtol=1e-13)
-    # What each of both bears is open all the same.
-    for joint, member in itertools.product("AB", ("fx", "fy")):
-        assert f"reaction:{joint}:{member}" in solution.undetermined
-    assert np.all(solution.series["section:bar:B:f"] == 0.0)
-    assert solution.determined("section:bar:A:f")
-
-
 SHAPERS = {"within": (0.9, 0.0), "past the tip": (0.6, 0.0), "before the base": (0.9, 0.45)}
 
 

@@ -2,8 +2,6 @@
 where equations only look alike.
 """
 
-import math
-
 import casadi as ca
 import numpy as np
 import pytest
@@ -26,7 +24,6 @@ CLOSED = ("bushes", "plate", "bent", "cam", "cylinder", "damper", "torsion", "ol
 """Kinds of random mechanisms that are built on linkages of dyads alone."""
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("kind", CLOSED)
 def test_every_dyad_has_a_closed_form(kind):
     """RRR, RRP and RPR, told in any order, and a loop of slides."""
@@ -90,31 +87,6 @@ def test_the_height_of_a_tip_and_the_place_of_a_middle_are_not_two_circles():
         base.x + 0.25 * np.cos(angle), 0.7 + 0.05 * np.sin(3 * solution.t), atol=1e-14
     )
     assert iterated(scene)
-
-
-def test_slides_of_any_number_are_one_linear_system():
-    """A wedge on a wedge on a wedge, and the last on the ground: closed form, whatever is declared
-    first.
-    """
-    m = Mechanism("wedges")
-    bodies = [m.link(f"w{i}", length=0.2, mass=1.0 + i) for i in range(3)]
-    chain = [m.ground, *bodies]
-    for i, way in enumerate((0.0, 0.7, 1.9)):
-        m.prismatic(f"S{i}", chain[i], chain[i + 1], axis=(math.cos(way), math.sin(way)))
-    m.prismatic("last", m.ground.at(0.1, 0.05), bodies[2], axis=(math.cos(2.5), math.sin(2.5)))
-    solution = evaluate(
-        Scene(m, {"S0": polynomial(0.1, 0.2), "S2": polynomial(0.0, -0.1)}, t=(0, 1, 5))
-    )
-    assert solution.certificate["closure"].max() < 1e-15
-    # Their directions are held four times for three bodies: moments are open, and the efforts are
-    # not.
-    weight = 9.81 * np.array([1.0, 2.0, 3.0])
-    rate = (
-        np.array([solution.pose(f"w{i}").y[1] - solution.pose(f"w{i}").y[0] for i in range(3)])
-        / 0.25
-    )
-    power = 0.2 * solution.effort("S0") - 0.1 * solution.effort("S2")
-    np.testing.assert_allclose(power, weight @ rate, rtol=1e-12)
 
 
 @pytest.mark.parametrize("size", [1e-6, 0.05, 1e3])

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from stepped import one_way
 
-from lagrange_casadi import Mechanism, Scene, evaluate, motion, optimise, prepare, refine, sweep
+from lagrange_casadi import Mechanism, Scene, evaluate, motion, optimise, refine
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import NoDesignError
 
@@ -214,17 +214,6 @@ def test_peaks_are_those_of_known_sides(seed):
     name, scene, peaks, at_rest = drawn(seed)
     found = refine(scene, evaluate(scene, certificate=False), list(peaks))
     assert not wrong({peak.name: peak.value for peak in found}, peaks, at_rest), name
-
-
-@pytest.mark.parametrize("seed", SEEDS[::3])
-def test_sweeps_and_prepared_designs_have_numbers(seed):
-    name, scene, peaks, at_rest = drawn(seed)
-    peaks.pop("motion:way")
-    prepared = prepare(scene)
-    values = dict(zip(prepared.quantities, prepared.peaks().value, strict=True))
-    assert not wrong(values, peaks, at_rest), name
-    swept = sweep(scene, {"mass": [0.5, 0.7]})
-    assert (swept["status"] == 0).all()
 
 
 def test_a_design_is_found():

@@ -23,7 +23,7 @@ from lagrange_casadi.peaks import forces
 COUNT, LONG, QUICK = 10, 100, 3
 """Mechanisms of each kind by default, with ``--long``, and for whoever is editing."""
 
-ANY, LONG_ANY, AT_ONCE = [*range(60), 700042], range(60, 1000), 15
+ANY, LONG_ANY, AT_ONCE = [*range(60), 700042], range(60, 1000), 10
 """Seeds of mechanisms of any kind, of which the first are for whoever is editing; of the last one
 gears rest while drives move.
 """

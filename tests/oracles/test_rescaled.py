@@ -119,7 +119,7 @@ def test_nor_do_these_that_did(seed):
     assert_drawn_the_same(seed)
 
 
-@pytest.mark.sampled(101)
+@pytest.mark.sampled(151)
 @pytest.mark.parametrize("seed", range(1200))
 def test_random_mechanisms_in_space_do_not_depend_on_units(seed):
     draw = SPATIAL[seed % len(SPATIAL)]

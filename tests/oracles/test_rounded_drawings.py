@@ -92,7 +92,7 @@ def turned_four_bar(seed, noise):
     return Scene(m, laws, t=(0.0, 0.6, 7), posture=rough, wanted=["effort"])
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", range(8))
 def test_planar_loops_in_any_plane_are_on_the_branch_of_exact_axes(seed):
     noise = 1e-8
     found, exact = (evaluate(turned_four_bar(seed, off), backend="vm") for off in (noise, 0.0))
@@ -158,7 +158,7 @@ def placed_four_bar(noise, turn):
 
 
 @pytest.mark.parametrize("turn", [0.0, 1.0])
-@pytest.mark.parametrize("noise", [1e-12, 1e-10, 5e-10, 1e-9])
+@pytest.mark.parametrize("noise", [1e-12, 5e-10])
 def test_places_that_fit_at_first_hide_no_rounded_axes(noise, turn):
     """Forces would be those of wedges: what is open would be taken for determined."""
     found, exact = (evaluate(placed_four_bar(off, turn), backend="vm") for off in (noise, 0.0))

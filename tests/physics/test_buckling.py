@@ -15,7 +15,7 @@ from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams, evaluate
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import polynomial
 
-pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
+pytestmark = pytest.mark.usefixtures("interpreted")
 
 E, YIELD, LENGTH = 210e9, 490e6, 0.4
 

@@ -158,23 +158,6 @@ def test_in_space_the_largest_is_that_of_a_fine_grid(robots, name):
     assert found.max() == pytest.approx(stress.peak("von_mises").value, rel=1e-13)
 
 
-def test_a_round_bar_in_space_is_the_textbooks_shaft(robots):
-    """32 sqrt(M^2 + (N d/8)^2 ...) aside: at the outermost fibre s = N/A + M/W and t = T/(2 W),
-    fibres within 7.5 degrees of it.
-    """
-    solution, d = robots["round"], 0.03
-    section, modulus = solution.section("upper").law, math.pi * d**3 / 32
-    ends = np.zeros((solution.t.size, 1))
-    n, m, t = (section.at(force, ends)[:, 0] for force in ("axial", "bending", "torsion"))
-    expected = np.hypot(
-        np.abs(n) / (math.pi * d * d / 4) + m / modulus, math.sqrt(3) * t / (2 * modulus)
-    )
-    found = solution.stress("upper").grid("von_mises", np.zeros(1))[:, 0]
-    shear = np.abs(section.at("shear", ends)[:, 0]) * 4 / 3 / (math.pi * d * d / 4)
-    assert np.all(found <= expected + 3 * shear)
-    assert np.all(found >= expected * math.cos(math.radians(7.5)) - 3 * shear)
-
-
 def test_notches_take_their_factors():
     solution = evaluate(
         strong.press(I, [beams.Notch(0.25, axial=2.0, bending=3.0, shear=1.5)]), certificate=False
