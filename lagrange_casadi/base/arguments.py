@@ -19,9 +19,9 @@ from typing import Annotated, Any, Literal, NamedTuple, ParamSpec, TypeAlias, Ty
 import casadi as ca
 import numpy as np
 
-from ..errors import DeclarationError, NumberError, shown
+from ..errors import DeclarationError, shown
 from .space import MOST_THREADS
-from .units import Within, double, in_words, is_whole, number, typed
+from .units import Within, double, in_si, in_words, is_whole, number, numbers_in, typed
 
 Thing = TypeVar("Thing", bound=Callable[..., Any])
 _P = ParamSpec("_P")
@@ -105,7 +105,7 @@ def _looking(function: Callable[_P, _Result], kinds: bool = True) -> Callable[_P
             found, why = None, ""
             try:
                 found = kind.read(value)
-            except NumberError as error:
+            except DeclarationError as error:
                 why = str(error)
             if found is None:
                 what = f"{_called(function)}{_part(names, given)}: {name}"
@@ -178,7 +178,7 @@ def _kind(hint: Any) -> _Kind | None:
     """The kind that an annotation says; None for one that its function looks at itself."""
     origin, of = typing.get_origin(hint) or hint, typing.get_args(hint)
     if origin is Annotated:
-        return _ranged(*of) if isinstance(of[1], Within) else of[1]
+        return _ranged(*of) if isinstance(of[1], Within) else _measured(*of[1:])
     if origin in (typing.Union, types.UnionType):
         return _one_of(of)
     if origin is Literal:
@@ -237,6 +237,14 @@ def _ranged(of: type, span: Within) -> _Kind:
     return _Kind(words + in_words(span.unit).removeprefix("number") if span.unit else words, read)
 
 
+def _measured(kind: _Kind | None, unit: str = "") -> _Kind | None:
+    """A kind of numbers, or of rows of them, of which some may be texts in a ``unit``."""
+    if not (kind and unit):
+        return kind
+    words = f"{kind.words} [{unit}], or of texts with units"
+    return _Kind(words, lambda value: kind.read(in_si(value, unit)))
+
+
 _NO_TEXTS = (str, Mapping)
 _NO_NAMES = (str, bytes, set, frozenset)
 _NO_ROWS = (*_NO_NAMES, Mapping)
@@ -246,10 +254,7 @@ _NO_ROWS = (*_NO_NAMES, Mapping)
 def _row(of: object, never: tuple[type, ...]) -> _Kind | None:
     """The kind of rows of something: of numbers, of names, of parts."""
     if of is float:
-        return _Kind(
-            "a row of numbers",
-            lambda value: tuple(found.tolist()) if np.ndim(found := _array(value)) == 1 else None,
-        )
+        return _Kind("a row of numbers", _line)
     kind = _kind(of)
     if kind is None:
         return None
@@ -288,6 +293,18 @@ def _array(value: object) -> Any:
     return None
 
 
+def _line(value: object) -> Any:
+    """Numbers of a row."""
+    found = _array(value)
+    return tuple(found.tolist()) if np.ndim(found) == 1 else None
+
+
+def _line_of_texts(value: Any) -> Any:
+    """Numbers of a row in which texts may be, with units of one kind."""
+    texts = isinstance(value, list | tuple) and any(isinstance(one, str) for one in value)
+    return _line(numbers_in(value)[0] if texts else value)
+
+
 def _whole(value: object) -> Any:
     return int(value) if is_whole(value) else None
 
@@ -296,7 +313,7 @@ def _pair(value: object) -> Any:
     """A stress and a number."""
     if isinstance(value, tuple | list) and len(value) == 2 and isinstance(value[0], str):
         value = number(value[0], "Pa"), value[1]
-    return tuple(found.tolist()) if np.shape(found := _array(value)) == (2,) else None
+    return found if len(found := _line(value) or ()) == 2 else None
 
 
 def _wholes(value: object) -> Any:
@@ -384,6 +401,9 @@ Elastic: TypeAlias = Annotated[
 
 Numeric: TypeAlias = Annotated[Any, _Kind("a number or an array of numbers", _array)]
 """A number, or an array of numbers of any shape."""
+
+Row: TypeAlias = Annotated[Any, _Kind("a row of numbers", _line_of_texts)]
+"""Numbers, or texts with units of one kind."""
 
 Symbolic: TypeAlias = Annotated[Any, _Kind("a number, or an expression in parameters", _symbolic)]
 """A number, a text with a unit, or an expression of parameters, for what is declared before there

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterable
 from contextlib import suppress
 from decimal import Context, Decimal
 from functools import lru_cache
@@ -108,6 +109,9 @@ _TEXT = re.compile(rf"\s*(?=({_DIGITS}))\1\s*((?:1\s*/|[^\s.,0-9]).*?)\s*")
 _FACTOR = re.compile(r"([A-Za-z%]+)(?:\^?(-?[1-9][0-9]?))?")
 _UNCLEAR = re.compile(r"m\s+([A-Za-z]+)(\^?[1-9])?(?![\^\-0-9A-Za-z]).*")
 _SIGNS = str.maketrans("¹²³⁴⁻µμ·⋅", "1234-uu**") | str.maketrans({"°": "deg"})
+_RPM = ("1/min", "min^-1", "min-1")
+"""Names for rpm on data sheets of motors."""
+
 EXACT = Context(prec=40)
 """Arithmetic in which products of decimals are as their digits say."""
 
@@ -169,8 +173,7 @@ def _unit(text: str) -> Unit:
     if text in _BASES:
         return Unit(powers=tuple(int(text == base) for base in _BASES))
     words = text.translate(_SIGNS).replace("**", "^").strip()
-    if words in ("1/min", "min^-1", "min-1"):  # as data sheets of motors have it
-        words = "rpm"
+    words = "rpm" if words in _RPM else words
     above, per, below = (part.strip() for part in words.partition("/"))
     several = below.startswith("(") and below.endswith(")")
     if per and not several and not _FACTOR.fullmatch(below):
@@ -217,6 +220,19 @@ def _of_si(powers: tuple[int, ...]) -> str:
     return f"{' '.join(above) or '1'}{'/' if below else ''}{divisor}"
 
 
+def vocabulary() -> dict[str, dict[str, Any] | str]:
+    """The units as data, for a program in another language that reads them: size in SI and powers
+    of each name, signs and what they stand for, patterns, and kinds by their powers.
+    """
+    return {
+        "names": {name: [Unit.of(name).factor, *Unit.of(name).powers] for name in (*_NAMES, *_RPM)},
+        "signs": {chr(k): chr(to) if isinstance(to, int) else to for k, to in _SIGNS.items()},
+        "factor": _FACTOR.pattern,
+        "unclear": _UNCLEAR.pattern,
+        "kinds": {",".join(map(str, Unit.of(unit).powers)): a for unit, (a, _) in _KINDS.items()},
+    }
+
+
 def typed(value: object) -> tuple[Any, str]:
     """A text with a unit as a number in SI, and the unit that it is then in, as rad, m or N/m;
     anything else as it is, and no unit.
@@ -229,6 +245,31 @@ def typed(value: object) -> tuple[Any, str]:
     return value, ""
 
 
+def numbers_in(given: Iterable[object]) -> tuple[tuple[float, ...], str]:
+    """Numbers, of which some may be texts, as ``"30 deg"``, and the unit of SI that these are in;
+    none where none is a text.
+
+    Raises :class:`.NumberError` for anything else, :class:`.DeclarationError` for several units.
+    """
+    read = [typed(value) for value in given]
+    units = dict.fromkeys(unit for _, unit in read if unit)
+    if len(units) > 1:
+        raise DeclarationError(
+            f"expected values of one unit, got some in {' and some in '.join(units)}"
+        )
+    return tuple(number(value, finite=False) for value, _ in read), next(iter(units), "")
+
+
+def in_si(value: object, unit: str) -> Any:
+    """Return a value, or a list of values, with its texts as numbers in a unit.
+
+    Raises :class:`.NumberError` for a text that is no number in such a unit.
+    """
+    if isinstance(value, list | tuple):
+        return [in_si(one, unit) for one in value]
+    return number(value, unit) if isinstance(value, str) else value
+
+
 def known(word: str) -> Unit | None:
     """The unit that a word stands for; None for a word of the user's own."""
     with suppress(NumberError):
@@ -236,24 +277,29 @@ def known(word: str) -> Unit | None:
     return None
 
 
-def differs(word: str, unit: str, *, size: bool = False) -> str:
+def differs(word: str, unit: str) -> str:
     """Say what a word for a unit stands for, and what was expected: ``unit``, or another of its
-    kind, and if ``size`` of its size; nothing where that is so.
+    kind; nothing where that is so.
     """
     given, wanted = known(word), known(unit)
-    alike = given and wanted and given.powers == wanted.powers
-    if word == unit or (alike and not size) or (size and given and given == wanted):
+    if word == unit or (given and wanted and given.powers == wanted.powers):
         return ""
     here = f"{word}, {given.kind}" if given and word else f"'{word}'" if word else "no unit"
     return f"{here}; expected {wanted.kind if wanted else 'numbers'} [{unit}]"
 
 
-def check_unit(what: str, given: str, unit: str) -> None:
-    """Raise :class:`.DeclarationError` for texts that were read in another unit than ``unit``; no
-    text was read where none is ``given``.
+def in_unit(what: str, values: Iterable[float], given: str, unit: str) -> list[float]:
+    """Numbers of texts, which were read in a unit of SI ``given``, in another ``unit``; as they are
+    where no text was read.
+
+    Raises :class:`.DeclarationError`, naming ``what``, for a unit of another kind.
     """
-    if given and (wrong := differs(given, unit, size=True)):
+    if given and (wrong := differs(given, unit)):
         raise DeclarationError(f"{what} is in {wrong}")
+    scale = Unit() if given in ("", unit) else Unit.of(given).times(Unit.of(unit), -1)
+    # What was rounded in SI has fifteen digits.
+    read = (float(f"{scale.number(Decimal(value)):.15g}") for value in values)
+    return [*(values if scale == Unit() else read)]
 
 
 def number(value: object, unit: str = "1", *, finite: bool = True) -> float:

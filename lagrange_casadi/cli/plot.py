@@ -9,7 +9,7 @@ from typing import cast
 import click
 
 from ..base.files import check_writable
-from ..base.units import check_unit, typed
+from ..base.units import quantity
 from ..errors import NoDesignError
 from ..results.store.runs import figure_specs, load
 from ..results.store.specs import Spec as FigureSpec
@@ -95,6 +95,4 @@ def _draw(sweep: Sweep, specs: Sequence[Spec], out: Path, svg: bool) -> None:
 
 def _number(sweep: Sweep, name: str, value: float | str) -> float:
     """Number of a fixed parameter, which may have a unit."""
-    found, written_unit = typed(value)
-    check_unit(f"--at: {name}={value}", written_unit, sweep.parameters.get(name, "1"))
-    return float(found)
+    return quantity(f"--at: {name}", value, sweep.parameters.get(name, "1"), finite=False)

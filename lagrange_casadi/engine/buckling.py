@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from ..base.arguments import Numeric, Positive, public
+from ..base.arguments import Numeric, Stress, public
 from ..base.arrays import Array, Expression, Operand
 from ..model.beams.beam import SLIGHT
 from ..model.beams.properties import chosen, larger, smaller, symbolic
@@ -28,7 +28,7 @@ _ROUNDS, _TINY = 8, 1e-12
 
 
 @public
-def critical_stress(slenderness: Numeric, elasticity: Positive, strength: Positive) -> Expression:
+def critical_stress(slenderness: Numeric, elasticity: Stress, strength: Stress) -> Expression:
     """Return the stress at which a column fails, by Euler's or Johnson's formula.
 
     Parameters

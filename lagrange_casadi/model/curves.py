@@ -14,7 +14,7 @@ import casadi as ca
 import numpy as np
 
 from ..base import lookups
-from ..base.arguments import fitting, public
+from ..base.arguments import Row, fitting, public
 from ..base.arrays import Array, Expression
 from ..base.units import number
 from ..base.vocabulary import BEYONDS, Beyond
@@ -61,8 +61,8 @@ def rows(
 @public
 def table(
     x: Expression,
-    places: Sequence[float],
-    values: Sequence[float],
+    places: Row,
+    values: Row,
     *,
     beyond: Beyond | None = None,
 ) -> ca.SX:
@@ -75,9 +75,9 @@ def table(
     x
         An expression, such as a joint's coordinate.
     places
-        Increasing abscissas (n,), in the unit of ``x``.
+        Increasing abscissas (n,), in the unit of ``x``, or texts as ``"45 deg"``.
     values
-        Ordinates (n,), in the unit of the load.
+        Ordinates (n,), in the unit of the load, or texts as ``"5 kN"``.
     beyond
         How the curve goes on beyond its ends: ``"hold"`` keeps the value at the end, and
         ``"line"`` goes on in a straight line. Default: instants at which ``x`` is beyond the ends
@@ -179,9 +179,7 @@ def derivatives(curve: Curve, x: Array) -> Array:
 
 
 @public
-def curve(
-    x: Sequence[float], y: Sequence[float], *, periodic: bool = False, smoothing: float = 0.0
-) -> Curve:
+def curve(x: Row, y: Row, *, periodic: bool = False, smoothing: float = 0.0) -> Curve:
     """Return a smooth curve through points, for constraints, motions, loads and densities.
 
     Call it on an expression: ``curve(angles, lifts, periodic=True)(m.coordinate(cam))`` is the lift
@@ -191,9 +189,10 @@ def curve(
     Parameters
     ----------
     x
-        Increasing abscissas (n,), at least four, in the unit of the expression.
+        Increasing abscissas (n,), at least four, in the unit of the expression, or texts as
+        ``"45 deg"``.
     y
-        Ordinates (n,), in the unit of the result.
+        Ordinates (n,), in the unit of the result, or texts as ``"5 kN"``.
     periodic
         Let the curve repeat; its first and last ordinate must be equal.
     smoothing

@@ -12,7 +12,7 @@ import casadi as ca
 
 from ..base.interpret import written_out
 from ..base.scalars import column
-from ..base.units import number, typed
+from ..base.units import Unit, number, typed
 from ..errors import DeclarationError, NumberError, UnknownNameError, one_line, shown
 from .declared_parts import Expression
 
@@ -28,7 +28,9 @@ _INSTEAD = {
         "a text with a unit goes into no formula: write its number in SI units, as 0.1 for"
         " '100 mm'; the entries of a list are multiplied one by one"
     ),
-    "to_int not defined for SymbolicSX": "a symbol has no number while a mechanism is declared",
+    "to_int not defined for SymbolicSX|not SX|'SX' object cannot be inter|to SX.__format": (
+        "a symbol has no number while a mechanism is declared"
+    ),
     "'(SX|Link|Point|Ground|PointMass|Mechanism|Scene)' object is not callable": (
         r"'\1' is no function: leave out the ()"
     ),
@@ -116,10 +118,11 @@ def coordinates(
         read, unit = typed(value)
         base = unit.removesuffix(per)
         if isinstance(value, str) and unit not in (f"rad{per}", f"m{per}"):
+            kinds = " or ".join(f"{Unit.of(one).kind} [{one}]" for one in (f"rad{per}", f"m{per}"))
             examples = f"'350 deg{per}' or '100 mm{per}'"
             raise DeclarationError(
-                f"{what}: expected a number, an expression, or a text such as {examples}, got"
-                f" {shown(value)}"
+                f"{what}: expected {kinds}: a number, an expression, or a text such as"
+                f" {examples}, got {shown(value)}{f', {Unit.of(unit).kind}' if unit else ''}"
             )
         units |= {base} if unit else set()
         found.append(scalar(what, read, symbols_of(read), "parameter"))
@@ -166,7 +169,7 @@ def error_text(error: BaseException) -> str:
     for words, instead in _INSTEAD.items():
         if found := re.search(words, text):
             return found.expand(instead)
-    module = getattr(error, "obj", None) or sys.modules.get(str(getattr(error, "name", "")))
+    module = getattr(error, "obj", sys.modules.get(str(getattr(error, "name", ""))))
     lacking = re.search(r"(?:import name|attribute) '?(\w+)", text)
     if isinstance(module, ModuleType) and lacking:
         place, names = module.__name__, [name for name in dir(module) if name[0] != "_"]

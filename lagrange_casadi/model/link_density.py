@@ -12,12 +12,12 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any
+from typing import Annotated, Any
 
 import casadi as ca
 import numpy as np
 
-from ..base.arguments import Symbolic, public
+from ..base.arguments import Row, Symbolic, public
 from ..base.arrays import Array, Expression, Operand
 from ..base.brief import Brief
 from ..errors import DeclarationError
@@ -279,7 +279,7 @@ def polynomial(*coefficients: Symbolic) -> Density:
 
 
 @public
-def tabulated(ratios: Sequence[float], values: Sequence[float]) -> Density:
+def tabulated(ratios: Sequence[float], values: Annotated[Row, "kg/m"]) -> Density:
     """Return a density that is linear between values at ratios xi/l.
 
     Parameters

@@ -137,6 +137,7 @@ def friction(
     axis, beside = _axes(own, what, joint, along)
     angular = axis.kind == "angle"
     units = _UNITS | {
+        "coulomb": "N m" if angular else "N",
         "smooth": "rad/s" if angular else "m/s",
         "viscous": "N m s/rad" if angular else "N s/m",
     }
@@ -185,14 +186,16 @@ def drive(
     for other in own.declared.drives.values():
         if other.joint is joint:
             raise DeclarationError(f"{what}: joint '{joint.name}' has one already, '{other.name}'")
-    effort, speed = ("N m", "rad/s") if axis.kind == "angle" else ("N", "m/s")
-    units = {"effort": effort, "speed": speed, "rotor_inertia": "kg m^2"}
+    angular = axis.kind == "angle"
+    kinds = ("N m", "rad/s", "kg m^2") if angular else ("N", "m/s", "kg")
+    units = dict(zip(("effort", "speed", "armature"), kinds, strict=True))
+    units["rotor_inertia"] = "kg m^2"
     numbers = {
         word: _number(own, what, word, value, units.get(word, "1"))
         for word, value in given.items()
         if value is not None
     }
-    ratio = own.expression(f"{what}: ratio", ratio)
+    ratio = own.expression(f"{what}: ratio", ratio, "1" if angular else "rad/m")
     return Drive(name, joint, axis, ratio=ratio, **numbers)
 
 

@@ -4,14 +4,13 @@ smoothed, as one smooth curve.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from ..base.arguments import public
+from ..base.arguments import Measured, public
 from ..base.arrays import Array
 from ..base.csv_table import Table, count_sizes, encoding_of, for_each
 from ..base.units import count, differs, known, quantity
@@ -67,8 +66,8 @@ def read_samples(
     smoothing: float | str = 0.0,
     points: int | None = None,
     periodic: bool = False,
-    period: float | None = None,
-    advance: float = 0.0,
+    period: Measured | None = None,
+    advance: Measured = 0.0,
     ratio: Expression = 1.0,
     offset: Expression = 0.0,
     stretch: Expression = 1.0,
@@ -150,8 +149,8 @@ def read_motion(
     smoothing: float | str | Mapping[str, float | str] = 0.0,
     points: int | None = None,
     periodic: bool = False,
-    period: float | None = None,
-    advance: float | Mapping[str, float] = 0.0,
+    period: Measured | None = None,
+    advance: Measured | Mapping[str, Measured] = 0.0,
     ratio: Expression | Mapping[str, Expression] = 1.0,
     offset: Expression | Mapping[str, Expression] = 0.0,
     stretch: Expression = 1.0,
@@ -286,8 +285,8 @@ def _motion(
     smoothing: float | str,
     points: int | None,
     periodic: bool,
-    period: float | None,
-    advance: float,
+    period: Measured | None,
+    advance: Measured,
     scales: tuple[Expression, Expression, Expression],
 ) -> Motion:
     """The motion through a recording, with options of :func:`read_samples`: ``scales`` are ratio,
@@ -295,13 +294,16 @@ def _motion(
     """
     ratio, offset, stretch = scales
     name, cyclic = recording.name, periodic or period is not None
-    for what, setting in (("period", period), ("advance", advance)):
-        quantity(f"{name}: {what}", 0.0 if setting is None else setting)
+    advance = quantity(f"{name}: advance", advance, recording.unit)
+    if period is not None:
+        period = quantity(f"{name}: period", period, "s") * (
+            1.0 if isinstance(period, str) else second
+        )
     (ahead,), unit_in = coordinates(f"{name}: offset", [(offset, "")])
     each = zip(("ratio", "offset", "stretch"), (ratio, ahead, stretch), strict=True)
     found = [scalar(f"{name}: {word}", x, symbols_of(x), "parameter") for word, x in each]
     if cyclic:
-        recording = _closed(recording, None if period is None else period * second, advance)
+        recording = _closed(recording, period, advance)
     elif advance:
         raise DeclarationError(f"{name}: advance= needs periodic=True")
     # A ratio may make turns of lengths, and radians may be a rule's usual unit.
@@ -348,16 +350,11 @@ def _noise(recording: Recording, smoothing: float | str) -> float:
     """The noise that is to be smoothed away, in the unit of the values."""
     if smoothing == "estimated":
         return float(np.sqrt(np.mean(np.diff(recording.values, 4) ** 2) / _FOURTH))
-    if (
-        isinstance(smoothing, bool)
-        or not isinstance(smoothing, (int, float))
-        or not 0.0 <= smoothing < math.inf
-    ):
-        raise DeclarationError(
-            f"{recording.name}: smoothing expected the noise [{recording.unit}], a number of at"
-            f" least 0, or 'estimated', got {smoothing!r}"
-        )
-    return float(smoothing)
+    what = f"{recording.name}: smoothing"
+    found = quantity(f"{what}: the noise, or 'estimated'", smoothing, recording.unit)
+    if found < 0.0:
+        raise DeclarationError(f"{what}: expected a number of at least 0, got {smoothing!r}")
+    return found
 
 
 def _law(

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import casadi as ca
 
-from ..base.arguments import Measured, Symbolic, public
+from ..base.arguments import Measured, Row, Symbolic, public
 from ..base.arrays import Expression
 from ..base.scalars import entries
 from ..base.symbolic import symbolic
@@ -114,7 +115,7 @@ def power(value: Symbolic) -> Law:
 
 
 @public
-def torque_curve(speeds: Sequence[float], torques: Sequence[float]) -> Law:
+def torque_curve(speeds: Annotated[Row, "rad/s"], torques: Annotated[Row, "N m"]) -> Law:
     """Return the law of a drive from a table of torques over speeds.
 
     Parameters

@@ -212,7 +212,7 @@ IMPOSSIBLE = {
         lambda s, g: excite(s, {"A": LIMITS["A"]}), "limits=: expected those of drive 'B' too"
     ),
     "limit of words": (
-        lambda s, g: excite(s, LIMITS | {"A": ("x", 1, 1, 1)}), "limits of 'A': expected the least"
+        lambda s, g: excite(s, LIMITS | {"A": ("x", 1, 1, 1)}), "limits of 'A': expected a finite"
     ),
     "limit": (lambda s, g: excite(s, LIMITS | {"A": 3}), "limits of 'A': .* least .* got 3"),
     "link without a beam": (

@@ -179,9 +179,9 @@ REFUSED = {
     ),
     "advance": ("t,q", RAMP_ROWS, {"advance": 1.0}, "advance= needs periodic=True"),
     "noise": (
-        "t,q", RAMP_ROWS, {"smoothing": -1.0}, r"expected the noise \[rad\], a number of at least 0"
+        "t,q", RAMP_ROWS, {"smoothing": -1.0}, "smoothing: expected a number of at least 0, got -1"
     ),
-    "auto": ("t,q", RAMP_ROWS, {"smoothing": "auto"}, "or 'estimated', got 'auto'"),
+    "auto": ("t,q", RAMP_ROWS, {"smoothing": "auto"}, "or 'estimated': expected a finite number"),
     "straight": ("t,q", RAMP_ROWS, {"smoothing": 1e3}, "a smoothing of 1000 leaves only a"),
     "points": ("t,q", RAMP_ROWS, {"points": 3}, "points: expected a whole number of at least 5"),
     "rows": ("t,q", RAMP_ROWS[: RAMP_ROWS.index("0.4")], {}, "expected at least 5 rows"),
@@ -258,7 +258,7 @@ TWO = {
     ),
     "two.csv: columns= expected at least one coordinate": ("t,a", {"columns": []}),
     "the file has no column heads; name the columns with columns=": ("0,0", {}),
-    "column a: smoothing expected the noise": ("t,a", {"smoothing": {"a": -1.0}}),
+    "column a: smoothing: expected a number": ("t,a", {"smoothing": {"a": -1.0}}),
 }
 
 

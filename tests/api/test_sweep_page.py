@@ -94,8 +94,8 @@ def test_the_table_is_the_files_to_the_last_digit(page, file):
 def test_conditions_are_those_of_the_command_line(page, file):
     one, sweep = page(), Sweep.open(file)
     assert only(one, "status=0")[1] == "unknown column status"
-    assert only(one, "l=30deg")[1] == "l is in m, got an angle"
-    for where in ("l>0.15", "l>=0.2, r<=0.07", "peak:effort:O<3, m3=0.1", "m3!=0.1"):
+    assert only(one, "l=30deg")[1] == "deg is an angle; expected a length [m] after l"
+    for where in ("l>0.15", "l>=20 cm, r<=7e1mm", "peak:effort:O<3000 N·mm, m3=100 g", "m3!=0.1"):
         count, wrong = only(one, where)
         asked = {"minimise": "l", "where": [*where.split(", "), "status>=0"], "count": 99}
         expected = [int(row["design"]) for row in rows(one)]

@@ -125,7 +125,7 @@ def uses(of: SimpleNamespace) -> Iterator[tuple[str, Call]]:
             "identify": {"scene": scene, "measurements": record, "backend": "vm"},
             "excite": {
                 "scene": scene,
-                "limits": {"O": (-1.0, 1.0, 2.0, 9.0)},
+                "limits": {"O": ("-50 deg", 1.0, "2 rad/s", 9.0)},
                 "steps": 1,
                 "backend": "vm",
             },

@@ -22,11 +22,15 @@ from lagrange_casadi import (
     actuators,
     beams,
     bearings,
+    best,
     density,
     elements,
     evaluate,
     forward,
+    optimise,
     prepare,
+    read_designs,
+    strength,
     sweep,
 )
 from lagrange_casadi.errors import DeclarationError, LagrangeCasadiError
@@ -107,7 +111,8 @@ def shapes(u):
                             open=u(0.7, "m"), bore=u(0.05, "m"), rod=u(0.03, "m"),
                             barrel_mass=u(2.5, "kg"), rod_mass=u(1.5, "kg"))  # fmt: skip
     elements.gas_spring(m, "gas", m.ground, bar.pieces[0].tip, closed=u(0.2, "m"), open=u(0.3, "m"),
-                        force=(200.0, 300.0), end_damping=10.0, end=u(0.02, "m"))  # fmt: skip
+                        force=(u(200.0, "N"), u(300.0, "N")), damping=u(5.0, "N s/m"),
+                        end_damping=u(10.0, "N s/m"), end=u(0.02, "m"))  # fmt: skip
     pin = bearings.Pin(u(0.01, "m"), u(0.02, "m"), u(0.01, "m"), STEEL, gap=u(0.001, "m"))
     plain = bearings.Plain(u(0.01, "m"), u(0.02, "m"), pressure=1e7, speed=u(1.5, "m/s"))
     bearings.fit(m, joint, pin, plain)
@@ -159,6 +164,7 @@ def crank(u=as_number, law=None):
     lean = m.parameter("lean", u(0.25, "rad"), "rad", low=u(0.0, "rad"), high=u(1.0, "rad"))
     arm, hand = links_of(m, arm=(r, u(1.5, "kg")), hand=(u(0.1, "m"), 0.5))
     m.revolute("O", m.ground, arm)
+    m.torque("press", arm, 0.1 * m.parameter("p", 3.0, "bar"))
     m.weld("fist", arm.tip, hand, angle=lean)
     law = law or harmonic(u(0.2, "rad"), u(0.5, "rad"), 6.0, u(0.1, "rad"))
     return Scene(m, {"O": law}, t=(u(0.0, "s"), u(1.5, "s"), 7), wanted=["effort"])
@@ -205,6 +211,11 @@ def rated(u):
         str(harmonic(0.0, 1.0, u(50.0, "1/s")).graph(0.03)),
         forward.power(u(150.0, "W")).graph(0.0, 0.0, 2.0),
         forward.dc_motor(u(12.0, "N m"), u(300.0, "rad/s")).graph(0.0, 0.0, 2.0),
+        str(forward.torque_curve([0.0, u(9.0, "rad/s")], [u(2.0, "N m"), 0.0]).graph(0, 0, 2.0)),
+        actuators.Motor("m", *main).continuous_torque(u(90.0, "rad/s")).tolist(),
+        written(density.tabulated([0.0, 1.0], [u(2.0, "kg/m"), u(1.5, "kg/m")])),
+        bearings.bending_of_pin(u(100.0, "N"), u(0.02, "m"), [u(0.01, "m"), 0.02]).tolist(),
+        strength.factor(u(90e6, "Pa"), [0.0, u(20e6, "Pa")], STEEL).tolist(),
     ]
 
 
@@ -359,9 +370,9 @@ def test_angles_are_questioned_where_they_are_none():
         (lambda: Mechanism("m").link("a", 0.1, 1.0), "name them: length=, mass="),
         (
             lambda: sweep(scene, {"r": ["10 deg"]}, out="x.h5"),
-            r"grid of r is in rad, an angle; expected a length",
+            "grid of r: '10 deg' is an angle; expected a length",
         ),
-        (lambda: sweep(scene, {"lean": ["steep"]}, out="x.h5"), "grid of lean: expected .*numbers"),
+        (lambda: sweep(scene, {"lean": "steep"}, out="x.h5"), "grid of lean: expected .*numbers"),
         (
             lambda: prepare(scene, wanted=np.array([1.0])),
             "expected a list of output names, got arr",
@@ -403,3 +414,14 @@ def test_numpys_functions_of_symbols_are_what_they_are_of_numbers(function):
     solution = evaluate(Scene(m, {"O": polynomial(0, 1.0)}, t=(0.2, 1, 9)), wanted=["load"])
     load, expected = solution.array("load:push:fx"), function(solution.t)
     np.testing.assert_allclose(load, expected, rtol=1e-15, atol=1e-15)
+
+
+def test_designs_of_texts_are_in_the_units_of_their_parameters(tmp_path):
+    scene, listed = crank(), tmp_path / "listed.csv"
+    swept = sweep(scene, {"p": ["350 kPa", 4.0, "0.5 MPa"]}, out=tmp_path / "x.h5")
+    assert [*swept["p"], *swept.select(p="500 kPa")["p"]] == [3.5, 4.0, 5.0, 5.0]
+    assert best(swept, minimise="p", where=["p>0.4 MPa", "peak:effort:O<1e9 N mm"])[0].number == 2
+    listed.write_text("p,lean [deg]\n300 kPa,0\n4,45\n")
+    assert sweep(scene, read_designs(listed), out=tmp_path / "y.h5")["p"].tolist() == [3.0, 4.0]
+    found = optimise(scene, minimise="p", over={"p": (1.0, 4.0)}, subject_to=["p>=250 kPa"])
+    assert round(found.parameters["p"], 6) == 2.5

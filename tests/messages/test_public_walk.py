@@ -6,6 +6,7 @@ import importlib
 import inspect
 import itertools
 import random
+import re
 import warnings
 from collections.abc import Mapping
 from decimal import Decimal
@@ -245,6 +246,35 @@ def test_wrong_kinds_are_refused(things):
 @pytest.mark.parametrize("part", range(16))
 def test_every_wrong_kind_is_refused(things, part):
     assert walked(things, list(wrong_calls(public_calls.rights(things)))[part::16]) == {}
+
+
+TOLD = re.compile(r"^(\w[\w, ]*)(?: : .*)?\n((?:    .*\n|\n)+)", re.MULTILINE)
+UNITLESS = {
+    *("Mechanism.drive:ratio", "Mechanism.friction:static", "gears:teeth", "Scene:rounding"),
+    *("motion.read_samples:ratio", "motion.read_samples:stretch", "duty_of:ratio"),
+    "Measurements:t",
+}
+"""Arguments without a unit that a docstring tells beside others, and an array of measured times."""
+
+
+def in_another_unit(value):
+    """A text in a unit of no argument, or a list of such texts of the same shape."""
+    return [*map(in_another_unit, value)] if isinstance(value, list | tuple) else "2 kg^7"
+
+
+def test_what_has_a_unit_is_read_with_a_unit(things):
+    """No number that a docstring says in a unit is refused as a text for being no plain number."""
+    plain = set()
+    for of, (function, given) in public_calls.rights(things).items():
+        told = TOLD.findall(inspect.getdoc(inspect.unwrap(function)) or "")
+        names = {name for names, words in told if "[" in words for name in names.split(", ")}
+        for name in names & {*inspect.signature(function).parameters}:
+            try:
+                call(function, changed(function, given, name, in_another_unit(given.get(name))))
+            except LagrangeCasadiError as error:
+                if re.match(r"[^\[]*(?<!whole )number[^\[]*(, got|$)", str(error)):
+                    plain.add(f"{of}:{name}")
+    assert plain == UNITLESS
 
 
 def misfits(function, given):

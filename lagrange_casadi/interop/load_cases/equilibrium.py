@@ -7,11 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
+from typing import Annotated
 
 import numpy as np
 import numpy.typing as npt
 
-from ...base.arguments import public
+from ...base.arguments import Row, public
 from ...base.arrays import Array
 from ...engine.derive import compile_scene
 from ...errors import CertificateError, DeclarationError, UnknownNameError
@@ -40,7 +41,7 @@ _Instants = npt.NDArray[np.bool_]
 def link_load_cases(
     solution: Solution,
     link: str,
-    t: Sequence[float] | None = None,
+    t: Annotated[Row, "s"] | None = None,
     scene: Scene | Case | None = None,
 ) -> tuple[LoadCase, ...]:
     """Return load cases of a link or rigid body, for finite elements.

@@ -12,13 +12,15 @@ from __future__ import annotations
 import math
 import os
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 
-from ...base.arguments import Numeric, public
+from ...base.arguments import Measured, Numeric, public
 from ...base.arrays import Array, Expression
 from ...base.bernstein import of_powers, slope, value, zeros
 from ...base.csv_table import Table
+from ...base.units import quantity
 from ...errors import DeclarationError, one_line
 from ..curves import Curve, curve
 from ..declared_parts import Point
@@ -83,13 +85,13 @@ def profile_lift(
     mechanism: Mechanism,
     cam: Joint,
     follower: Joint,
-    points: Numeric | str | os.PathLike[str],
+    points: str | os.PathLike[str] | Annotated[Numeric, "m"],
     *,
     point: Point | None = None,
     roller: float | None = None,
     flat: bool = False,
     side: int = 1,
-    smoothing: float = 0.0,
+    smoothing: Measured = 0.0,
 ) -> ProfileLift:
     """Return the lift of a follower on a given cam profile, for :func:`.disc_cam`.
 
@@ -122,7 +124,8 @@ def profile_lift(
     PathError
         For a file that cannot be read.
     """
-    what = "profile"
+    what, slides = "profile", follower.kind == "prismatic"
+    smoothing = quantity(f"{what}: smoothing", smoothing, "m" if slides else "rad")
     layout = layout_of(what, mechanism, cam, follower, point, roller, flat, side)
     values = mechanism.values()
 
@@ -134,7 +137,7 @@ def profile_lift(
         points = read_profile(points)
     at, normal = _normals(what, np.asarray(points, float))
     radius = number(layout.roller)
-    if follower.kind == "prismatic":
+    if slides:
         up = np.array([number(x) for x in follower.triad[0][:2]])
         turned = np.array([number(x) for x in follower.turned.apply((*arm, 0.0))[:2]])
         offset = float((away + turned) @ np.array([up[1], -up[0]]))

@@ -144,7 +144,7 @@ def gas_spring(
     mechanism.ownership.free("load", name, mechanism.loads)
     if not isinstance(force, (list, tuple)) or len(force) != 2:
         raise DeclarationError(f"{what}: expected 2 forces, open and closed, got {force!r}")
-    pushed = [checked(f"{what}: force", value) for value in force]
+    pushed = [checked(f"{what}: force", value, "N") for value in force]
     if not any(isinstance(one, ca.SX) for one in pushed) and not 0.0 < pushed[0] <= pushed[1]:
         raise DeclarationError(
             f"{what}: its force must be positive, and not fall as it closes, got {pushed[0]:g} N"
@@ -155,12 +155,12 @@ def gas_spring(
     made = stroke(mechanism, "gas spring", name, distance, closed, open)
     gone = (1.0 - made.used) * (1.0 - (pushed[0] / pushed[1]) ** (1.0 / n))
     push = pushed[0] * (1.0 - gone) ** -n
-    slowed = checked(f"{what}: damping", damping)
+    slowed = checked(f"{what}: damping", damping, "N s/m")
     if end is not None:
         over = checked(f"{what}: end", end, "m")
         positive(what, "end", over)
         share = ca.fmin(ca.fmax((distance - made.open) / over + 1.0, 0.0), 1.0)
-        slowed = slowed + checked(f"{what}: end_damping", end_damping) * share
+        slowed = slowed + checked(f"{what}: end_damping", end_damping, "N s/m") * share
     elif isinstance(end_damping, ca.SX) or end_damping:
         raise DeclarationError(f"{what}: end_damping needs end, the length over which it rises [m]")
     return mechanism.spring(

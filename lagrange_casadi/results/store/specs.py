@@ -10,13 +10,14 @@ import dataclasses
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from ...base.arguments import Finite, public
 from ...base.brief import Brief
 from ...base.methods import method
 from ...base.quantities import Output
 from ...base.tables import PLANE
+from ...base.units import Within
 from ...base.vocabulary import AZIMUTH, ELEVATION
 from ...errors import DeclarationError
 from ..solution import Solution
@@ -81,7 +82,7 @@ class SpanPlot(_Drawn, Brief):
     kind: ClassVar[str] = "span"
     name: str
     quantity: str
-    t: Finite
+    t: Annotated[Any, Within(unit="s")]
     title: str = ""
     factor: Finite = 1.0
     note: str = ""

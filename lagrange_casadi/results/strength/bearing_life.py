@@ -18,7 +18,7 @@ from typing import Annotated, Any, TypeAlias
 
 import numpy as np
 
-from ...base.arguments import Force, Numeric, Positive, public
+from ...base.arguments import Force, Numeric, Positive, Row, public
 from ...base.arrays import Array
 from ...base.quantities import Output
 from ...base.units import Within
@@ -33,7 +33,12 @@ Speed: TypeAlias = Annotated[Any, Within(0.0, unit="rpm")]
 
 
 @public
-def bending_of_pin(force: Numeric, eye: Numeric, cheek: Numeric, gap: Numeric = 0.0) -> Numeric:
+def bending_of_pin(
+    force: Annotated[Numeric, "N"],
+    eye: Annotated[Numeric, "m"],
+    cheek: Annotated[Numeric, "m"],
+    gap: Annotated[Numeric, "m"] = 0.0,
+) -> Numeric:
     """Return the bending moment in the middle of a pin, F (eye + 2 cheek + 4 gap)/8.
 
     Parameters
@@ -56,9 +61,7 @@ def bending_of_pin(force: Numeric, eye: Numeric, cheek: Numeric, gap: Numeric = 
 
 
 @public
-def equivalent_load(
-    load: Array | Sequence[float], turned: Array | Sequence[float], exponent: Positive = 3.0
-) -> float:
+def equivalent_load(load: Annotated[Row, "N"], turned: Row, exponent: Positive = 3.0) -> float:
     """Return the constant load with the same life as a sequence of loads (ISO 281).
 
     Parameters

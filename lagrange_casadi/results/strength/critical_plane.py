@@ -15,10 +15,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
-from ...base.arguments import NotNegative, public
+from ...base.arguments import NotNegative, Numeric, public
 from ...base.arrays import Array
 from ...errors import DeclarationError, shown
 from ...model.beams.material import Material
@@ -68,7 +69,7 @@ class Plane:
 
 
 @public
-def critical_plane(values: Array, share: NotNegative = DUCTILE) -> Plane:
+def critical_plane(values: Annotated[Numeric, "Pa"], share: NotNegative = DUCTILE) -> Plane:
     """Return the critical plane of a history of stresses in a beam, by Findley's criterion.
 
     Parameters

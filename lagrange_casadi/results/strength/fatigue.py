@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
@@ -82,7 +82,10 @@ def _needed(material: Material, criterion: str) -> tuple[str, str]:
 
 @public
 def factor(
-    amplitude: Numeric, mean: Numeric, material: Material, criterion: str = "goodman"
+    amplitude: Annotated[Numeric, "Pa"],
+    mean: Annotated[Numeric, "Pa"],
+    material: Material,
+    criterion: str = "goodman",
 ) -> Numeric:
     """Return the factor by which amplitude and mean may grow together without failure by fatigue.
 
@@ -148,7 +151,10 @@ def lacking(material: Material, criterion: str = "goodman") -> str:
 
 @public
 def reversed_amplitude(
-    amplitude: Numeric, mean: Numeric, material: Material, criterion: str = "goodman"
+    amplitude: Annotated[Numeric, "Pa"],
+    mean: Annotated[Numeric, "Pa"],
+    material: Material,
+    criterion: str = "goodman",
 ) -> Numeric:
     """Return the fully reversed amplitude with the same damage as an amplitude with a mean.
 
@@ -197,7 +203,7 @@ def line(material: Material) -> tuple[float, float, float]:
 
 
 @public
-def cycles(amplitude: Numeric, material: Material) -> Numeric:
+def cycles(amplitude: Annotated[Numeric, "Pa"], material: Material) -> Numeric:
     """Return the number of cycles to failure at a fully reversed amplitude.
 
     Parameters

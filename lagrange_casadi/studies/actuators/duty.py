@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...base.arguments import Finite, Measured, public
+from ...base.arguments import Measured, public
 from ...base.arrays import Array
 from ...base.brief import Brief
 from ...base.units import quantity
@@ -147,7 +147,7 @@ def duty_of(
     solution: Solution,
     joint: str,
     *,
-    ratio: Finite = 1.0,
+    ratio: Measured = 1.0,
     efficiency: float = 1.0,
     inertia: Measured = 0.0,
     linear: bool = False,
@@ -195,7 +195,8 @@ def duty_of(
     ]
     if joint not in drives:
         raise UnknownNameError("drive", joint, drives)
-    if not (math.isfinite(ratio) and ratio != 0.0):
+    turns = quantity("ratio", ratio, "rad/m" if slides(solution, joint) and not linear else "1")
+    if not turns:
         raise DeclarationError(f"ratio must be a finite number other than 0, got {ratio!r}")
     if not 0.0 < efficiency <= 1.0:
         raise DeclarationError(f"efficiency must be above 0 and at most 1, got {efficiency!r}")
@@ -236,14 +237,14 @@ def duty_of(
     # The gearbox takes its losses from whoever gives power; what holds at rest gets no help from
     # it.
     passed = np.where(rests | (effort * motion.rate >= 0.0), 1.0 / efficiency, efficiency)
-    torque = effort * passed / ratio + rotor * ratio * motion.acceleration
+    torque = effort * passed / turns + rotor * turns * motion.acceleration
     return Duty(
         joint,
-        float(ratio),
+        turns,
         float(efficiency),
         rotor,
         solution.t,
-        ratio * motion.rate,
+        turns * motion.rate,
         torque,
         bool(linear),
         carried,

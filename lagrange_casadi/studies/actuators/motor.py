@@ -66,7 +66,7 @@ class Motor(Brief):
                     raise DeclarationError(f"{what}: expected {least}, got {value!r}")
                 object.__setattr__(self, name, found)
 
-    def continuous_torque(self, speed: Numeric) -> Array:
+    def continuous_torque(self, speed: Numeric | str) -> Array:
         """Return the continuous torque at a speed.
 
         Parameters
@@ -80,9 +80,9 @@ class Motor(Brief):
             Torque [N m], or force [N] of a linear motor; zero at speeds without any.
         """
         fall = (self.stall_torque - self.rated_torque) / self.rated_speed
-        return np.asarray(np.maximum(self.stall_torque - fall * np.abs(speed), 0.0))
+        return np.asarray(np.maximum(self.stall_torque - fall * self._size(speed), 0.0))
 
-    def short_time_torque(self, speed: Numeric) -> Array:
+    def short_time_torque(self, speed: Numeric | str) -> Array:
         """Return the largest torque for a short time at a speed that the motor reaches.
 
         Parameters
@@ -95,10 +95,16 @@ class Motor(Brief):
         array
             Torque [N m], or force [N] of a linear motor.
         """
+        size = self._size(speed)
         if self.knee_speed is None or self.end_torque is None or self.knee_speed >= self.max_speed:
-            return np.full(np.shape(speed), self.peak_torque)
+            return np.full(size.shape, self.peak_torque)
         speeds, torques = (self.knee_speed, self.max_speed), (self.peak_torque, self.end_torque)
-        return np.asarray(np.interp(np.abs(speed), speeds, torques))
+        return np.asarray(np.interp(size, speeds, torques))
+
+    def _size(self, speed: Numeric | str) -> Array:
+        """Speeds without their sign."""
+        read = isinstance(speed, str)
+        return np.asarray(np.abs(quantity("speed", speed, _SPEED[self.linear]) if read else speed))
 
     @property
     def rated_power(self) -> float:

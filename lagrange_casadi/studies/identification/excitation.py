@@ -20,10 +20,10 @@ from ...base.arrays import Array, Expression
 from ...base.brief import Brief
 from ...base.ipopt import ipopt
 from ...base.symbolic import symbolic
-from ...base.units import number
+from ...base.units import Number, quantity
 from ...base.vocabulary import Backend
 from ...engine.instants.evaluation_method import EvaluationMethod
-from ...errors import AssemblyError, DeclarationError, NumberError, UnknownNameError, shown
+from ...errors import AssemblyError, DeclarationError, UnknownNameError, shown
 from ...model.motion_laws import Motion, expression
 from ...model.scene import Scene
 from ..case import Case, scene_of
@@ -82,7 +82,7 @@ class Excitation(Brief):
 @public
 def excite(
     scene: Scene | Case,
-    limits: Mapping[str, Sequence[float]],
+    limits: Mapping[str, Sequence[Number]],
     unknown: Sequence[str] | None = None,
     *,
     quantities: Sequence[str] | None = None,
@@ -105,7 +105,7 @@ def excite(
         The scene, or a case.
     limits
         Least and largest coordinate, largest speed and largest acceleration [rad or m, s], by
-        drive.
+        drive; texts as ``"50 deg"`` and ``"90 deg/s"`` too.
     unknown
         Names of parameters; by default all that the scene declares.
     quantities
@@ -148,20 +148,23 @@ def excite(
     if lost := [drive for drive in drives if drive not in limits]:
         raise DeclarationError(f"limits=: expected those of drive '{lost[0]}' too")
     p = np.array(list(values.values()))
-    low, high, speed, most = np.array([_limits(drive, limits[drive]) for drive in drives]).T
+    kinds = regressor.program.data.kinds.coordinates
+    low, high, speed, most = np.array([_limits(one, kinds[one], limits[one]) for one in drives]).T
     ends = np.array([[low, -speed, -most], [high, speed, most]])
     return _Search(regressor, ends, p, float(period), harmonics).run(steps)
 
 
-def _limits(drive: str, given: Sequence[float]) -> list[float]:
+def _limits(drive: str, kind: str, given: Sequence[Number]) -> list[float]:
+    what, unit = f"limits of '{drive}'", "m" if kind == "slide" else "rad"
+    units = unit, unit, f"{unit}/s", f"{unit}/s^2"
     try:
-        numbers = [number(one) for one in given]
+        numbers = [quantity(what, one, of) for one, of in zip(given, units, strict=True)]
         valid = len(numbers) == 4 and numbers[0] < numbers[1] and numbers[2] > 0.0 < numbers[3]
-    except (TypeError, NumberError):
+    except (TypeError, ValueError):
         valid = False
     if not valid:
         raise DeclarationError(
-            f"limits of '{drive}': expected the least and the largest coordinate, a speed and an"
+            f"{what}: expected the least and the largest coordinate, a speed and an"
             f" acceleration above 0, got {shown(given)}"
         )
     return numbers

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from ...base.arguments import NotNegative, Positive, public
+from ...base.arguments import Duration, NotNegative, Positive, public
 from ...base.arrays import Array
 from ...base.brief import Brief
 from ...base.csv_table import Table, count_sizes
@@ -121,7 +121,7 @@ class Measurements(Brief):
         moving = {f"{drive}{end}" for drive in drives for end in MOTION}
         return tuple(name for name in self.columns if name not in moving and ":" in name)
 
-    def motion(self, drives: Sequence[str], trim: float = 0.0) -> DrivenMotion:
+    def motion(self, drives: Sequence[str], trim: Duration = 0.0) -> DrivenMotion:
         """Return coordinates, rates and accelerations of drives.
 
         What is not measured comes from the smoothing spline of the coordinate, at the distance of

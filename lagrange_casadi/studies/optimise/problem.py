@@ -6,18 +6,18 @@ import json
 import math
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from ...base.arrays import Array, Json, Operand
 from ...base.numerals import real
-from ...base.units import check_unit
+from ...base.units import in_unit
 from ...base.vocabulary import Compiled
 from ...engine.identity import sources
 from ...engine.instants.evaluation_method import EvaluationMethod
-from ...engine.model_data import template
+from ...engine.model_data import ModelData, template
 from ...errors import DeclarationError, UnknownNameError
 from ...model.scene import Scene
 from ...model.times import Times, Timing
@@ -223,10 +223,19 @@ class Question:
             there = engine.quantities if term.pointed else engine.efforts
             if term.output is not None and term.name not in there:
                 raise UnknownNameError(f"quantity with a {term.kind}", term.name, there)
-        for limit in self.constraints:
-            unit = limit.term.unit(engine.program.data)
-            check_unit(f"limit of {limit.term}: its number", limit.unit, unit)
         return engine
+
+    def measured(self, data: ModelData) -> Question:
+        """The search with the numbers of its limits in the units of their terms.
+
+        Raises :class:`DeclarationError` for a text in a unit of another kind.
+        """
+        limits = []
+        for one in self.constraints:
+            what = f"limit of {one.term}: its number"
+            (limit,) = in_unit(what, [one.limit], one.unit, one.term.unit(data))
+            limits.append(replace(one, limit=limit, unit=""))
+        return replace(self, constraints=tuple(limits))
 
     def words(self, engine: DesignEngine) -> dict[str, Json]:
         """Inputs of every number of a search beside its starts, for JSON: no clock, no path."""

@@ -189,7 +189,9 @@ def optimise(
     check_resuming(resume, force)
     if resume and out is None:
         raise DeclarationError("resume: expected out, the file of the search that was stopped")
-    solver = Solver.of(question, question.engine(found_scene))
+    engine = question.engine(found_scene)
+    question = question.measured(engine.program.data)
+    solver = Solver.of(question, engine)
     target = None if out is None else Path(out)
     if target is not None:
         check_target(target, SEARCH)

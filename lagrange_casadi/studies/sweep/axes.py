@@ -8,10 +8,10 @@ import hashlib
 import math
 import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
-from typing import Annotated, ClassVar, TypeAlias, cast
+from typing import Annotated, Any, ClassVar, TypeAlias, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -19,7 +19,7 @@ import numpy.typing as npt
 from ...base.arguments import LATER, public
 from ...base.arrays import Array
 from ...base.brief import Brief
-from ...base.units import Number, check_unit, number, typed
+from ...base.units import Number, in_unit, numbers_in, quantity
 from ...errors import (
     DeclarationError,
     NumberError,
@@ -42,21 +42,6 @@ RESULTS = (DESIGN, "status", "t", "xi")
 _SHOWN = 20
 
 
-def numbers_in(given: Iterable[object]) -> tuple[tuple[float, ...], str]:
-    """Numbers, of which some may be texts, as ``"30 deg"``, and the unit that these are in; none
-    where none is a text.
-
-    Raises :class:`NumberError` for anything else, :class:`DeclarationError` for several units.
-    """
-    read = [typed(value) for value in given]
-    units = dict.fromkeys(unit for _, unit in read if unit)
-    if len(units) > 1:
-        raise DeclarationError(
-            f"expected values of one unit, got some in {' and some in '.join(units)}"
-        )
-    return tuple(number(value, finite=False) for value, _ in read), next(iter(units), "")
-
-
 @public
 @dataclass(frozen=True)
 class Range:
@@ -74,6 +59,7 @@ class Range:
     count: int
     log: bool = False
     unit: str = field(default="", init=False, compare=False)
+    given: tuple[Number, ...] = field(default=(), init=False, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         try:
@@ -88,7 +74,8 @@ class Range:
             raise DeclarationError(
                 f"expected numbers for START and STOP and a whole COUNT, got {text}"
             ) from None
-        for name, value in zip(("start", "stop", "unit"), (*ends, unit), strict=True):
+        read = {"start": ends[0], "stop": ends[1], "unit": unit, "given": (self.start, self.stop)}
+        for name, value in read.items():
             object.__setattr__(self, name, value)
         if type(self.log) is not bool:
             raise DeclarationError(
@@ -142,21 +129,22 @@ class Values:
 
     values: Annotated[tuple[float, ...], LATER]
     unit: str = field(default="", init=False, compare=False)
+    given: tuple[Number, ...] = field(default=(), init=False, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         try:
             if isinstance(self.values, bytes | set | frozenset):
                 raise TypeError
-            numbers, unit = numbers_in(self.values)
+            given = tuple(self.values)
+            numbers, unit = numbers_in(given)
         except (TypeError, ValueError):
             raise DeclarationError(f"expected numbers, got {shown(self.values)}") from None
-        object.__setattr__(self, "values", numbers)
-        object.__setattr__(self, "unit", unit)
+        for name, value in {"values": numbers, "unit": unit, "given": given}.items():
+            object.__setattr__(self, name, value)
         if not numbers:
             raise DeclarationError("expected at least one value, got none")
-        for value in numbers:
-            if not math.isfinite(value):
-                raise DeclarationError(f"expected finite values, got {value}")
+        if infinite := [number for number in numbers if not math.isfinite(number)]:
+            raise DeclarationError(f"expected finite values, got {infinite[0]}")
         if len(set(numbers)) < len(numbers):
             twice = next(value for value in numbers if numbers.count(value) > 1)
             raise DeclarationError(f"the value {twice:g} is listed twice")
@@ -265,8 +253,8 @@ class Listed(Brief):
     """A list of designs: ``rows`` (designs, names) of values; ``lines`` are the line numbers of
     the rows in a file ``source``.
 
-    ``units`` are those of values that were given with a unit, such as 30 deg for a parameter in
-    rad.
+    ``units`` are those of SI of values that were given with a unit, such as 30 deg for a parameter
+    in rad; ``texts`` (designs, names) says which were, by default all.
 
     Raises :class:`DeclarationError` for no designs, no or repeated names, or values that are not
     finite.
@@ -277,6 +265,7 @@ class Listed(Brief):
     lines: Numbers | None = None
     source: str = ""
     units: Mapping[str, str] = field(default_factory=dict)
+    texts: npt.NDArray[np.bool_] | None = None
 
     def __post_init__(self) -> None:
         rows = np.ascontiguousarray(self.rows, dtype=np.float64)
@@ -339,13 +328,43 @@ DesignsLike: TypeAlias = Designs | Mapping[str, AxisLike]
 """Designs, or axes by the names of parameters."""
 
 
-def designs_of(given: DesignsLike) -> Designs:
+def designs_of(given: DesignsLike, parameters: Mapping[str, Parameter]) -> Designs:
     """Designs from a :class:`Grid`, a :class:`Listed`, or a mapping of names to axes, ranges as
-    tuples, or values.
+    tuples, or values; those of texts in the units of ``parameters``.
+
+    Raises :class:`DeclarationError` for texts in a unit of another kind.
     """
-    if isinstance(given, (Grid, Listed)):
-        return given
-    return Grid(cast(Mapping[str, Axis], given))  # which makes axes of what else stands for them
+    # A grid makes axes of what else stands for them.
+    found = given if isinstance(given, (Grid, Listed)) else Grid(cast(Mapping[str, Axis], given))
+    units = {name: parameters[name].unit for name in found.units if name in parameters}
+    if not units:
+        return found
+    return _read_grid(found, units) if isinstance(found, Grid) else _read_list(found, units)
+
+
+def _read_grid(grid: Grid, units: Mapping[str, str]) -> Grid:
+    """A grid with the values of some parameters in ``units``."""
+    axes = dict(grid.axes)
+    for name, unit in units.items():
+        axis = axes[name]
+        read = [quantity(f"grid of {name}", one, unit) for one in axis.given]
+        axes[name] = (
+            Values(tuple(read))
+            if isinstance(axis, Values)
+            else replace(axis, start=read[0], stop=read[1])
+        )
+    return Grid(axes)
+
+
+def _read_list(designs: Listed, units: Mapping[str, str]) -> Listed:
+    """A list with the values of some parameters in ``units``."""
+    rows = designs.rows.copy()
+    texts = np.ones(rows.shape, bool) if designs.texts is None else designs.texts
+    for name, unit in units.items():
+        column, place = designs.names.index(name), f"{designs.source}, column '{name}'"
+        there = texts[:, column], column
+        rows[there] = in_unit(place, rows[there], designs.units[name], unit)
+    return replace(designs, rows=rows, units={})
 
 
 def check_designs(
@@ -360,9 +379,6 @@ def check_designs(
     for name in designs.names:
         if name in fixed:
             raise DeclarationError(f"parameter '{name}' is swept and set to {fixed[name]} as well")
-    for name, given_unit in designs.units.items():
-        where = f"{designs.source}, column '{name}'" if designs.source else f"grid of {name}"
-        check_unit(where, given_unit, parameters[name].unit)
     wrong = []
     for name in designs.names:
         parameter = parameters[name]
@@ -466,11 +482,8 @@ def _axis(name: str, given: AxisLike) -> Axis:
             return Range(*given)
         if isinstance(given, np.ndarray) and given.dtype.kind in "iuf":
             return Values(tuple(np.atleast_1d(given).astype(float).tolist()))
-        return Values(
-            (number(given),)
-            if not isinstance(given, Iterable) or isinstance(given, str)
-            else cast(tuple[float, ...], tuple(given))  # texts among them are read there
-        )
+        found: Any = [given] if isinstance(given, str) or not isinstance(given, Iterable) else given
+        return Values(found)
     except (TypeError, NumberError):
         raise DeclarationError(
             f"grid of {name}: expected (start, stop, count) or numbers, got {shown(given)}"

@@ -8,7 +8,7 @@ import math
 import re
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -17,7 +17,7 @@ import numpy.typing as npt
 from ...base.arguments import Count, public
 from ...base.arrays import Array, Operand
 from ...base.numerals import real
-from ...base.units import check_unit, typed
+from ...base.units import in_unit, typed
 from ...errors import DeclarationError, check_kind
 from .meanings import ERROR, STATUS
 from .reading import Sweep, Values, names_in
@@ -193,10 +193,7 @@ def chosen(
     """
     names, conditions = names_in(names), conditions_in(where)
     asked = list(dict.fromkeys([*names, *(condition.name for condition in conditions)]))
-    for condition in conditions:
-        if condition.unit:
-            what = f"condition on {condition.name}: its number"
-            check_unit(what, condition.unit, sweep.unit(condition.name))
+    conditions = [_measured(condition, sweep) for condition in conditions]
 
     def satisfied(
         numbers: npt.NDArray[np.int64], values: dict[str, Operand]
@@ -207,6 +204,18 @@ def chosen(
         return numbers[there], {name: values[name][there] for name in names}
 
     return (satisfied(*block) for block in sweep.blocks(asked, along))
+
+
+def _measured(condition: Condition, sweep: Sweep) -> Condition:
+    """A condition with its number in the unit of a sweep's column.
+
+    Raises :class:`DeclarationError` for a text in a unit of another kind.
+    """
+    if not condition.unit:
+        return condition
+    what, unit = f"condition on {condition.name}: its number", sweep.unit(condition.name)
+    read = in_unit(what, [condition.value], condition.unit, unit)
+    return replace(condition, value=read[0], unit="")
 
 
 def conditions_in(where: str | Condition | Sequence[str | Condition]) -> list[Condition]:

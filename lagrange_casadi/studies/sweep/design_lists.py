@@ -51,7 +51,7 @@ def read_designs(path: str | os.PathLike[str], parameters: Collection[str] | Non
     _check_head(head, names)
     if parameters is not None:
         check_known(names, parameters, head.where)
-    values, lines, units = array("d"), array("q"), dict[str, str]()
+    values, lines, texts, units = array("d"), array("q"), array("b"), dict[str, str]()
     for row in table.rows:
         for name, column_unit, cell in zip(names, table.units, row.cells, strict=True):
             value, unit = typed(row.pointed(cell))
@@ -59,6 +59,7 @@ def read_designs(path: str | os.PathLike[str], parameters: Collection[str] | Non
                 value, unit = typed(f"{value} {column_unit}")
             values.append(value if unit else row.finite(name, cell))
             unit = unit or column_unit
+            texts.append(bool(unit))
             if unit and units.setdefault(name, unit) != unit:
                 raise DeclarationError(
                     f"{row.where}: {name}: expected a value in {units[name]}, got '{cell}'"
@@ -67,7 +68,8 @@ def read_designs(path: str | os.PathLike[str], parameters: Collection[str] | Non
     if not lines:
         raise DeclarationError(f"{path}: no designs below its head {', '.join(head.cells)}")
     rows_of_values = np.array(values).reshape(-1, len(names))
-    return Listed(names, rows_of_values, np.array(lines), str(path), units)
+    read = np.array(texts, bool).reshape(rows_of_values.shape)
+    return Listed(names, rows_of_values, np.array(lines), str(path), units, read)
 
 
 def _check_head(head: Row, names: Sequence[str]) -> None:

@@ -13,9 +13,8 @@ import numpy.typing as npt
 
 from ...base.arguments import LATER
 from ...base.arrays import Array
-from ...base.units import Number, check_unit
-from ...errors import DeclarationError, NumberError, shown
-from .axes import numbers_in
+from ...base.units import Number, quantity
+from ...errors import DeclarationError, shown
 
 _NEAR = 1e-9
 
@@ -40,12 +39,7 @@ def matches(name: str, there: Array, wanted: Selected, unit: str) -> npt.NDArray
         isinstance(wanted, np.ndarray) and wanted.ndim == 1
     ):
         each = wanted
-    try:
-        found, in_unit = numbers_in(each)
-    except NumberError:
-        found, in_unit = (math.nan,), ""
-    check_unit(f"select: {name}: {shown(wanted)}", in_unit, unit)
-    numbers = np.array(found)
+    numbers = np.array([quantity(f"select: {name}", one, unit, finite=False) for one in each])
     pair = isinstance(wanted, tuple)
     if not numbers.size or np.isnan(numbers).any() or (pair and numbers.size != 2):
         raise DeclarationError(

@@ -95,7 +95,7 @@ def turning_note(
     """A line where the drive turns, and makes less than a turn, or not the same in every design of
     a ``grid``.
     """
-    designs, values = designs_of(grid), scene.values(fixed)
+    designs, values = designs_of(grid, scene.parameters), scene.values(fixed)
     numbers = spread(designs.size, _TURNS_OF)
     p = np.tile(np.array(list(values.values())), (numbers.size, 1))
     columns = [list(values).index(name) for name in designs.names]

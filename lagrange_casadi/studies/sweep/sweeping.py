@@ -130,7 +130,8 @@ def sweep(
     StoppedError
         After an interrupt; finished designs are kept.
     """
-    one, designs = scene_of(scene), designs_of(grid)
+    one = scene_of(scene)
+    designs = designs_of(grid, one.parameters)
     method = EvaluationMethod(backend, precision, newton, None, flags)
     request = Request(parameters, t, over, xi, wanted, method)
     plan = Plan.of(one, designs, request, keep, peaks=peaks, fluctuation=fluctuation, many=many)

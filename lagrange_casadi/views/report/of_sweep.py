@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from ...base.arrays import Array
+from ...base.units import vocabulary
 from ...engine.derive import compile_scene
 from ...engine.identity import identity_of, sources
 from ...engine.model_data import template
@@ -113,6 +114,7 @@ def _page(sweep: Sweep, scene: Scene | None, command: str) -> str:
             for name in names
         ],
         "varied": varied(sweep),
+        "units": vocabulary(),
         "pair": list(pair),
         "counts": [
             [f"without: {sweep.statuses[status][1]}" if status else "with a result", count]

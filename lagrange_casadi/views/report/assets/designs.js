@@ -43,14 +43,41 @@ function pick(row) {
   for (const watcher of picked.watchers) watcher();
 }
 
-/** Read conditions such as `l<0.3, peak:effort:O<=12`; throws an error that names what is none. */
+/** A unit, a product of names as `kN/mm^2`: its size in SI, and its powers of kg, m, s and rad; null for what is none. */
+function unitOf(text) {
+  const { names, signs, factor, unclear } = contents.units;
+  const words = Array.from(text, (letter) => signs[letter] ?? letter).join("").replaceAll("**", "^");
+  if (Object.hasOwn(names, words)) return names[words];
+  const parts = /^([^/]*?)\s*(?:\/\s*(?:\((.*)\)|(\S+)))?$/.exec(words);
+  if (!parts || new RegExp(`^(?:${unclear})$`).test(text)) return null;
+  const found = [1, 0, 0, 0, 0];
+  for (const [part, sign] of [[parts[1] === "1" ? "" : parts[1], 1], [parts[2] ?? parts[3] ?? "", -1]]) {
+    for (const word of part.split(/\s*\*\s*|\s+/).filter(Boolean)) {
+      const [, name = "", power = 1] = new RegExp(`^${factor}$`).exec(word) ?? [];
+      if (!Object.hasOwn(names, name)) return null;
+      found[0] *= names[name][0] ** (sign * power);
+      for (const k of [1, 2, 3, 4]) found[k] += sign * power * names[name][k];
+    }
+  }
+  return found;
+}
+
+/** The factor of numbers in a unit to that of a column; throws an error for a unit of another kind. */
+function factorOf(word, column) {
+  const [given, own] = [unitOf(word), unitOf(column.unit)];
+  if (!given) throw new Error(`unknown unit ${word}`);
+  const [kind, expected] = [given, own].map((unit) => contents.units.kinds[unit?.slice(1).join()] ?? "another quantity");
+  if (given.slice(1).join() !== own?.slice(1).join()) throw new Error(`${word} is ${kind}; expected ${expected} [${column.unit}] after ${column.name}`);
+  return given[0] / own[0];
+}
+
+/** Read conditions such as `l<0.3, peak:effort:O<=12 kN m`; throws an error that names what is none. */
 function conditionsOf(text) {
   return text.split(/[,;]|\s+and\s+/).filter((word) => word.trim()).map((word) => {
-    const found = /^\s*([^<>=!]+?)\s*(<=|>=|==|!=|=|<|>)\s*(\S+?)\s*(deg)?\s*$/.exec(word);
+    const found = /^\s*([^<>=!]+?)\s*(<=|>=|==|!=|=|<|>)\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?|\S+)\s*(\S.*?)?\s*$/i.exec(word);
     const column = found && columnOf.get(found[1]);
-    const value = found ? Number(found[3]) * (found[4] ? Math.PI / 180 : 1) : NaN;
     if (!column) throw new Error(found ? `unknown column ${found[1]}` : `expected a condition like l<0.3, got ${word.trim()}`);
-    if (found[4] && column.unit !== "rad") throw new Error(`${found[1]} is in ${column.unit}, got an angle`);
+    const value = Number(found[3]) * (found[4] ? factorOf(found[4], column) : 1);
     if (Number.isNaN(value)) throw new Error(`expected a number after ${found[1]} ${found[2]}, got ${found[3]}`);
     return { column, relation: found[2], value };
   });
