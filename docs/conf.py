@@ -93,7 +93,10 @@ nitpick_ignore_regex = [
         "py:class",
         r"lagrange_casadi\..*",
     ),  # types in signatures that are no part of the interface
-    ("py:.*", r"casadi\..*|(SX|DM|Function)"),  # CasADi has no inventory
+    (
+        "py:.*",
+        r"casadi\..*|(SX|DM|Function)|Array|numpy\.(generic|int8)",
+    ),  # of no inventory
     ("py:(class|func|meth|data|attr)", "|".join(UNLISTED)),
     ("py:mod", r"\.*[a-z_.]+"),  # modules that docstrings name to developers
 ]

@@ -29,10 +29,10 @@ class Statistics(Brief):
     """A quantity over the time of a solution, in ``unit``: means by trapezia, and the smallest and
     largest value of the instants.
 
-    Instants at which it is no number do not count: at rest friction may leave it open (see
-    :func:`counted`). ``smallest`` and ``largest`` are by sign: -5 is smaller than 3. ``peak`` is
-    largest in size. Along a link they are exact, whatever the grid of xi. ``mean`` and ``rms``, the
-    root of the mean square, are None of a section force: they differ from ratio to ratio.
+    Instants at which it is no number do not count: at rest friction may leave it open. ``smallest``
+    and ``largest`` are by sign: -5 is smaller than 3. ``peak`` is largest in size. Along a link
+    they are exact, whatever the grid of xi. ``mean`` and ``rms``, the root of the mean square, are
+    None of a section force: they differ from ratio to ratio.
     """
 
     name: str

@@ -22,7 +22,7 @@ Results: TypeAlias = dict[str, Any]
 class Outcome(Brief):
     """Results of n designs, a row each; rows of designs without a result hold NaN.
 
-    ``status`` (n) is a :class:`.Status`. ``value``, ``t`` and ``xi``, (n, q), are the peak of each
+    ``status`` (n) is a ``Status``. ``value``, ``t`` and ``xi``, (n, q), are the peak of each
     quantity with its sign, its time [s] and its ratio xi/l, NaN off a link; ``mean`` and ``rms``,
     (n, e), those of each effort over time. ``series`` (n, columns, t) are whole histories, where
     they were asked for, and ``times`` (n, t) their instants [s], where designs may have their own.

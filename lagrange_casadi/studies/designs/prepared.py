@@ -59,7 +59,7 @@ class Gradient:
 
     ``value``, ``t`` and ``xi``, (q,), are those of :class:`Peaks`. ``slopes`` (q, parameters) are
     the derivatives of ``value``, with its sign, by each of ``parameters``, in the quantity's unit
-    over the parameter's. ``kinds`` (q,) says what each peak is at: see :class:`.PeakKind`. Slopes
+    over the parameter's. ``kinds`` (q,) says what each peak is at: see ``PeakKind``. Slopes
     are NaN where a peak has none: it is infinite, not determined, or at a kink or a jump that
     nothing explains. If a quantity has two peaks of equal size, the slopes are those of the
     reported peak; :attr:`tied` marks these quantities.
