@@ -31,7 +31,7 @@ def meshed_by(resting: Grown, transmission: Transmission, multiplier: ca.SX) -> 
         force, couple = (
             _at_state(resting, vector) for vector in _summed(transmission, mesh, multiplier)
         )
-        back = plus(times(-1, couple), cross(mesh.reach, force))
+        back = plus(times(-1, couple), cross(_at_state(resting, mesh.reach), force))
         yield Applied(
             transmission.name, mesh.first, frame.rotation.apply(force), frame.rotation.apply(couple)
         )

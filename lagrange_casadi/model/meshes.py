@@ -36,8 +36,8 @@ class Mesh:
     The first bears, at its point ``first``, lambda ``along`` + s ``apart`` + c ``braking``, and the
     second the opposite. lambda is the multiplier, of either sign; s is never negative; c is what
     friction takes. ``centre`` is the place of ``first`` in the carrier's axes, and ``reach`` leads
-    from there to ``second``, which may be at a place that moves on its body: it is an expression of
-    coordinates then.
+    from there to ``second``, which may be at a place that moves on its body. Whatever moves is an
+    expression of coordinates.
     """
 
     first: Point

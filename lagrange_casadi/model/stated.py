@@ -83,8 +83,8 @@ class Equation(Graphs):
 
     ``values(places, rates, accelerations, t, p)`` gives the equation and, of a constraint, its
     first and second total time derivative; ``slopes(places, rates, t, p)`` what it changes by an
-    entry: by its place, or of a row by its rate. ``wrenches(places, p)`` are those of the touches
-    in a column, where they depend on places; else the touches have them.
+    entry: by its place, or of a row by its rate. ``wrenches(places, p)`` are those of the touches,
+    each after where it acts, in a column, where they depend on places; else the touches have them.
     """
 
     name: str
@@ -156,9 +156,9 @@ class Equation(Graphs):
             yield from self.touches
             return
         found = self.wrenches(moved()[0], list(self.p)).full()
-        each = found.reshape(len(self.touches), 3, 2, 3, -1)
-        for touch, (along, apart, braking) in zip(self.touches, each, strict=True):
-            yield replace(touch, along=along, apart=apart, braking=braking)
+        each = found.reshape(len(self.touches), 4, 2, 3, -1)
+        for touch, ((at, to), along, apart, braking) in zip(self.touches, each, strict=True):
+            yield replace(touch, centre=at, reach=to, along=along, apart=apart, braking=braking)
 
     def at(self, moved: Array, t: Array) -> Array:
         """The equation over instants and, of a constraint, its derivatives: a row each, from the
@@ -321,8 +321,8 @@ def _touches(transmission: Transmission | None, *, varying: bool) -> tuple[Touch
             first=mesh.first.body.name,
             second=mesh.second.body.name,
             carrier=mesh.carrier.name,
-            centre=mesh.centre,
-            reach=mesh.reach,
+            centre=ZERO if varying else mesh.centre,
+            reach=ZERO if varying else mesh.reach,
             slack=transmission.slack,
             loss=(0.0, 0.0) if loss is None else (loss.arm, loss.lean),
             rotations=tuple((sign, joint.name) for sign, joint in rotations),
@@ -335,10 +335,16 @@ def _touches(transmission: Transmission | None, *, varying: bool) -> tuple[Touch
 
 
 def _wrenches(transmission: Transmission | None) -> ca.SX:
-    """The wrenches of a transmission's meshes, in a column."""
-    meshes = () if transmission is None else transmission.meshes
-    each = (_pair(one) for mesh in meshes for one in (mesh.along, mesh.apart, mesh.braking))
-    return column(value for force, couple in each for value in (*force, *couple))
+    """The places and wrenches of a transmission's meshes, in a column."""
+    pairs: list[tuple[Any, Any]] = []
+    for mesh in () if transmission is None else transmission.meshes:
+        pairs += (
+            (mesh.centre, mesh.reach),
+            _pair(mesh.along),
+            _pair(mesh.apart),
+            _pair(mesh.braking),
+        )
+    return column(value for pair in pairs for vector in pair for value in vector)
 
 
 def _pair(wrench: Wrench | None) -> tuple[Any, Any]:

@@ -305,6 +305,10 @@ class Comparison:
         for name, contact in self.d.contacts.items():
             told = contact.outputs(exact.multipliers[name])
             named |= {f"output:{output}": x for output, x in told.items()}
+        for name, (first, second, (closed, out)) in self.d.strokes.items():
+            (ax, ay, _), (bx, by, _) = place(first), place(second)
+            reach = math.hypot(bx.v - ax.v, by.v - ay.v)
+            named[f"output:{name}_stroke"] = (reach - closed) / (out - closed)
         for name, (of, factor) in self.d.outputs.items():
             force = _at(exact.sections, of) if "@" in of else named[of]
             named[f"output:{name}"] = factor * force
@@ -512,6 +516,9 @@ class Comparison:
             return kind, scale / abs(factor)
         name = name.partition("@")[0]
         group, part, *_ = name.split(":")
+        if part.endswith("_stroke"):
+            closed, out = self.d.strokes[part.removesuffix("_stroke")][-1]
+            return "place", out - closed
         if group == "output":  # of a path
             order = {"v": "rate", "a": "acceleration"}.get(part[-2])
             return (order, 1.0 / self.size) if order else ("place", 1.0)

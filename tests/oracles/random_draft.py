@@ -63,6 +63,7 @@ class Draft:
         self.pushed: dict[str, float] | None = None  # weights by joint
         self.loads: dict[str, Callable] = {}
         self.spreads: dict[str, Callable] = {}
+        self.strokes: dict[str, tuple] = {}  # two points, and their distances closed and open
         self.gravity: Place = (0.0, -9.81)
         self.stations: dict[str, list[float]] = {}
         self.limited: set[str] = set()  # links whose stations must lie on them

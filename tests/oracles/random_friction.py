@@ -39,7 +39,7 @@ def rubbed(seed):
     told; None for others.
     """
     drawn, rng = draw(seed), np.random.default_rng((seed, 77))
-    smoothed = np.random.default_rng((seed, 82))
+    smoothed, dry = (np.random.default_rng((seed, own)) for own in (82, 83))
     d = drawn.draft
     if (
         not is_regular(drawn)
@@ -76,6 +76,11 @@ def rubbed(seed):
             numbers["viscous"] = rng.uniform(0.0, 2.0)
         if smoothed.random() < 0.15:
             numbers["smooth"] = smoothed.uniform(0.2, 2.0) * max(rates)
+        if dry.random() < 0.2:
+            kept = {
+                word: number for word, number in numbers.items() if word in ("viscous", "smooth")
+            }
+            numbers = kept | {"coulomb": dry.uniform(0.0, 10.0)}
         told = ", ".join(f"{word}={float(number)!r}" for word, number in numbers.items())
         lines.append(f'm.friction("rub_{joint.name}", m.joints["{joint.name}"], {told})')
     if not lines:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import functools
 import math
+import re
 
 import numpy as np
 import oracle
 from random_draft import Draft, Spot
 from random_formula import Formula, Measure, joint_coordinate
 from random_growth import anything
+from random_path import Path
 from spread import Spread
 
 
@@ -127,6 +129,71 @@ def one_way(d: Draft, rng: np.random.Generator, motions: list[oracle.Result]) ->
     d.rng = drawn
 
 
+def strokes(d: Draft, rng: np.random.Generator, path: Path, often: float) -> None:
+    """Give springs, dampers and cylinders ends that the motion does not reach, and make gas springs
+    of some.
+    """
+    drawn, d.rng = d.rng, rng
+    places = [d.oracle(d.start).places(motion) for motion in path.motions]
+    held = {name: load.keywords for name, load in d.loads.items() if load.func is _spring}
+    points = {name: (given["first"].point, given["second"].point) for name, given in held.items()}
+    for name in (name for name in d.joints if f"{name}_barrel" in d.bodies):
+        rod = d.bodies[f"{name}_rod"]
+        points[name] = d.joints[name].parent, (rod.name, rod.length, 0.0)
+    for name, ends in points.items():
+        reach = [math.dist(*([x.v for x in place(end)[:2]] for end in ends)) for place in places]
+        closed = 0.98 * min(reach) if name in held else d.bodies[f"{name}_rod"].length
+        if 0.05 < closed < min(reach) and d.chance(often):
+            d.strokes[name] = *ends, (float(closed), float(1.1 * max(reach)))
+            i = next(i for i, line in enumerate(d.lines) if f'"{name}"' in line)
+            head, *numbers = re.split(r", (?=stiffness|damping|closed|bore)", d.lines[i])
+            told = [f"closed={closed!r}", f"open={1.1 * max(reach)!r}"]
+            if name in held and d.chance(0.6):
+                numbers, d.loads[name] = _gas_spring(d, name)
+            elif name in held:
+                numbers[-1] = numbers[-1].removesuffix(")")
+                head = re.sub(r"m\.(spring|damper)\(", "strut(m, ", head)
+            else:
+                told, numbers[-1] = told[1:], numbers[-1].removesuffix(")")
+            head = re.sub(r"m\.(spring|damper)\(", "gas_spring(m, ", head)
+            d.lines[i] = f"{', '.join([head, *told, *numbers])})"
+    d.rng = drawn
+
+
+def _gas_spring(d: Draft, name: str):
+    """Numbers of a gas spring as they are written, and what it does."""
+    force, brake = d.between(1.0, 500.0), d.choose(0.0, d.between(1.0, 50.0))
+    numbers = {
+        "force": (force, force * d.choose(1.0, d.between(1.1, 3.0))),
+        "exponent": d.choose(1.0, d.between(1.0, 1.7)),
+        "damping": d.choose(0.0, d.between(0.1, 20.0)),
+        "end_damping": brake,
+        "end": d.between(0.02, 0.4),
+    }
+    acts = functools.partial(_gas, stroke=d.strokes[name], **numbers)
+    return [f"{word}={x!r}" for word, x in numbers.items()], acts
+
+
+def rotor(d: Draft, rng: np.random.Generator, often: float) -> None:
+    """Rotors that joints turn, in housings on the joints' parents."""
+    drawn, d.rng = d.rng, rng
+    for joint in map(str, d.rng.permutation(d.movable())[:3]):
+        if d.joints[joint].kind == "slot" or not d.chance(often):
+            continue
+        inertia, ratio = d.between(1e-5, 1e-3), d.choose(1.0, d.between(-60.0, 60.0))
+        numbers = {
+            "inertia": inertia,
+            "ratio": ratio,
+            "armature": d.choose(0.0, d.between(0.0, 0.5)),
+        }
+        name = d.new("f")
+        told = ", ".join(f"{word}={x!r}" for word, x in numbers.items())
+        more = ", effort=20.0, speed=3.0" if d.chance(0.3) else ""
+        d.lines.append(f'm.drive("{name}", {joint}, rotor_{told}{more})')
+        d.loads[name] = functools.partial(_rotor, joint=d.joints[joint], **numbers)
+    d.rng = drawn
+
+
 def _shape(d: Draft, size: float, start: float, end: float):
     """How a component is written around its amount, the amount, and coefficients of what it is
     times, by powers of the distance.
@@ -231,6 +298,32 @@ def _spring(place, _, first: Spot, second: Spot, stiffness: float, length: float
     tension = stiffness * (reach - length) + damping * (dx.v * dx.d + dy.v * dy.d) / reach
     fx, fy = tension * dx.v / reach, tension * dy.v / reach
     return [(first.point, fx, fy, 0.0), (second.point, -fx, -fy, 0.0)]
+
+
+def _gas(place, _, stroke, force, exponent, damping, end_damping, end):
+    """Gas that is shut in keeps p V^n; its volume grows as the rod comes out, by that when open."""
+    first, second, (closed, out) = stroke
+    (ax, ay, _), (bx, by, _) = place(first), place(second)
+    dx, dy, reach = bx - ax, by - ay, math.hypot(bx.v - ax.v, by.v - ay.v)
+    least = (force[0] / force[1]) ** (1.0 / exponent)
+    push = force[0] / (least + (1.0 - least) * (reach - closed) / (out - closed)) ** exponent
+    damping += end_damping * min(max((reach - (out - end)) / end, 0.0), 1.0)
+    pull = damping * (dx.v * dx.d + dy.v * dy.d) / reach - push
+    fx, fy = pull * dx.v / reach, pull * dy.v / reach
+    return [(first, fx, fy, 0.0), (second, -fx, -fy, 0.0)]
+
+
+def _rotor(place, _, joint: oracle.Joint, inertia: float, ratio: float, armature: float):
+    """What a rotor's inertia does against its housing and its joint, by a gear that loses nothing.
+
+    A rotor along a slide turns about a line in the plane: its couples do not act there.
+    """
+    change = joint_coordinate(joint, place).a
+    carried = 0.0 if joint.slides else place((joint.parent[0], 0.0, 0.0))[2].a
+    couple = inertia * (carried + ratio * change)  # on the rotor
+    on_housing = inertia * carried - couple  # what turns with the housing is the body's own
+    housed = [] if joint.slides else [(joint.parent, 0.0, 0.0, on_housing)]
+    return housed + Measure("coordinate", joint).does(place, -ratio * couple - armature * change)
 
 
 def _coil(place, _, joint: oracle.Joint, stiffness: float, angle: float, damping: float):

@@ -20,15 +20,15 @@ import random_parts as parts
 import random_patterns as patterns
 from random_draft import Draft
 from random_growth import LEAST, attempt, close, dyad, freedom, hang, twice, values
-from random_loads import line_load, load, one_way
+from random_loads import line_load, load, one_way, rotor, strokes
 from random_path import Path, follow
 from random_patterns import PATTERNS
 
 _HEAD = """import casadi as ca
 from casadi import cos, sin, sqrt
 from lagrange_casadi import Mechanism, Scene, curve, density, evaluate, motion, table
-from lagrange_casadi.elements import belt, bent_bar, cylinder, disc_cam, gears, planetary, plate
-from lagrange_casadi.elements import two_bearings, two_bushes, wheel
+from lagrange_casadi.elements import belt, bent_bar, cylinder, disc_cam, gas_spring, gears, geneva
+from lagrange_casadi.elements import planetary, plate, strut, two_bearings, two_bushes, wheel
 """
 _LINKAGES = [linkages.slider_crank, linkages.crank_rocker, linkages.inverted, patterns.open_chain]
 KINDS = {
@@ -41,10 +41,12 @@ KINDS = {
     "toothed": [patterns.planetary, patterns.geared_five_bar, patterns.rack],
     "rolling": [patterns.sleigh, patterns.rolling_wheel],
     "one_way": [],
+    "stroke": [],
+    "rotor": [],
 }
 """What may be asked for in a mechanism, and on which patterns that is built: by default on any."""
 
-_ALONG, _ELEMENTS, _DRIVES, _ASKED, _SWITCHED = 1, 2, 3, 4, 5
+_ALONG, _ELEMENTS, _DRIVES, _ASKED, _SWITCHED, _ENDS, _TURNS = range(1, 8)
 SPACING = 0.4
 """Of the samples of a motion [s]."""
 
@@ -270,7 +272,7 @@ def _finish(seed: int, d: Draft, kind: str) -> Drawn:
     if d.gravity != (0.0, -9.81):
         x, y = (d.number(value, 0.5) for value in d.gravity)
         d.lines.append(f"m.set_gravity({x.text}, {y.text})")
-    asked = kind if kind in ("damper", "torsion") else None
+    asked = {"damper": "damper", "torsion": "torsion", "stroke": "spring"}.get(kind)
     for _ in range(3 if asked else d.choose(0, 1, 2, 4)):
         load(d, asked)
     line_load(d, np.random.default_rng((seed, _ALONG)), 1.0 if kind == "line" else 0.4)
@@ -286,6 +288,10 @@ def _finish(seed: int, d: Draft, kind: str) -> Drawn:
     path = follow(d, grid[1], 0.05 if d.whole else 0.1)
     if kind == "one_way" and path.motions and d.fits:
         one_way(d, np.random.default_rng((seed, _SWITCHED)), path.motions)
+    rotor(d, np.random.default_rng((seed, _TURNS)), 1.0 if kind == "rotor" else 0.1)
+    if path.motions:
+        often = 1.0 if kind == "stroke" else 0.3
+        strokes(d, np.random.default_rng((seed, _ENDS)), path, often)
     own = np.random.default_rng((seed, _ASKED))
     if path.motions and d.fits:
         elements.lose(d, own, path.motions[0])

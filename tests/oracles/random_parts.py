@@ -12,6 +12,7 @@ from random_draft import Draft, Place, Spot
 from random_elements import PARTS as ELEMENTS
 from random_elements import mesh, teeth_between
 from random_formula import Measure
+from random_geneva import geneva
 from random_growth import anything, attempt, dyad
 
 
@@ -207,13 +208,16 @@ def bent(d: Draft) -> None:
 
 
 PARTS = {"planetary": planetary, "bushes": bushes, "plate": plate, "bent": bent}
-PARTS |= {part.__name__: part for part in ELEMENTS}
+_NO_FREEDOM = (*ELEMENTS, geneva)
+"""Parts that bring a body, and hold it."""
+
+PARTS |= {part.__name__: part for part in _NO_FREEDOM}
 
 
 def join(d: Draft, kind: str) -> bool:
     """Join a part of a kind, and now and then a dyad; False where there is no place for it."""
     part = PARTS[kind]
-    found = any(attempt(d, part, takes=0 if part in ELEMENTS else None) for _ in range(6))
+    found = any(attempt(d, part, takes=0 if part in _NO_FREEDOM else None) for _ in range(6))
     if found and d.chance(0.5):
         attempt(d, dyad, takes=0)
     return found

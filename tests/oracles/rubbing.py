@@ -27,6 +27,7 @@ class Rub:
 
     joint: Joint
     mu: float = 0.0
+    coulomb: float | None = None
     radius: float | None = None
     length: float | None = None
     viscous: float = 0.0
@@ -48,6 +49,9 @@ class Rub:
     def law(self, reaction, place: Callable) -> float:
         """What the law says of a reaction."""
         v, (fx, fy, mz) = self.rate(place), reaction
+        sign = math.tanh(v / self.smooth) if self.smooth else 1 if v > 0 else -1
+        if self.coulomb is not None:
+            return -sign * self.coulomb - self.viscous * v
         if not self.joint.slides:
             pressed, speed = self.radius * math.sqrt(fx * fx + fy * fy), v * self.radius
         else:
@@ -59,7 +63,6 @@ class Rub:
         mu = self.mu
         if self.static is not None:
             mu += (self.static - mu) * math.exp(-((speed / self.stribeck) ** 2))
-        sign = math.tanh(v / self.smooth) if self.smooth else 1 if v > 0 else -1
         return -sign * mu * pressed - self.viscous * v
 
 

@@ -240,6 +240,24 @@ class Spring:
 
 
 @dataclass(frozen=True)
+class Rotor:
+    """What turns about the axis of a ``joint`` in a housing on its parent, ``ratio`` times as far
+    as the joint goes: its ``inertia`` is among that of the parent. An ``armature`` is two of them
+    that turn to either side, as far as the joint goes, and have half of that each.
+    """
+
+    joint: str
+    inertia: float
+    ratio: float
+    armature: float = 0.0
+
+    @property
+    def spinning(self) -> list[tuple[float, float]]:
+        """Inertias and ratios of bodies that turn."""
+        return [(self.inertia, self.ratio), (self.armature / 2, 1.0), (self.armature / 2, -1.0)]
+
+
+@dataclass(frozen=True)
 class Coupling:
     """Gears, points on planes and the like: the sum of coefficients times coordinates, by (joint,
     index), and of directions times places, by (body, point), is the ``offset``.

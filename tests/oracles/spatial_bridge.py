@@ -129,6 +129,9 @@ def declared(
         )
     for rub in rubs:
         m.friction(rub.name, m.joints[rub.joint.name], along=rub.along, **rub.numbers)
+    for k, rotor in enumerate(drawn.rotors):
+        numbers = {"rotor_inertia": rotor.inertia, "ratio": rotor.ratio}
+        m.drive(f"motor{k}", m.joints[rotor.joint], **numbers, armature=rotor.armature)
     for coupling in one.couplings:
         m.constraint(coupling.name, _total(m, one, coupling, parts))
     for row in one.rows:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -12,11 +13,13 @@ from spatial_bodies import (
     AXES,
     GROUND,
     NIL,
+    Coupling,
     Joint,
     Load,
     Mechanism,
     Rigid,
     Rod,
+    Rotor,
     Spread,
     Spring,
     second_moments,
@@ -79,6 +82,7 @@ class Drawn:
     steps: int = 8
     idle: int = 0
     hard: frozenset[str] = frozenset()
+    rotors: tuple[Rotor, ...] = ()
 
     def is_hard(self, joint: Joint) -> bool:
         """Whether a joint is told by its place: both its bodies are."""
@@ -91,7 +95,50 @@ class Drawn:
     def solve(self, t, guess=None) -> Result:
         """The instant t; followed from the guess at 0 unless another one is given."""
         guess = guess or self.followed(t)
-        return solve(self.mechanism, self.drives(t), guess, self.pushed)
+        drives = self.drives(t)
+        found = solve(self.mechanism, drives, guess, self.pushed)
+        return self._spun(found, drives) if self.rotors else found
+
+    def _spun(self, found: Result, drives) -> Result:
+        """The same with rotors as free bodies, geared to their joints, and told no further."""
+        bodies = {b.name: b for b in self.mechanism.bodies}
+        pins, gears = [], []
+        guess = {
+            name: (pose.r.astype(float), pose.R.astype(float)) for name, pose in found.poses.items()
+        }
+        guess |= {key: float(q) for key, (q, *_) in found.coordinates.items()}
+        for rotor in self.rotors:
+            joint = self.mechanism.joint(rotor.joint)
+            axis = np.array(joint.axis, float) / np.linalg.norm(np.array(joint.axis, float))
+            for inertia, ratio in rotor.spinning:
+                own = inertia / 2 * (np.eye(3) + np.outer(axis, axis))
+                name, parent = f"rotor{len(pins)}", joint.parent
+                if parent != GROUND:
+                    held = np.array(bodies[parent].inertia, float) - own
+                    bodies[parent] = dataclasses.replace(bodies[parent], inertia=held)
+                bodies[name] = Rigid(name, 0.0, inertia=own)
+                pins.append(Joint(name, "revolute", parent, name, joint.at_parent, axis=axis))
+                gears.append(Coupling(f"{name}_gear", {(name, 0): 1.0, (rotor.joint, 0): -ratio}))
+                guess[name, 0] = ratio * float(found.coordinates[rotor.joint, 0][0])
+        whole = dataclasses.replace(
+            self.mechanism,
+            bodies=[*bodies.values()],
+            joints=[*self.mechanism.joints, *pins],
+            couplings=[*self.mechanism.couplings, *gears],
+        )
+        spun = solve(whole, drives, guess, drives if self.pushed is None else self.pushed)
+
+        def without(told):
+            return {key: x for key, x in told.items() if "rotor" not in str(key)}
+
+        return dataclasses.replace(
+            spun,
+            poses=without(spun.poses),
+            coordinates=without(spun.coordinates),
+            reactions=without(spun.reactions),
+            multipliers=without(spun.multipliers),
+            idle=without(spun.idle),
+        )
 
     def followed(self, t) -> dict:
         """The nearest of the postures that are followed from the one at 0; none of an open tree,
@@ -279,3 +326,20 @@ def joint(rng, name, kind, parent, child, at_parent=NIL, at_child=NIL) -> Joint:
         turns,
         orientation(rng),
     )
+
+
+def turning(drawn: Drawn, seed: int) -> Drawn:
+    """The same with rotors in some of its joints that have one coordinate, whose parents have an
+    inertia.
+    """
+    rng = np.random.default_rng([seed, 7])
+    rods = {*drawn.rods}
+    found = [
+        Rotor(joint.name, *map(float, (rng.uniform(1e-4, 2e-2), rng.uniform(-8, 8))), armature)
+        for joint in drawn.mechanism.joints
+        for armature in [float(rng.choice([0.0, rng.uniform(0.0, 0.2)]))]
+        if joint.kind in ("revolute", "prismatic")
+        and joint.parent not in rods
+        and rng.random() < 0.5
+    ]
+    return dataclasses.replace(drawn, rotors=tuple(found))

@@ -4,6 +4,7 @@ import functools
 
 from spatial_anyhow import anyhow
 from spatial_bridge import declared, plain
+from spatial_draft import turning
 from spatial_mechanisms import FAMILIES
 from spatial_wheels import wheel
 
@@ -16,6 +17,7 @@ RATIOS = 5
 def scene_of(name, seed):
     """What was drawn, and its scene."""
     drawn = plain((FAMILIES | {"anyhow": anyhow, "wheel": wheel})[name](seed))
+    drawn = turning(drawn, seed)
     return drawn, declared(drawn, xi=(0, 1, RATIOS))
 
 

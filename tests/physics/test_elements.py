@@ -200,15 +200,6 @@ def test_a_gas_spring_pushes_as_its_gas_says(space):
     assert solution.effort("hinge") == pytest.approx(effort, abs=1e-10)
 
 
-def test_a_gas_spring_has_its_forces_at_its_ends():
-    m = Mechanism("m")
-    way = m.prismatic("way", m.ground.at(0.3, 0.0), m.point_mass("end", 1.0), axis=(1, 0))
-    gas_spring(m, "g", m.ground, way.child, closed=0.3, open=0.5, force=(300.0, 420.0))
-    m.set_gravity(0, 0)
-    solution = evaluate(Scene(m, {"way": polynomial(0.0, 0.2)}, t=(0, 1, 3)))
-    assert solution.effort("way") == pytest.approx([-420.0, -350.0, -300.0], rel=1e-13)
-
-
 def lifted(law, open_=0.75, **options):
     """A lever that a cylinder moves about a pin 0.2 m beside its mount, which it passes."""
     m = Mechanism("lifted")

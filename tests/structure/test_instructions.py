@@ -31,7 +31,7 @@ INSTANT = {
     "servo_press": 223,
     "punch_press": 187,
     "planetary_gear": 628,
-    "geneva": 198,
+    "geneva": 218,
     "toggle_clamp": 478,
     "scissor_lift": 973,
     "screw_lift": 246,

@@ -26,7 +26,7 @@ from ...base.arguments import public
 from ...base.brief import Brief
 from ...base.rotation import Rotation
 from ...base.units import count
-from ...base.vectors import AXES, ZERO, cross, dot, minus, norm, times
+from ...base.vectors import AXES, ZERO, cross, dot, minus, norm, plus, times
 from ...errors import DeclarationError
 from ..constraints import Constraint
 from ..declared_parts import Expression, Link, Point, Vector
@@ -142,7 +142,7 @@ def geneva(
     way = 1 if internal else -1
     half = math.pi / 2.0 + way * math.pi / slots
     turn, middle = mechanism.coordinate(crank), times(-way, reach)
-    angle = turn + ca.atan2(arm[1], arm[0]) - ca.atan2(middle[1], middle[0])
+    angle = turn - ca.atan2(dot(AXES[2], cross(arm, middle)), dot(arm, middle))
     turns = ca.floor(angle / math.tau + 0.5)
     within = angle - math.tau * turns
     seen = ca.fmin(ca.fmax(within, -half), half)
@@ -156,19 +156,28 @@ def geneva(
     locking = times(1.0 / dot(reach, reach), cross(AXES[2], reach))
     lean = 0.0 if internal else cosine / ca.sqrt(1.0 - cosine * cosine)
     spread = times(-lean / dot(reach, reach), reach)
-    mesh = Mesh(
+    carrier, axis = crank.parent.body, crank.parent.place
+    at_pin = Mesh(
+        centre,
+        wheel.child,
+        carrier,
+        plus(axis, place),
+        minus(reach, place),
+        Wrench(_either(engaged, pushed, ZERO)),
+    )
+    at_arc = Mesh(
         crank.child,
         wheel.child,
-        crank.parent.body,
-        crank.parent.place,
+        carrier,
+        axis,
         reach,
-        Wrench(_either(engaged, pushed, locking), _either(engaged, cross(place, pushed), ZERO)),
+        Wrench(_either(engaged, ZERO, locking)),
         Wrench(_either(engaged, ZERO, spread)),
     )
     phi = mechanism.coordinate(wheel) - way * (slewed + math.tau / slots * turns)
     made = replace(
         mechanism.constraint(name, phi),
-        transmission=Transmission(name, (mesh,), fits=tuple(fits)),
+        transmission=Transmission(name, (at_pin, at_arc), fits=tuple(fits)),
     )
     mechanism.constraints[name] = made
     torque = mechanism.results.multiplier(made)

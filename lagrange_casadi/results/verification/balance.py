@@ -195,6 +195,8 @@ def _of_rotor(placed: Placed, name: str, motor: DriveNumbers) -> Iterator[Action
     acts = placed.along(joint.name, joint.axes[0], -taken)
     yield Action(name, joint.child.body, at, *acts, joint.parent.body)
     turning = change * about + rate * cross(near.spin[0], about)
+    if not placed.reported.space:  # couples of a rotor along a slide lie in the plane
+        turning = turning * constant((0.0, 0.0, 1.0))
     yield Action(name, joint.parent.body, at, NIL, -motor.spin * turning)
 
 
