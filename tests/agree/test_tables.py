@@ -157,6 +157,7 @@ REFUSED = {
     "gear": (lambda: geared(0.7), "after at most 4 turns of joint 'first', but"),
     "iterated": (truss_platform, "expected a drive that can make whole revolutions"),
     "dead centre": (flat_parallelogram, "the loop closed by joint 'B' passes a dead centre"),
+    "jump": (lambda: case("geneva"), r"'\S+' jumps near main = .*; evaluate without a table"),
     "engine": (lambda: case("engine"), r"an accuracy of 1e-09 is not possible; the best is \S+,"),
 }
 

@@ -31,6 +31,11 @@ from .refusing import first_broken
 FRACTIONS = ("gap", "misfit", "beyond", "stroke")
 """Checks that are small or large beside one."""
 
+_JUMP, _STEEPEST, _HALVINGS = 1e-3, 64, 24
+"""The least jump, of the largest of a column's unit, that is refused; how many steps of a course
+are looked at, and how often each is halved.
+"""
+
 TURNS = 4
 """Number of the longest periods."""
 
@@ -86,12 +91,16 @@ class Cycle:
         angles = (
             np.arange(first, first + nodes).astype(np.float64) + (0.5 if halfway else 0.0)
         ) * width
+        return np.roll(self.at(angles), first, axis=-1)
+
+    def at(self, angles: Array) -> Array:
+        """The terms less the drift at angles of the course, (factors, columns, n)."""
         values = self.drive.terms_at(
             angles, self.drive.settle(angles, self.course.places_near(angles))
         )
         self.drive.unwind(values[0], self.course.turns_of(angles, values[0, self.drive.wrapped]))
         values[0] -= self.drift[:, None] * angles
-        return np.roll(values, first, axis=-1)
+        return values
 
 
 @dataclass(frozen=True, eq=False)
@@ -344,7 +353,9 @@ def cycle_of(program: Program, p: Array, rates: tuple[float, float]) -> Cycle:
             drift = (
                 np.where((whole != 0.0) & (np.abs(gain - whole) < _SAME), whole, gain) / revolutions
             )
-            return Cycle(drive, course, revolutions, drift, _ROUNDING * sizes + 2.0 * noise)
+            cycle = Cycle(drive, course, revolutions, drift, _ROUNDING * sizes + 2.0 * noise)
+            _refuse_jumps(cycle, values[..., :half], sizes)
+            return cycle
     names = [name for name, does in zip(program.columns, moved, strict=True) if does]
     wound_angles = bool(program.checks("turned"))
     why = "; a load that depends on a number of revolutions may not repeat" if wound_angles else ""
@@ -376,6 +387,32 @@ def _refuse_other_powers(
         raise DeclarationError(
             f"table: expected columns quadratic in the rate of joint '{drive.joint}', but a load"
             f" that depends on a rate's sign, size or another power enters {_listed(names)}"
+        )
+
+
+def _refuse_jumps(cycle: Cycle, values: Array, sizes: Array) -> None:
+    """A spline swings beside a jump: so the steepest steps of the course are halved until a smooth
+    change is none.
+    """
+    least = np.where(sizes > 0.0, sizes, math.inf)[..., None]
+
+    def apart(one: Array, other: Array) -> Array:
+        return np.asarray((np.abs(one - other) / least).max(axis=(0, 1)))
+
+    some = np.argsort(apart(values[..., 1:], values[..., :-1]))[-_STEEPEST:]
+    low, high = cycle.course.angles[some], cycle.course.angles[some + 1]
+    for _ in range(_HALVINGS):
+        middle = (low + high) / 2.0
+        before, here, after = map(cycle.at, (low, middle, high))
+        first = apart(before, here) > apart(here, after)
+        low, high = np.where(first, (low, middle), (middle, high))
+    jumps = np.abs(cycle.at(high) - cycle.at(low)) / least
+    if jumps.max() > _JUMP:
+        _, column, k = np.unravel_index(np.argmax(jumps), jumps.shape)
+        raise DeclarationError(
+            f"table: '{cycle.drive.program.names[column]}' jumps near"
+            f" {describe_coordinate(cycle.drive.joint, 'angle', low[k])}, and a table holds smooth"
+            " columns alone; evaluate without a table"
         )
 
 

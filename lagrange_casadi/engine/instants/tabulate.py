@@ -57,8 +57,8 @@ def tabulate(
     Raises
     ------
     DeclarationError
-        For a scene whose cycle cannot be tabulated, an accuracy that is not reached, and mistakes
-        in the arguments.
+        For a scene whose cycle cannot be tabulated, a motion that is not finite, an accuracy that
+        is not reached, and another kind of table.
     """
     accuracy, nodes = _asked(table)
     for output in program.outputs:
@@ -67,8 +67,11 @@ def tabulate(
                 f"table: {output} is not a polynomial of the rate; want section:{output.part} in"
                 " place of it, and evaluate strength from the solution"
             )
-    largest = _largest(rates)
-    cycle = cycle_of(program, p, largest)
+    if not np.isfinite(rates).all():
+        raise DeclarationError(
+            f"table: expected a finite rate and acceleration of the drive, got {rates!r}"
+        )
+    cycle = cycle_of(program, p, rates)
     values, best = cycle.values(nodes), None
     while True:
         between = cycle.values(nodes, halfway=True)
@@ -83,7 +86,7 @@ def tabulate(
                 )
             break
         values[~kept] = between[~kept] = 0.0
-        found = _table(cycle, values, between, kept, largest)
+        found = _table(cycle, values, between, kept, rates)
         if accuracy is None or found.error <= accuracy:
             return found
         best = found if best is None or found.error < best.error else best
@@ -185,18 +188,3 @@ def _asked(table: int | float) -> tuple[float | None, int]:
         f"table: expected a whole number of nodes from {LEAST} to {MOST}, or an accuracy between 0"
         f" and 1, got {table!r}"
     )
-
-
-def _largest(rates: tuple[float, float]) -> tuple[float, float]:
-    try:
-        rate, acceleration = (float(size) for size in rates)
-    except (TypeError, ValueError):
-        rate = acceleration = math.nan
-    if not (
-        math.isfinite(rate) and math.isfinite(acceleration) and rate >= 0.0 and acceleration >= 0.0
-    ):
-        raise DeclarationError(
-            "table: expected the largest rate and acceleration, two numbers of at least 0, got"
-            f" {rates!r}"
-        )
-    return rate, acceleration

@@ -156,20 +156,20 @@ def geneva(
     locking = times(1.0 / dot(reach, reach), cross(AXES[2], reach))
     lean = 0.0 if internal else cosine / ca.sqrt(1.0 - cosine * cosine)
     spread = times(-lean / dot(reach, reach), reach)
-    carrier, axis = crank.parent.body, crank.parent.place
+    axis = crank.parent
     at_pin = Mesh(
         centre,
         wheel.child,
-        carrier,
-        plus(axis, place),
+        axis.body,
+        plus(axis.place, place),
         minus(reach, place),
         Wrench(_either(engaged, pushed, ZERO)),
     )
     at_arc = Mesh(
         crank.child,
         wheel.child,
-        carrier,
-        axis,
+        axis.body,
+        axis.place,
         reach,
         Wrench(_either(engaged, ZERO, locking)),
         Wrench(_either(engaged, ZERO, spread)),
