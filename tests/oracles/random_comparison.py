@@ -440,7 +440,10 @@ class Comparison:
         for by in (0.0, -_AT_PEAK, _AT_PEAK):
             t = peak.t + by
             model = self.d.oracle(t)
-            exact = model.solve(self.d.drives(t), path.near(t))
+            try:
+                exact = model.solve(self.d.drives(t), path.near(t))
+            except oracle.OpenLoopError:  # where a pin enters a slot, Newton's method goes between
+                return
             if exact.steadiness < _STEADY_PEAK or exact.vague:
                 return
             if peak.xi is None:
