@@ -1,4 +1,4 @@
-"""Geneva drives over whole turns: closed forms of their motion. Random mechanisms hold their
+"""Geneva drives beside a published table, and their misuse. Random mechanisms hold their motion and
 forces against free bodies.
 
 Source of the table: J. H. Bickford, *Mechanisms for Intermittent Motion*, 1972, chapter 9.
@@ -9,7 +9,7 @@ import math
 import numpy as np
 import pytest
 
-from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate, refine
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate
 from lagrange_casadi.elements import geneva
 from lagrange_casadi.errors import DeclarationError, ParameterError
 from lagrange_casadi.motion import polynomial
@@ -17,50 +17,19 @@ from lagrange_casadi.motion import polynomial
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
 AXLE = 0.1 * np.array([math.cos(0.3), math.sin(0.3)])
-INERTIA, LOAD = 1.5e-3, 2.0
 
 
-def drive(slots, internal=False, omega=5.0, t=(0, 4.0, 401), **options):
+def drive(slots, omega=5.0, t=(0, 4.0, 401)):
     """A wheel 0.1 m from a crank, which begins 0.9 rad behind the middle of the engagement."""
     m = Mechanism("geneva")
     m.set_gravity(0, 0)
     r = m.parameter("r", 0.1 * math.sin(math.pi / slots), "m")
     crank = m.link("crank", length=r, mass=0.3, centre=(0, 0), inertia=1e-4)
-    wheel = m.link("wheel", length=0.1, mass=1.0, centre=(0, 0), inertia=INERTIA)
+    wheel = m.link("wheel", length=0.1, mass=1.0, centre=(0, 0), inertia=1.5e-3)
     main = m.revolute("main", m.ground, crank)
     axle = m.revolute("axle", m.ground.at(*AXLE), wheel)
-    made = geneva(m, "g", main, axle, slots=slots, internal=internal, **options)
-    m.torque("load", wheel, LOAD)
-    middle = 0.3 - (math.pi if internal else 0.0)
-    return made, Scene(m, {"main": polynomial(middle - 0.9, omega)}, t=t)
-
-
-@pytest.mark.parametrize("omega", [5.0, -5.0])
-@pytest.mark.parametrize("internal", [False, True])
-@pytest.mark.parametrize("slots", [3, 4, 7, 12])
-def test_a_wheel_turns_and_rests_as_the_closed_form_says(slots, internal, omega):
-    made, scene = drive(slots, internal, omega)
-    solution = evaluate(scene, backend="vm")
-    assert solution.certified
-    way, m = (1 if internal else -1), 1.0 / math.sin(math.pi / slots)
-    a = -0.9 + omega * solution.t
-    turns = np.round(a / math.tau)
-    x = a - math.tau * turns
-    inside = np.abs(x) < made.engaged / 2
-    assert made.engaged + made.dwell == pytest.approx(math.tau)
-    assert made.engaged == pytest.approx(math.pi + way * math.tau / slots)
-    s, c = np.sin(x), np.cos(x)
-    far = 1 + m * m + way * 2 * m * c
-    angle = np.where(inside, np.arctan2(s, m + way * c), np.sign(x) * math.pi / slots)
-    speed = np.where(inside, (m * c + way) / far, 0.0)
-    change = np.where(inside, -m * s * (m * m - 1) / far**2, 0.0)
-    wheel = solution.motion("axle")
-    assert wheel.value == pytest.approx(way * (angle + math.tau / slots * turns), abs=1e-13)
-    assert wheel.rate == pytest.approx(way * omega * speed, abs=1e-12)
-    assert wheel.acceleration == pytest.approx(way * omega**2 * change, abs=1e-10)
-    # The crank bears what moves the wheel, and no load in a dwell.
-    torque = INERTIA * wheel.acceleration - LOAD
-    assert solution.effort("main") * omega == pytest.approx(torque * wheel.rate, abs=1e-10)
+    made = geneva(m, "g", main, axle, slots=slots)
+    return made, Scene(m, {"main": polynomial(0.3 - 0.9, omega)}, t=t)
 
 
 @pytest.mark.parametrize(
@@ -68,7 +37,9 @@ def test_a_wheel_turns_and_rests_as_the_closed_form_says(slots, internal, omega)
     [(3, 6.46, 31.4), (4, 2.41, 5.41), (5, 1.43, 2.30), (6, 1.0, 1.35), (8, 0.620, 0.700)],
 )
 def test_the_largest_speed_and_acceleration_are_those_of_the_table(slots, speed, acceleration):
-    _, scene = drive(slots, omega=1.0, t=(0, 2.0, 201))
+    made, scene = drive(slots, omega=1.0, t=(0, 2.0, 201))
+    assert made.engaged == pytest.approx(math.pi - math.tau / slots)
+    assert made.engaged + made.dwell == pytest.approx(math.tau)
     wheel = evaluate(scene).motion("axle")
     assert np.abs(wheel.rate).max() == pytest.approx(speed, rel=3e-3)
     assert np.abs(wheel.acceleration).max() == pytest.approx(acceleration, rel=3e-3)
@@ -105,10 +76,3 @@ def test_misuse_is_named(says, made, given):
     given = {key: m.links[it].tip if key == "pin" else it for key, it in given.items()}
     with pytest.raises(DeclarationError, match=f"geneva 'g': {says}"):
         geneva(m, "g", main, axle, **{"slots": 4} | given)
-
-
-def test_a_peak_between_the_instants_is_found():
-    """The force of the pin at constant torque is largest where the pin is deepest in its slot."""
-    _, scene = drive(4, omega=1e-3, t=(0, 2000.0, 12))
-    (peak,) = refine(scene, evaluate(scene), ["output:g_force"])
-    assert abs(peak.value) == pytest.approx(LOAD / (0.1 - 0.1 * math.sin(math.pi / 4)), rel=1e-6)
