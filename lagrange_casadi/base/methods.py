@@ -15,7 +15,6 @@ METHODS: dict[str, str] = {
     "LagrangeCasadiError.drawn": "views.drawing:draw_error",
     "Mechanism._repr_html_": "views.drawing:face",
     "Mechanism.draw": "views.drawing:draw_mechanism",
-    "PostureError.drawn": "views.figures.posture_figures:draw_postures",
     "Scene._repr_html_": "views.report:scene_summary",
     "Scene.draw": "views.drawing:draw_scene",
     "Scene.report": "views.report:scene_report",

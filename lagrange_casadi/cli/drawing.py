@@ -4,7 +4,6 @@ assembled.
 
 from __future__ import annotations
 
-import io
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -16,7 +15,9 @@ from ..model.scene import Scene
 from ..results.solution import Solution
 from ..results.store.specs import Spec
 from ..studies.case import name_of
+from ..views.figures.posture_figures import draw_postures, numbered
 from ..views.shapes.index import write_index
+from ..views.shapes.pixels import frames
 from .echo import echo
 from .progress import bar_of
 
@@ -56,13 +57,12 @@ def drawn_ways(error: PostureError, asked: Mapping[str, object]) -> tuple[str, l
     scene = error.scene
     if not isinstance(scene, Scene) or error.lacking:
         return "", []
-    picture = io.BytesIO()
     path = _beside("postures.png", asked)
     with suppress(LagrangeCasadiError):
-        postures, complete = method("PostureError.drawn")(scene, picture)
-        if postures:
+        picture, postures, complete = draw_postures(scene)
+        if picture is not None:
             with writing(path) as file:
-                file.write(picture.getvalue())
+                next(frames(picture)).save(file, "PNG")
             many = f"the {len(postures)}" if complete else str(len(postures))
             words = (
                 f"; {path} draws {many} of these that close{'' if len(postures) > 1 else 's'} all"
@@ -70,8 +70,7 @@ def drawn_ways(error: PostureError, asked: Mapping[str, object]) -> tuple[str, l
             )
             if not complete:
                 words += ", and says how to get the others"
-            numbered = [f"  {number:>2}  {line}" for number, line in enumerate(postures, 1)]
-            return words, numbered if len(error.assembly_modes) > 1 else []
+            return words, numbered(postures) if len(error.assembly_modes) > 1 else []
     return "", []
 
 

@@ -19,6 +19,8 @@ import numpy as np
 import pytest
 import sweeps
 
+from lagrange_casadi import load_case
+
 CASE = (sweeps.CASE / "case.py").read_text()
 HALF = CASE[: CASE.index('    m.revolute("B"')] + "    return m\n"
 
@@ -42,15 +44,15 @@ def answer(address, path=None, **heads):
     return link.getresponse()
 
 
-def states(address, seconds=60.0):
-    """What is said of the case, one state after the other, for so long at most."""
+def states(address, what="state", seconds=60.0):
+    """What is said of the case, one state or drawing after the other, for so long at most."""
     event, end = "", time.monotonic() + seconds
     for line in answer(address, urlsplit(address).path + "news"):
         if time.monotonic() > end:
             return
         name, _, text = line.decode().partition(": ")
         event = text.strip() if name == "event" else event
-        if name == "data" and event == "state":
+        if name == "data" and event == what:
             yield json.loads(text)
 
 
@@ -119,6 +121,18 @@ def test_whatever_a_case_does_the_program_goes_on(followed):
     assert any(state["doing"] == "loading the case" for state in told)
     save(CASE)
     assert any(not state["doing"] and not state["error"] for state in told)
+
+
+def test_a_drawing_is_of_the_instant_asked_or_of_all_ways_left_open(tmp_path):
+    case = tmp_path / "crank.py"
+    case.write_text(CASE)
+    with following(case, "--t", "0.01:0.03:3") as (_, address):
+        expected = load_case(case).scene.draw(t=0.01).svg
+        assert next(states(address, "drawing"))["svg"] == expected
+        four_bar = (sweeps.CASE.parent / "four_bar" / "case.py").read_text()
+        case.write_text(re.sub(", posture={.*}", "", four_bar))
+        assert any("2 ways to assemble" in one["svg"] for one in states(address, "drawing"))
+        assert any("  2  posture={'r" in one.get("error", "") for one in states(address))
 
 
 def test_a_run_has_a_limit_and_ctrl_c_leaves_nothing(tmp_path):

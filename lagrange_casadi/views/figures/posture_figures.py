@@ -8,9 +8,8 @@ import itertools
 import math
 import re
 import textwrap
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import BinaryIO
 
 import numpy as np
 
@@ -21,7 +20,6 @@ from ...results.solution import Solution
 from ...studies.evaluate import evaluate
 from ..shapes.marks import body_names
 from ..shapes.picture_sheet import Picture, picture, sheet, view_of
-from ..shapes.pixels import frames
 from ..shapes.poses import Poses
 from ..shapes.primitives import cloud, drawing
 from ..shapes.shapes import named_spots
@@ -43,19 +41,18 @@ _NAMED = 8
 _ENTRY = re.compile("'([^']+)':")
 
 
-def draw_postures(scene: Scene, file: BinaryIO) -> tuple[list[str], bool]:
-    """Draw the ways in which a scene that leaves them open can be assembled at its start, as PNG.
+def draw_postures(scene: Scene) -> tuple[Picture | None, list[str], bool]:
+    """Draw the ways in which a scene that leaves them open can be assembled at its start.
 
     Parameters
     ----------
     scene
         The scene, whose posture leaves some loops open.
-    file
-        Where the picture is written; nothing is where there is no way, or where some loop lacks
-        rough values to be iterated from.
 
     Returns
     -------
+    picture : Picture or None
+        None where there is no way, or where some loop lacks rough values to be iterated from.
     postures : list of str
         The posture to paste for each way, in the order of their numbers. Ways that look the same
         share a picture. Of more than sixteen combinations at most eight are drawn, which
@@ -65,7 +62,7 @@ def draw_postures(scene: Scene, file: BinaryIO) -> tuple[list[str], bool]:
     """
     found, possible = assemblies(scene)
     if not found:
-        return [], True
+        return None, [], True
     postures = [f"posture={{{entries}}}" for entries, _ in found]
     groups = _apart([solution for _, solution in found])
     words, notes = f"{len(found)} ways to assemble it", []
@@ -77,11 +74,10 @@ def draw_postures(scene: Scene, file: BinaryIO) -> tuple[list[str], bool]:
             "To see the others, put the first entry of a row into the scene's posture, and run"
             " again: the picture then has the postures with this entry."
         )
-    rows = [
-        line
-        for number, posture in enumerate(postures, 1)
-        for line in (*_lines(f"{number}   {posture}"), "")
-    ]
+    fold = textwrap.TextWrapper(_WIDE + 10, subsequent_indent=6 * " ", break_on_hyphens=False)
+    # Lines end behind an entry: no other space can be broken.
+    whole = [posture.replace(": ", ":\xa0").replace(" deg", "\xa0deg") for posture in postures]
+    rows = [line for k, one in enumerate(whole, 1) for line in (*fold.wrap(f"{k}   {one}"), "")]
     rows += [line for sentence in notes for line in textwrap.wrap(sentence, _WIDE + 4)]
     entries = {entry.partition(":")[0] for posture in postures for entry in _ENTRY.findall(posture)}
     columns = min(math.ceil(math.sqrt(len(groups))), 4)
@@ -89,8 +85,12 @@ def draw_postures(scene: Scene, file: BinaryIO) -> tuple[list[str], bool]:
         _picture(found[numbers[0]][1], numbers, entries, _SIDES[columns > 2]) for numbers in groups
     ]
     title = f"{found[0][1].case} at t = {scene.t[0]:g} s: {words}"
-    next(frames(sheet(title, pictures, columns, rows))).save(file, "PNG")
-    return postures, possible <= _ALL
+    return sheet(title, pictures, columns, rows), postures, possible <= _ALL
+
+
+def numbered(postures: Iterable[str]) -> list[str]:
+    """Lines of postures with the numbers of their pictures."""
+    return [f"  {number:>2}  {line}" for number, line in enumerate(postures, 1)]
 
 
 def _picture(
@@ -152,18 +152,6 @@ def _apart(found: Sequence[Solution]) -> list[list[int]]:
         else:
             pictures.append([number])
     return pictures
-
-
-def _lines(posture: str) -> Iterator[str]:
-    """A posture in lines of the table, each of which ends behind an entry."""
-    line = ""
-    for entry in posture.split(", "):
-        if line and len(line) + len(entry) > _WIDE:
-            yield f"{line},"
-            line = " " * 6 + entry
-        else:
-            line = f"{line}, {entry}" if line else entry
-    yield line
 
 
 def _closed(scene: Scene, posture: Mapping[str, float]) -> Solution | PostureError | None:

@@ -19,14 +19,17 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from ...base.apart import limit_memory
-from ...errors import LagrangeCasadiError, one_line
+from ...errors import LagrangeCasadiError, PostureError, one_line
+from ...model.scene import Scene
 from ...studies import solving  # noqa: F401 - which takes long to import
 from ...studies.case import case_file, load_case
 from ...studies.evaluate import evaluate
 from ..drawing import draw_declared, draw_error
+from ..figures.posture_figures import draw_postures, numbered
 from ..report.live import Live, run_of
 from ..report.page import with_motion
 from ..report.page_contents import contents
+from ..shapes.vector import svg
 
 _MEMORY = 8e9
 """Bytes that a case may take at most."""
@@ -70,9 +73,14 @@ def _shown(given: Mapping[str, Any], say: Say) -> str:
     try:
         _show(Path(given["case"]), given, say)
     except LagrangeCasadiError as error:
-        if error.placement is not None:
-            with suppress(LagrangeCasadiError):
+        with suppress(LagrangeCasadiError):
+            if error.placement is not None:
                 say("drawing", draw_error(error).svg)
+            elif isinstance(error, PostureError) and isinstance(error.scene, Scene):
+                picture, postures, _ = draw_postures(error.scene)
+                if picture is not None:
+                    say("drawing", svg(picture, paper=False))
+                    return "\n".join([str(error), *numbered(postures)])
         if isinstance(error.__cause__, MemoryError):
             return f"out of memory: the case takes more than there is ({error})"
         return str(error)
@@ -99,7 +107,7 @@ def _show(case: Path, given: Mapping[str, Any], say: Say) -> None:
     parameters, t = given["parameters"], given["t"]
     wanted = with_motion(given["wanted"] or scene.wanted)
     say("doing", "drawing")
-    say("drawing", scene.draw(parameters=parameters).svg)
+    say("drawing", scene.draw(parameters=parameters, t=t and t[0]).svg)
     say("doing", "computing the motion")
     run = partial(evaluate, scene, parameters=parameters, t=t, backend="vm")
     say("motion", contents(run(wanted=["motion"], certificate=False)))
