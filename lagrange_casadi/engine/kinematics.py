@@ -285,7 +285,7 @@ class _Solver:
         values = {
             signs: found
             for signs, (closure, *found) in every.items()
-            if closure > 0.0 and not any(map(math.isnan, found))
+            if closure > _DEAD and not any(map(math.isnan, found))
         }
         if not values:
             what = (

@@ -100,11 +100,17 @@ REFUSED = {
         lambda: four_bar(lengths=(0.1, 0.1, 0.1), frame=(1.0, 0.0)),
         r"closed by joint 'B' cannot be closed at the start of the motion, where O = 1\.46 rad",
     ),
-    "stretched at the start, but for rounding": (
-        AssemblyError,
-        lambda: four_bar(lengths=(0.1, 0.15 - 1e-16, 0.25), frame=(0.0, 0.0)),
-        r"closed by joint 'B' is at a dead centre at the start of the motion",
-    ),
+    **{
+        f"stretched at the start, but for rounding by {rounding}, over {scale}": (
+            AssemblyError,
+            lambda rounding=rounding, scale=scale: four_bar(
+                lengths=(0.1 * scale, (0.15 + rounding) * scale, 0.25 * scale), frame=(0.0, 0.0)
+            ),
+            r"closed by joint 'B' is at a dead centre at the start of the motion",
+        )
+        for rounding in (-1e-16, 0.0, 1e-16)
+        for scale in (1.0, 2.0**40)
+    },
     "no number": (
         DeclarationError,
         never("slider_crank"),
