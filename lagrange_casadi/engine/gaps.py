@@ -35,15 +35,11 @@ Step: TypeAlias = tuple[Point, Joint, Point]
 class Gap:
     """A loop that does not close.
 
-    ``name`` is that of the joint, the two-force link or the constraint that closes it, which is its
-    ``kind``. ``bodies`` are the two that it joins, none of a constraint. ``ends`` (2, 3) are the
-    places on these, in ground axes [m], that should be one. ``size`` is how wide the gap is, in its
-    ``unit``; that of a constraint is its residual, which has none. ``sentence`` says it in words.
+    ``ends`` (2, 3) are the places on the two bodies that the loop joins, in ground axes [m], which
+    should be one; none of a constraint. ``size`` is how wide the gap is, in its ``unit``; that of a
+    constraint is its residual, which has none. ``sentence`` says it in words.
     """
 
-    name: str
-    kind: str
-    bodies: tuple[str, ...]
     ends: Array
     size: float
     unit: Literal["m", "rad", ""]
@@ -96,7 +92,7 @@ def _gap(nearest: Nearest, loop: LoopEquations) -> Gap:
     if loop.declared:
         (residual,) = nearest.numbers.of(loop.residual)
         words = f"constraint '{loop.name}' is {residual:.6g} in place of 0"
-        return Gap(loop.name, loop.kind, (), np.zeros((0, 3)), abs(residual), "", words)
+        return Gap(np.zeros((0, 3)), abs(residual), "", words)
     *places, sine = nearest.numbers.of(ends_of(nearest.multibody, loop))
     ends, angle = np.reshape(places, (2, 3)), math.asin(min(1.0, sine))
     one, other = (point.body.name for point in joined(loop))
@@ -104,9 +100,6 @@ def _gap(nearest: Nearest, loop: LoopEquations) -> Gap:
     turned = angle * nearest.size > wide
     by_turn = f"turned by {math.degrees(angle):.3g} deg against each other"
     return Gap(
-        loop.name,
-        loop.kind,
-        (one, other),
         ends,
         angle if turned else wide,
         "rad" if turned else "m",

@@ -30,7 +30,7 @@ from ..model.guiding import guided, laws_of
 from ..model.joints import Joint
 from ..model.limits import parameter_values
 from ..model.mechanism import Mechanism
-from ..model.motion_laws import Motion
+from ..model.motion_laws import Motion, polynomial
 from ..model.sampled_laws import Laws
 from ..model.scene import Scene
 from ..model.scene_arguments import rough_posture
@@ -150,6 +150,13 @@ def place(
         What is driven is where its law has it. Other coordinates are near the posture, or near
         zero, and so that loops close, or are as little open as they can be.
     """
+    # No piston is behind its barrel, if that can be.
+    slides = {name for name, kind in mechanism.coordinates.items() if kind[1].kind == "slide"}
+    out = {name: polynomial(x) for name, x in mechanism.rough.items() if name in slides}
+    if out and not motion and not posture:
+        held = place(mechanism, motion=out, values=values)
+        if not held.gaps:
+            return replace(held, driven=())
     given = parameter_values(mechanism.parameters, values)
     laws = laws_of(mechanism, motion or {})
     rough = mechanism.rough | rough_posture(mechanism, posture or {})

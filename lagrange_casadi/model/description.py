@@ -172,8 +172,8 @@ class LoadNumbers:
     """The places of a load, the second one bearing the opposite; of a friction its coordinate and
     its numbers by their words.
 
-    Pictures show a load of two places by its ``symbols``, "spring" and "damper"; that of a torque
-    is a coil.
+    Pictures show a load of two places by its ``symbols``, "spring" and "damper", or by the distance
+    at which a gas spring is ``closed`` [m]; that of a torque is a coil.
     """
 
     kind: str
@@ -182,6 +182,7 @@ class LoadNumbers:
     coordinate: str = ""
     friction: Mapping[str, float] | None = None
     symbols: tuple[str, ...] = ()
+    closed: float | None = None
 
     @property
     def size(self) -> str:
@@ -513,12 +514,14 @@ def _load(load: Load) -> LoadNumbers:
         numbers = {word: _number(value) for word, value in load.numbers.items()}
         return LoadNumbers(*found, coordinate=load.axis.coordinate, friction=numbers)
     symbols: tuple[str, ...] = ()
+    closed: float | None = None
     if isinstance(load, Spring):
         parts = {"spring": load.stiffness, "damper": load.damping}
         symbols = tuple(name for name, x in parts.items() if not ca.SX(x).is_zero())
+        closed = None if load.closed is None else _number(load.closed)
     elif isinstance(load, Torque) and load.coiled:
         symbols = ("spring",)
-    return LoadNumbers(*found, getattr(load, "turning", False), symbols=symbols)
+    return LoadNumbers(*found, getattr(load, "turning", False), symbols=symbols, closed=closed)
 
 
 def _drive(drive: Drive) -> DriveNumbers:

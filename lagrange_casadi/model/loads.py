@@ -54,6 +54,8 @@ class Torque(Brief):
 class Spring(Brief):
     """A spring and damper between two points: its tension is stiffness (distance - length) +
     damping (distance)'.
+
+    That of a gas spring has the distance at which it is ``closed`` [m], by which pictures show it.
     """
 
     name: str
@@ -62,6 +64,7 @@ class Spring(Brief):
     stiffness: Expression
     length: Expression
     damping: Expression
+    closed: Expression | None = None
 
     @property
     def points(self) -> tuple[Point, ...]:

@@ -123,17 +123,20 @@ def _drawn(
 
 def _things(placement: Placement) -> list[Primitive]:
     """All that a drawing of a placed mechanism shows."""
-    poses = Poses(
+    poses = Poses.above_ground(
         placement.description,
         {body: base[None] for body, base in placement.bases.items()},
         {body: axes[None] for body, axes in placement.axes.items()},
     )
-    found = [*drawing(poses)]
-    size, p = size_of(found), [*placement.description.values.values()]
-    found += driven_marks(poses, placement.driven, size)
-    found += load_marks(placement.declared, poses, placement.t, p, size)
-    found += body_names(poses)
-    found += gap_marks(placement.gaps)
+    parts, p = drawing(poses), [*placement.description.values.values()]
+    size = size_of(parts)
+    found = [
+        *parts,
+        *driven_marks(poses, placement.driven, size),
+        *load_marks(placement.declared, poses, placement.t, p, size),
+        *body_names(poses),
+        *gap_marks(placement.gaps),
+    ]
     if placement.description.space:
         view = view_of(placement.description)
         found += ground_axes(view, cloud(seen(found, view)), size)

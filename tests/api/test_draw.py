@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, load_case
-from lagrange_casadi.elements import belt, cylinder, cylindrical_cam, gears, wheel
+from lagrange_casadi.elements import belt, cylinder, cylindrical_cam, gas_spring, gears, wheel
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import polynomial
 
@@ -119,18 +119,23 @@ def test_a_belt_is_as_long_as_its_closed_form(crossed):
 
 
 def test_parts_of_machines_are_drawn():
-    """A rack through the pitch point, a cylinder as thick as its bore, a drum with its roller."""
+    """A rack through the pitch point, a cylinder as thick as its bore, a gas spring with its
+    barrel, a drum with its roller.
+    """
     m = Mechanism("parts")
     pinion, bar = wheel(m, "pinion", radius=0.05, mass=1.0), m.link("bar", length=0.4, mass=1.0)
     m.revolute("A", m.ground.at(0.0, 0.05), pinion)
     m.prismatic("slide", m.ground, bar.at(0.2), axis=(1, 0))
     gears(m, "mesh", pinion, bar.at(0.2), radii=(0.05,))
     cylinder(m, "jack", m.ground.at(0.0, 0.4), bar.tip, closed=0.2, bore=0.08, rod=0.04)
+    gas_spring(m, "gas", m.ground.at(0, 1), bar.tip, closed=0.3, open=0.5, force=(9.0, 11.0))
     found = curves(m.draw())
     scale = max(length(points) for points in found if len(points) == 48) / (2 * math.pi * 0.05)
     boxes = [length(points) / scale for points in found if len(points) == 4]
     assert min(abs(np.array(boxes) - 2 * (0.85 * 0.2 + 0.08))) < 2e-3
     assert any(len(points) == 4 * 9 + 3 for points in found)  # nine teeth, and the back
+    (barrel,) = (points for points in found if len(points) == 7)
+    assert np.linalg.norm(barrel[3] - barrel[2]) / scale == pytest.approx(0.89 * 0.3, abs=2e-3)
     s = SpatialMechanism("drum")
     drum, follower = s.link("drum", length=0.2, mass=1.0), s.link("arm", length=0.1, mass=1.0)
     shaft = s.revolute("shaft", s.ground, drum, axis=(1, 0, 0))
@@ -139,6 +144,26 @@ def test_parts_of_machines_are_drawn():
     found = curves(s.draw())
     assert sum(len(points) == 120 for points in found) == 2  # the flanks
     assert sum(len(points) == 48 for points in found) == 3  # the ends and the roller
+
+
+def test_a_geneva_wheel_has_seats_for_the_arc_and_slots_for_the_pin():
+    """The arc is about the crank's axis; in the middle of a slot its end is about the pin."""
+    scene = load_case("geneva").scene
+    for angle, size, touching in ((-3.0, 26, 25), (0.0, 48, 9)):
+        by_size = {len(points): points for points in curves(scene.draw(t=(angle + 3.0) / math.tau))}
+        wheel, round_part = by_size[6 * 36], by_size[size]
+        middle = round_part[0] if size == 26 else np.mean(round_part, axis=0)
+        radius = np.linalg.norm(round_part[1] - middle)
+        near = np.sort(np.linalg.norm(wheel - middle, axis=1))[:touching]
+        assert near == pytest.approx(np.full(touching, radius), abs=0.3)
+
+
+def test_no_rod_is_behind_its_barrel_where_nothing_is_driven():
+    found = curves(load_case("toggle_clamp").scene.mechanism.draw())
+    _, barrel, head, *_ = (points for points in found if len(points) == 4)  # a dashpot's cup first
+    along = barrel[1] - barrel[0]
+    shares = (head - barrel[0]) @ along / (along @ along)
+    assert 0.0 < shares.min() < shares.max() < 1.0
 
 
 @pytest.mark.sampled(6)

@@ -66,6 +66,22 @@ TABLE = (
 )
 
 
+@pytest.mark.parametrize(
+    ("case", "parts"),
+    [("planetary_gear", ["carried"]), ("scissor_lift", ["lines", "prismatic", "stand"])],
+)
+def test_a_page_draws_what_all_pictures_draw(chromium, tmp_path, case, parts):
+    """Without pitch circles, gas springs or symbols of joints the picture is another."""
+    path, seen = tmp_path / "page.html", set()
+    evaluate(load_case(case).scene, wanted=["motion"], certificate=False).report(path)
+    text = path.read_text()
+    for part in ("", *parts):
+        path.write_text(text.replace(f'"{part}":[', f'"{part}":[],"lost":['))
+        chromium.open(path)
+        seen.add(chromium.run("document.querySelector('.picture').toDataURL()"))
+    assert len(seen) == 1 + len(parts)
+
+
 def copied(one, caption):
     """A table of the page as it is copied: its rows."""
     one.run(f"{TABLE.format(caption)}.querySelector('.copy').click()")

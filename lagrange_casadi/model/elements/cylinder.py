@@ -102,7 +102,8 @@ def cylinder(
     piston = mechanism.link(f"{name}_rod", length=closed, mass=rod_mass)
     mechanism.outlines[barrel.name] = [_box(0.1 * closed, 0.95 * closed, bore)]
     thick = 0.4 * bore if isinstance(rod, float) and rod == 0.0 else rod
-    head, shaft = _box(0.0, 0.06 * closed, 0.9 * bore), _box(0.06 * closed, closed, thick)
+    # Retracted the piston is just inside the barrel.
+    head, shaft = _box(0.1 * closed, 0.16 * closed, 0.9 * bore), _box(0.16 * closed, closed, thick)
     mechanism.outlines[piston.name] = [head, shaft]
     mechanism.revolute(f"{name}_rear", rear, barrel)
     slide = mechanism.prismatic(name, barrel, piston.base, axis=(1.0, 0.0))

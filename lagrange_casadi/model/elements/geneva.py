@@ -18,6 +18,7 @@ Source: J. H. Bickford, *Mechanisms for Intermittent Motion*, 1972, chapter 9.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import casadi as ca
@@ -29,14 +30,18 @@ from ...base.units import count
 from ...base.vectors import AXES, ZERO, cross, dot, minus, norm, plus, times
 from ...errors import DeclarationError
 from ..constraints import Constraint
-from ..declared_parts import Expression, Link, Point, Vector
+from ..declared_parts import Expression, Link, Outline, Point, Roller, Vector
 from ..joints import Joint
 from ..mechanism import Mechanism
 from ..meshes import Fit, Mesh, Transmission, Wrench
 from .pitch import held
 
-_LOCK = 0.8
-"""Radius of the locking arc, of the pin's."""
+_LOCK, _PIN = 0.8, 0.4
+"""Radius of the locking arc, of the pin's distance; and that of the pin as it is drawn, of the room
+that the arc leaves.
+"""
+
+_RIGHT = -math.pi / 2.0, math.pi / 2.0
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -187,7 +192,62 @@ def geneva(
     mechanism.output(f"{name}_lock", held_back, unit="N")
     mouth = apart * math.cos(math.pi / slots)
     depth = apart + radius - mouth if internal else mouth - apart + radius
+    thick = _PIN * (radius - locked)
+    corners = _wheel(slots, way, apart, radius, locked, ca.acos(cosine), thick)
+    bar = [(0.0, -thick, 0.0), *_arc(radius, thick, *_RIGHT, 9), (0.0, thick, 0.0)]
+    disc = [ZERO, *_arc(0.0, locked, half, math.tau - half)]
+    for axle, along, outlines in (
+        (wheel.child, times(-1.0 / apart, reach), [corners]),
+        (crank.child, times(1.0 / radius, arm), [disc, bar]),
+    ):
+        drawn = [_outline(axle.place, along, one) for one in outlines]
+        mechanism.outlines.setdefault(axle.body.name, []).extend(drawn)
+    mechanism.rollers[name] = Roller(centre, thick)
     return Geneva(made, 2.0 * half, math.tau - 2.0 * half, mouth, depth)
+
+
+def _wheel(
+    slots: int,
+    way: int,
+    apart: Expression,
+    radius: Expression,
+    locked: Expression,
+    horn: Expression,
+    thick: Expression,
+) -> list[Vector]:
+    """Corners of a wheel about its axis [m], from the middle of a seat of the locking arc, with the
+    x axis along a slot that is ``thick`` on either side.
+    """
+    half, edge = math.pi / slots, apart * math.cos(math.pi / slots)
+    mouth = ca.sqrt(edge * edge - thick * thick)
+    end = _arc(apart + way * radius, way * thick, way * _RIGHT[0], way * _RIGHT[1], 9)
+    slot = [(mouth, -thick, 0.0), *end, (mouth, thick, 0.0)]
+    seat = _arc(apart, -locked, horn, (1 + way) * math.pi - horn)
+    before, after = (Rotation.by(angle) for angle in (-half, half))
+    pitch = [*map(before.apply, seat[12:]), *slot, *map(after.apply, seat[:12])]
+    corners = [Rotation.by(2.0 * half * k).apply(one) for k in range(slots) for one in pitch]
+    if way < 0:
+        return corners
+    # Round the rim, along a line inward, round the slots, and back.
+    return [
+        *_arc(0.0, apart + 1.2 * radius, -half, math.tau - half, 97),
+        *corners[:1],
+        *corners[::-1],
+    ]
+
+
+def _arc(
+    middle: Expression, radius: Expression, start: Expression, stop: Expression, count: int = 25
+) -> list[Vector]:
+    """Places on a circle about a place on the x axis, from one angle to another."""
+    angles = [start + (stop - start) * (k / (count - 1)) for k in range(count)]
+    return [(middle + radius * ca.cos(at), radius * ca.sin(at), 0.0) for at in angles]
+
+
+def _outline(middle: Vector, along: Vector, corners: Iterable[Vector]) -> Outline:
+    """Corners about a ``middle``, whose x axis has a direction of length 1."""
+    turned = Rotation(along, (-along[1], along[0], 0.0), None)
+    return [plus(middle, turned.apply(corner))[:2] for corner in corners]
 
 
 def _either(condition: ca.SX, first: Vector, second: Vector) -> Vector:

@@ -8,6 +8,8 @@ force is F_open (1 - u (1 - (F_open/F_closed)^(1/n)))^-n.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import casadi as ca
 
 from ...base.arguments import public
@@ -163,6 +165,8 @@ def gas_spring(
         slowed = slowed + checked(f"{what}: end_damping", end_damping, "N s/m") * share
     elif isinstance(end_damping, ca.SX) or end_damping:
         raise DeclarationError(f"{what}: end_damping needs end, the length over which it rises [m]")
-    return mechanism.spring(
+    load = mechanism.spring(
         name, first, second, stiffness=-push / distance, length=0.0, damping=slowed
     )
+    mechanism.loads[name] = load = replace(load, closed=made.closed)
+    return load

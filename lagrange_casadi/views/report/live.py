@@ -9,6 +9,7 @@ too.
 from __future__ import annotations
 
 import base64
+import itertools
 import shlex
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -22,6 +23,7 @@ import numpy.typing as npt
 from ...base.arrays import Json
 from ...base.quantities import Output
 from ...base.scalars import column
+from ...base.templates import Leaf
 from ...engine.codegen.printer import print_functions
 from ...engine.derive import compile_scene
 from ...engine.gaps import ends_of, joined
@@ -280,6 +282,11 @@ def _picture(described: Description, first: int) -> dict[str, Json]:
             "turned": [*map(vector, one.turned)] if second else None,
         }
 
+    pitches, tracks = described.pitch_circles.values(), described.tracks.values()
+    carried = [
+        *itertools.chain(*((*one.radii, *sum(one.centres + one.axes, ())) for one in pitches)),
+        *itertools.chain(*((one.radius, *sum(one.way, ())) for one in tracks)),
+    ]
     return {
         "bodies": {
             name: {
@@ -295,6 +302,8 @@ def _picture(described: Description, first: int) -> dict[str, Json]:
         },
         "joints": [*map(joint, described.joints.values())],
         "loads": [[vector(point.at) for point in load.points] for load in described.loads.values()],
+        "closed": [at(load.closed) for load in described.loads.values()],
+        "carried": [first + number for number in carried if isinstance(number, Leaf)],
         "paths": [vector(point.at) for point in described.paths.values()],
         "rollers": [
             {

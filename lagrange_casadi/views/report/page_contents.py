@@ -21,10 +21,12 @@ from ...results.solution import Solution
 from ...results.statistics import Extreme
 from ...results.strength.all_parts import looked
 from ...results.verification.certificate import failure, summary
+from ..shapes.curves import patterns
 from ..shapes.orthographic import upright
 from ..shapes.poses import Poses, require_poses
-from ..shapes.primitives import colours_of, disc_axis
+from ..shapes.primitives import carried, colours_of, disc_axis, drawing, size_of
 from ..shapes.shapes import named_spots, shapes
+from ..shapes.symbols import BODY, FOOT, INK, PAPER, PATH, STAND, SYMBOLS, Outline
 from .array_block import Arrays, finite
 from .instants import drive_entry, mark, shown_instants
 from .live import Live, live_entry
@@ -34,6 +36,9 @@ from .words import GROUPS, what
 
 VERSION = 1
 """Version of a page's contents."""
+
+_INKS = {INK: "ink", PAPER: "sheet", PATH: "path", STAND: "soft", FOOT: "faint", BODY: "body"}
+"""Names of a page's colours by those of symbols."""
 
 _LOADED = ("effort", "reaction", "stress", "utilisation", "deflection")
 _CHARTED = (*_LOADED, "output", "motion", "load", "friction", "multiplier", "pose")
@@ -61,9 +66,17 @@ def contents(solution: Solution, live: Live | None = None) -> dict[str, Json]:
         "joints": [_joint(joint, description) for joint in description.joints.values()],
         "named": list(named_spots(description)),
         "loads": [
-            {"name": name, "kind": load.kind, "spots": [*map(asdict, load.points)]}
+            {
+                "name": name,
+                "kind": load.kind,
+                "spots": [*map(asdict, load.points)],
+                "closed": load.closed or 0.0,
+                "lines": [line.tolist() for line in patterns(load)],
+            }
             for name, load in description.loads.items()
         ],
+        "symbols": {kind: [*map(_outline, outlines)] for kind, outlines in SYMBOLS.items()},
+        "carried": list(_carried(description, Poses.of(solution))),
         "paths": [{"name": name} | asdict(spot) for name, spot in description.paths.items()],
         "series": [*series_of(solution, chosen, arrays)],
         "sections": list(section_entries(solution, chosen, arrays)),
@@ -130,6 +143,32 @@ def _series(
         "values": values,
         "places": None,
         **others,
+    }
+
+
+def _carried(description: Description, poses: Poses) -> Iterator[dict[str, Json]]:
+    """The lines that move with a body or stand on the ground, in the axes of that."""
+    first = poses.during([0])
+    for body, line in carried(first, poses, size_of(drawing(first, poses))):
+        yield {
+            "body": body,
+            "points": first.on_body(body, line.points[0]).tolist(),
+            "of": line.body,
+            "width": line.width,
+            "closed": line.closed,
+            "filled": line.opacity > 0.0,
+            "dashed": line.dashed,
+        }
+
+
+def _outline(one: Outline) -> dict[str, Json]:
+    """An outline of a symbol, its colours by the names that they have in a page."""
+    return {
+        "points": one.points.round(2).tolist(),
+        "closed": one.closed,
+        "width": one.width,
+        "fill": _INKS.get(one.fill, ""),
+        "ink": _INKS[one.colour],
     }
 
 
@@ -251,9 +290,9 @@ def _parameters(description: Description) -> Iterator[dict[str, Json]]:
 
 def _residuals(solution: Solution) -> Iterator[tuple[Output, Array]]:
     """The certificate in the order of the table, which a file does not keep."""
-    for quantity in solution.table.rows:
-        if quantity.group == "certificate" and quantity.member in solution.certificate:
-            yield Output("certificate", "", quantity.member), solution.certificate[quantity.member]
+    for row in solution.table.rows:
+        if row.group == "certificate" and row.member in solution.certificate:
+            yield Output("certificate", "", row.member), solution.certificate[row.member]
 
 
 def _certificate(solution: Solution) -> dict[str, Json]:

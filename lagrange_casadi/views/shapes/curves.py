@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...base.arrays import Array
+from ...model.description import LoadNumbers
 from .poses import frame_along
 
 _TURN = np.exp(0.5j * np.pi * np.arange(33))
@@ -25,6 +26,30 @@ _DASHPOT = tuple(
         [(0.64, 0.0), (0.85, 0.0), (1.0, 0.0)],
     )
 )
+_GAS = tuple(
+    np.array([(share, side, 0.0, along) for along, side in points])
+    for share, points in (
+        (
+            0.0,
+            [
+                (0.0, 0.0),
+                (0.06, 0.0),
+                (0.06, 1.0),
+                (0.95, 1.0),
+                (0.95, -1.0),
+                (0.06, -1.0),
+                (0.06, 0.0),
+            ],
+        ),
+        (0.0, [(0.86, 0.0), (0.92, 0.6), (0.92, -0.6), (0.86, 0.0)]),
+        (1.0, [(-0.88, -0.9), (-0.88, 0.9), (-0.84, 0.9), (-0.84, 0.25), (0.0, 0.25)]),
+        (1.0, [(-0.88, -0.9), (-0.84, -0.9), (-0.84, -0.25), (0.0, -0.25)]),
+    )
+)
+"""A barrel, the mark of its gas, and a rod with its piston: the share of the way where the part is
+held, two sides over the radius, and the way along from there over the closed length.
+"""
+
 _BETWEEN = {"spring": (_COIL,), "damper": _DASHPOT}
 """Polylines between two places: the share of the way, and two sides over the radius."""
 
@@ -41,18 +66,32 @@ _TOOTH = np.pi / 12
 """The pitch of a rack's teeth over the radius of the gear."""
 
 
-def between(start: Array, stop: Array, radius: float, symbols: tuple[str, ...]) -> list[Array]:
-    """The polylines of a spring, of a damper, or of both side by side, between two places."""
-    patterns = []
+def patterns(load: LoadNumbers) -> list[Array]:
+    """The polylines (n, 4) of a gas spring, of a spring, of a damper, or of both side by side: the
+    share of the way between two places, two sides over the radius, and the way on from there over
+    the length of the closed gas spring.
+    """
+    if load.closed is not None:
+        return [*_GAS]
+    symbols, found = load.symbols or ("spring",), []
     for symbol in symbols:
         for one in _BETWEEN[symbol]:
             aside = _ASIDE[symbol] * (len(symbols) > 1) * ((one[:, 0] > 0.0) & (one[:, 0] < 1.0))
-            patterns.append(one + aside[:, None] * np.array([0.0, 1.0, 0.0]))
+            found.append(np.column_stack([one + aside[:, None] * np.eye(3)[1], 0.0 * aside]))
+    return found
+
+
+def between(start: Array, stop: Array, radius: float, load: LoadNumbers) -> list[Array]:
+    """The polylines of a load between two places."""
     way = stop - start
-    axes = frame_along(np.where(way.any(axis=1, keepdims=True), way, np.eye(3)[0]))
+    far = np.linalg.norm(way, axis=1)[:, None, None]
+    axes = frame_along(np.where(far[:, 0] > 0.0, way, np.eye(3)[0]))
     return [
-        start[:, None] + one[:, :1] * way[:, None] + radius * one[:, 1:] @ axes[:, 1:]
-        for one in patterns
+        start[:, None]
+        + one[:, :1] * way[:, None]
+        + one[:, 3:] * (load.closed or 0.0) * axes[:, :1]
+        + radius * one[:, 1:3] @ axes[:, 1:]
+        for one in patterns(load)
     ]
 
 

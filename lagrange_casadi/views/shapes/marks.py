@@ -68,7 +68,8 @@ def load_marks(
         ends = [poses.place(point) for point in poses.description.loads[name].points]
         if isinstance(load, Spring):
             parts = ((load.stiffness, "N/m"), (load.damping, "N s/m"))
-            words = ", ".join(f"{_text(x)} {unit}" for x, unit in parts if not ca.SX(x).is_zero())
+            there = [f"{_text(x)} {unit}" for x, unit in parts if not ca.SX(x).is_zero()]
+            words = ", ".join(there) if load.closed is None else "gas spring"
             middle = (ends[0] + ends[1]) / 2
             yield Name(middle[:, None], f"{name}: {words}", colour=LOAD)
             continue

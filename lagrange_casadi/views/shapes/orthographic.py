@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...base.arrays import Array
+from ...base.rotation import direction
 
 _WIDE, _HIGH, _LARGE = 9.6, 7.6, 6.4
 """The most that all columns, all rows and one picture take [inch]."""
@@ -60,7 +61,9 @@ def view(axes: Array, azimuth: float, elevation: float, title: str = "") -> View
 
     ``axes`` are those of :func:`upright`.
     """
-    (c, s), (ce, se) = (_cosine_and_sine(angle) for angle in (azimuth, elevation))
+    (c, s), (ce, se) = (
+        direction(math.radians(math.remainder(angle, 360.0))) for angle in (azimuth, elevation)
+    )
     right, up = np.array([-s, c, 0.0]) @ axes, np.array([-se * c, -se * s, ce]) @ axes
     text = f"azimuth {azimuth:g}°, elevation {elevation:g}°, {_named(axes[2])} up"
     return View(title or text, right, up)
@@ -85,15 +88,14 @@ def views(
 
 @dataclass(frozen=True)
 class Page:
-    """A page of pictures in rows: its size [inch], their one scale [inch/m], and of each its place
-    on the page and what it shows.
+    """A page of pictures in rows: its size [inch], and of each its place on the page and what it
+    shows, all to one scale.
 
     ``places`` are left, bottom, width and height [inch], ``boxes`` are left, right, bottom and top
     [m].
     """
 
     size: tuple[float, float]
-    scale: float
     places: tuple[tuple[float, float, float, float], ...]
     boxes: tuple[tuple[float, float, float, float], ...]
 
@@ -131,17 +133,7 @@ def page(
         boxes.append((left, right, bottom, top))
         places.append((lefts[column], bottoms[row], scale * columns[column], scale * rows[row]))
     size = (lefts[-1] + scale * columns[-1] + _RIGHT, bottoms[0] + scale * rows[0] + title + head)
-    return Page(size, scale, tuple(places), tuple(boxes))
-
-
-def _cosine_and_sine(degrees: float) -> tuple[float, float]:
-    """Cosine and sine of an angle, exact for whole right angles, so that what lies along an axis
-    does.
-    """
-    quarter = round(degrees / 90.0)
-    if degrees == 90.0 * quarter:
-        return ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[quarter % 4]
-    return math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    return Page(size, tuple(places), tuple(boxes))
 
 
 def _named(direction: Array) -> str:

@@ -18,8 +18,8 @@ from ...results.views import Pose
 
 @dataclass(frozen=True, eq=False)
 class Poses:
-    """The places of the bodies' bases (t, 3) [m] and the bodies' axes (t, 3, 3), by body, in ground
-    axes.
+    """The places of the bases (t, 3) [m] and the axes (t, 3, 3) of the ground and the bodies, by
+    name, in ground axes.
 
     The rows of the axes are x, y and z of the body.
     """
@@ -36,23 +36,30 @@ class Poses:
             body: np.column_stack([pose.x, pose.y, 0.0 * pose.x if pose.z is None else pose.z])
             for body, pose in poses.items()
         }
-        return cls(solution.description, bases, {body: _axes(pose) for body, pose in poses.items()})
+        axes = {body: _axes(pose) for body, pose in poses.items()}
+        return cls.above_ground(solution.description, bases, axes, solution.t.size)
 
-    @property
-    def count(self) -> int:
-        """The number of instants."""
-        return max(map(len, self.bases.values()), default=1)
+    @classmethod
+    def above_ground(
+        cls,
+        description: Description,
+        bases: Mapping[str, Array],
+        axes: Mapping[str, Array],
+        count: int = 1,
+    ) -> Poses:
+        """The poses of bodies at so many instants, and of the ground."""
+        still = {"ground": np.zeros((count, 3))}, {"ground": np.tile(np.eye(3), (count, 1, 1))}
+        return cls(description, {**still[0], **bases}, {**still[1], **axes})
 
     def between(self, before: npt.NDArray[np.intp], share: Array) -> Poses:
         """The poses at a ``share`` (frames,) of the way from instants ``before`` to the next ones,
         where everything goes straight.
         """
-
-        def at(values: Array) -> Array:
-            return blended(values, before, share)
-
-        bases = {body: at(base) for body, base in self.bases.items()}
-        return replace(self, bases=bases, axes={body: at(one) for body, one in self.axes.items()})
+        return replace(
+            self,
+            bases={body: blended(base, before, share) for body, base in self.bases.items()},
+            axes={body: blended(axes, before, share) for body, axes in self.axes.items()},
+        )
 
     def during(self, chosen: slice | list[int]) -> Poses:
         """The poses at some of the instants."""
@@ -65,14 +72,14 @@ class Poses:
 
     def along(self, body: str, places: Sequence[Triple]) -> Array:
         """Places on a body or on the ground, (t, n, 3) in ground axes [m]."""
-        if body == "ground":
-            return np.tile(np.array(places, float), (self.count, 1, 1))
         return np.asarray(self.bases[body][:, None] + np.array(places, float) @ self.axes[body])
+
+    def on_body(self, body: str, points: Array) -> Array:
+        """Places (n, 3) at the first instant in the axes of a body or of the ground [m]."""
+        return np.asarray((points - self.bases[body][0]) @ self.axes[body][0].T)
 
     def direction(self, body: str, local: Triple) -> Array:
         """A direction that a body carries, (t, 3) in ground axes."""
-        if body == "ground":
-            return np.tile(np.array(local, float), (self.count, 1))
         return np.asarray(np.array(local, float) @ self.axes[body])
 
 

@@ -17,13 +17,12 @@ from typing import TypeAlias
 import numpy as np
 
 from ...base.arrays import Array
-from ...base.vectors import Vector
 from ...model.declared_parts import PitchCircles, Track
-from ...model.description import JointNumbers, LoadNumbers, Place
+from ...model.description import JointNumbers, Place
 from .curves import ROUND, SPIRAL, around, belt, between, rack
 from .orthographic import View
 from .poses import Poses
-from .shapes import Shape, named_spots, shapes
+from .shapes import Shape, named_spots, shapes, spots_of
 from .symbols import INK, PATH
 
 COLOURS = (
@@ -121,27 +120,22 @@ def drawing(
     colours = colours_of(description.bodies)
     parts = [*shapes(description)]
     bodies = [one for shape in parts for one in _body(poses, shape, colours)]
-    held = [*(joint.ends for joint in joints), *description.springs.values()]
-    spots = [*(end for ends in held for end in ends), *description.paths.values()]
-    size = size_of([*bodies, *(Line(whole.place(spot), PATH, 0.0) for spot in spots)])
+    spots = [Line(whole.place(spot), PATH, 0.0) for spot in spots_of(description)]
+    size = size_of([*bodies, *spots])
 
     def symbol(kind: str, spot: Place, level: int) -> Symbol:
         return Symbol(kind, poses.place(spot)[:, None], level=level)
 
     found: list[Primitive] = [*bodies]
     for spot in description.paths.values():
-        found.append(Line(whole.place(spot)[None], PATH, 1.4, level=WAYS))
-        found.append(symbol("point", spot, POINTS))
-    found += [line for load in description.loads.values() for line in _held(poses, load, size)]
-    pitches = description.pitch_circles.values()
-    for (carrier, at, axis, radius), belted in _circles(pitches).items():
-        way = poses.direction(carrier, axis)
-        ring = around(poses.place(Place(carrier, at)), way, radius * ROUND)
-        found.append(Line(ring, _PITCH, 1.2, closed=True, dashed=not belted, level=AXES))
-    found += [line for one in pitches for line in _meshing(poses, whole, one, colours)]
-    found += [
-        line for track in description.tracks.values() for line in _drum(poses, track, colours)
-    ]
+        way = Line(whole.place(spot)[None], PATH, 1.4, level=WAYS)
+        found += [way, symbol("point", spot, POINTS)]
+    for load in description.loads.values():
+        if load.kind == "spring":
+            start, stop = (poses.place(end) for end in load.points)
+            lines = between(start, stop, _COIL * size, load)
+            found += [Line(line, _METAL, 1.5, level=SPRINGS) for line in lines]
+    found += [line for _, line in carried(poses, whole, size)]
     masses = {shape.name for shape in parts if shape.kind == "point"}
     for joint in joints:
         ground = [end for end in joint.ends if end.body == "ground"]
@@ -162,6 +156,37 @@ def drawing(
     found += [Name(poses.place(spot)[:, None], name) for name, spot in named.items()]
     # Of a mechanism without bodies, the origin of the ground.
     return tuple(found) or (Symbol("stand", np.zeros((1, 1, 3)), level=GROUND),)
+
+
+def carried(poses: Poses, whole: Poses, size: float) -> Iterator[tuple[str, Line]]:
+    """The lines beside the bodies' own that move with a body or stand on the ground, and its name:
+    coils, pitch circles, belts, racks, and drums.
+    """
+    description = poses.description
+    colours = colours_of(description.bodies)
+    joints = description.joints.values()
+    for load in description.loads.values():
+        if load.kind == "torque" and load.symbols:
+            turned = next(joint for joint in joints if joint.ends == load.points[::-1])
+            about = poses.direction(turned.parent.body, turned.axes[0].direction)
+            coil = around(poses.place(load.points[0]), about, 2.5 * _COIL * size * SPIRAL)
+            yield turned.parent.body, Line(coil, _METAL, 1.5, level=SPRINGS)
+    pitches = description.pitch_circles.values()
+    circles = {
+        (one.carrier, at, axis, radius): one.belt
+        for one in pitches
+        for at, axis, radius in zip(one.centres, one.axes, one.radii, strict=True)
+        if radius
+    }
+    for (carrier, at, axis, radius), belted in circles.items():
+        way = poses.direction(carrier, axis)
+        ring = around(poses.place(Place(carrier, at)), way, radius * ROUND)
+        yield carrier, Line(ring, _PITCH, 1.2, closed=True, dashed=not belted, level=AXES)
+    for pitch in pitches:
+        yield from _meshing(poses, whole, pitch, colours)
+    for track in description.tracks.values():
+        for line in _drum(poses, track, colours):
+            yield line.body, line
 
 
 def colours_of(bodies: Iterable[str]) -> dict[str, str]:
@@ -305,39 +330,16 @@ def _axes(poses: Poses, joint: JointNumbers, size: float) -> Iterator[Line]:
         yield Line(np.stack([middle - half, middle + half], axis=1), "#222222", 2.0, level=AXES)
 
 
-def _held(poses: Poses, load: LoadNumbers, size: float) -> Iterator[Line]:
-    """The springs and dampers of a load between two places, or the coil of a torsion spring."""
-    places = [poses.place(point) for point in load.points]
-    if load.kind == "spring":
-        for line in between(places[0], places[1], _COIL * size, load.symbols or ("spring",)):
-            yield Line(line, _METAL, 1.5, level=SPRINGS)
-    elif load.symbols:
-        joints = poses.description.joints.values()
-        turned = next(joint for joint in joints if joint.ends == load.points[::-1])
-        axis = poses.direction(turned.parent.body, turned.axes[0].direction)
-        yield Line(around(places[0], axis, 2.5 * _COIL * size * SPIRAL), _METAL, 1.5, level=SPRINGS)
-
-
-def _circles(pitches: Iterable[PitchCircles]) -> dict[tuple[str, Vector, Vector, float], bool]:
-    """The pitch circles of all gears and belts, each once, and whether the circle is a belt's."""
-    return {
-        (one.carrier, at, axis, radius): one.belt
-        for one in pitches
-        for at, axis, radius in zip(one.centres, one.axes, one.radii, strict=True)
-        if radius
-    }
-
-
 def _meshing(
     poses: Poses, whole: Poses, pitch: PitchCircles, colours: Mapping[str, str]
-) -> Iterator[Line]:
+) -> Iterator[tuple[str, Line]]:
     """The belt around two pitch circles, or a rack as long as its gear ever needs."""
     carrier, radius = pitch.carrier, pitch.radii[0]
     middles = [poses.place(Place(carrier, at)) for at in pitch.centres]
     ways = [poses.direction(carrier, axis) for axis in pitch.axes]
     if pitch.belt:
         strands = belt(middles[0], middles[1], ways[0], pitch.radii, crossed=pitch.crossed)
-        yield Line(strands, _METAL, 2.4, closed=True, level=AXES)
+        yield carrier, Line(strands, _METAL, 2.4, closed=True, level=AXES)
     if pitch.rack is not None:
         spot, gone = poses.place(pitch.rack), Place(carrier, pitch.centres[0])
         away = whole.place(gone) - whole.place(pitch.rack)
@@ -345,7 +347,7 @@ def _meshing(
         ends = float(reach.min()) - 1.2 * radius, float(reach.max()) + 1.2 * radius
         points = rack(spot, ways[1], middles[0], radius, ends)
         colour, body = colours.get(pitch.rack.body, _METAL), pitch.rack.body
-        yield Line(points, colour, 2.0, closed=True, opacity=0.25, body=body)
+        yield body, Line(points, colour, 2.0, closed=True, opacity=0.25, body=body)
 
 
 def _drum(poses: Poses, track: Track, colours: Mapping[str, str]) -> Iterator[Line]:

@@ -7,16 +7,16 @@ is not said here.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from ...base.arrays import Array
 from ...model.description import Description, Place, Triple
 
-_ROUND = np.exp(2j * np.pi * np.arange(48) / 48)
+_ROUND, _WAYS = (np.exp(2j * np.pi * np.arange(n) / n) for n in (48, 1440))
 
 _FLAT = 1e-6
 """Over a body's size: points that are no farther from a plane, or from a line, lie in it."""
@@ -46,7 +46,7 @@ def shapes(description: Description) -> Iterator[Shape]:
     """The bodies, in the order in which they are declared."""
     for name, body in description.bodies.items():
         outlines, rollers = _outlines(description, name), _rollers(description, name)
-        spots = list(dict.fromkeys(spot.at for spot in _spots(description) if spot.body == name))
+        spots = list(dict.fromkeys(spot.at for spot in spots_of(description) if spot.body == name))
         length, mass = body.length, body.mass
         if length is None:
             yield Shape(name, "point", None, mass, (), (), (), (0.0, 0.0, 0.0), 0.0)
@@ -103,14 +103,11 @@ def named_spots(description: Description) -> dict[str, Place]:
     return {**named, **description.paths}
 
 
-def _spots(description: Description) -> Iterator[Place]:
+def spots_of(description: Description) -> list[Place]:
     """Every place of a body at which something holds or pulls it, or that is declared."""
-    for joint in description.joints.values():
-        yield from joint.ends
-    for ends in description.springs.values():
-        yield from ends
-    yield from description.paths.values()
-    yield from (roller.centre for roller in description.rollers.values())
+    ends = [*(joint.ends for joint in description.joints.values()), *description.springs.values()]
+    rollers = (roller.centre for roller in description.rollers.values())
+    return [*itertools.chain(*ends), *description.paths.values(), *rollers]
 
 
 def _outlines(description: Description, body: str) -> tuple[tuple[Triple, ...], ...]:
@@ -147,27 +144,6 @@ def _plates(places: Sequence[Triple]) -> tuple[tuple[Triple, ...], ...]:
     _, distributed, directions = np.linalg.svd(middle / (size or 1.0))
     if distributed[1] < 1e3 * _FLAT or (distributed.size > 2 and distributed[2] > 1e3 * _FLAT):
         return ()
-    return (tuple(places[k] for k in _hull(middle @ directions[:2].T / size)),)
-
-
-def _hull(points: Array) -> list[int]:
-    """The corners of a convex polygon around points (n, 2), in
-    sequence (Andrew's monotone chain).
-    """
-    order = sorted(range(len(points)), key=lambda k: (points[k][0], points[k][1]))
-
-    def chain(numbers: Sequence[int]) -> list[int]:
-        found: list[int] = []
-        for k in numbers:
-            while (
-                len(found) > 1 and _turn(points[found[-2]], points[found[-1]], points[k]) <= _FLAT
-            ):
-                found.pop()
-            found.append(k)
-        return found[:-1]
-
-    return chain(order) + chain(order[::-1])
-
-
-def _turn(a: Array, b: Array, c: Array) -> float:
-    return float((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
+    # A corner is farthest in some direction.
+    farthest = np.argmax(middle @ directions[:2].T @ [_WAYS.real, _WAYS.imag], axis=0)
+    return (tuple(places[k] for k in dict.fromkeys(farthest.tolist())),)

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...base.arrays import Array
 
-INK, PAPER, PATH, STAND = "#222222", "#ffffff", "#c0392b", "#777777"
+INK, PAPER, PATH, STAND, FOOT = "#222222", "#ffffff", "#c0392b", "#777777", "#eeeeee"
 
 BODY = "body"
 """The filling in the colour of the symbol's body."""
@@ -61,6 +61,7 @@ SYMBOLS: dict[str, tuple[Outline, ...]] = {
     "revolute": (_PIN,),
     "spherical": (Outline.circle(4.4, INK),),
     "universal": (Outline.circle(5.6, PAPER), _line((-4, -4), (4, 4)), _line((-4, 4), (4, -4))),
+    "drive": (Outline.circle(1.7, INK),),
     "weld": (Outline.box(6.0, 6.0, INK),),
     "free": (_line((-6, 0), (6, 0)), _line((0, -6), (0, 6))),
     "planar": (Outline.polygon([(-11, -5), (5, -5), (11, 5), (-5, 5)], PAPER),),
@@ -72,11 +73,11 @@ SYMBOLS: dict[str, tuple[Outline, ...]] = {
     "sliding mass": (Outline.box(36.0, 24.0, BODY),),
     "point": (Outline.polygon([(-5, 0), (0, -5), (5, 0), (0, 5)], PATH, PATH),),
     "stand": (
-        Outline.polygon([(0, 0), (10, -17), (-10, -17)], "#eeeeee", STAND),
+        Outline.polygon([(0, 0), (10, -17), (-10, -17)], FOOT, STAND),
         _line((-16, -17), (16, -17), STAND),
         *(_line((x, -17), (x - 5, -23), STAND) for x in (-12, -5, 2, 9)),
     ),
 }
-"""The symbols by kinds of joints, and of a point mass, of one that slides, of a declared point and
-of the ground.
+"""The symbols by kinds of joints, of a drive in a page, of a point mass, of one that slides, of a
+declared point and of the ground.
 """

@@ -13,6 +13,8 @@ class Alive {
     this.known = this.file.values;
     this.postures = new Postures(this);
     this.read();
+    this.carries = true;
+    this.carried = this.carriedNow(this.numbers(this.values));
     const kept = [...this.targets, ...this.paths, ...this.curves.flatMap((curve) => [...curve.series.values()].flat())].map((one) => one.array);
     // What the module does not compute, as residuals, is of the file's design alone.
     const liveOf = new Set(live.of.map(([number]) => number));
@@ -314,7 +316,11 @@ class Alive {
       if (own.axes) joint.axes = own.axes.map(at);
       if (own.turned) joint.second = own.turned.map((row) => dot(at(row), joint.axes[1]));
     });
-    contents.loads.forEach((load, k) => load.spots.forEach((spot, i) => (spot.at = at(picture.loads[k][i]))));
+    contents.loads.forEach((load, k) => {
+      load.spots.forEach((spot, i) => (spot.at = at(picture.loads[k][i])));
+      [load.closed] = at([picture.closed[k]]);
+    });
+    this.carries = this.carriedNow(numbers) === this.carried;
     contents.paths.forEach((path, k) => (path.at = at(picture.paths[k])));
     const spots = [
       ...contents.joints.flatMap((joint) => [joint.parent, joint.child]),
@@ -332,6 +338,11 @@ class Alive {
       if (sectionByLink.has(body.name)) sectionByLink.get(body.name).length = length;
     }
     return numbers;
+  }
+
+  /** The numbers that carried lines are made of, as one text. */
+  carriedNow(numbers) {
+    return String(this.live.picture.carried.map((place) => numbers[place]));
   }
 
   check(status, t) {

@@ -95,6 +95,7 @@ function cloud() {
     for (const joint of contents.joints) found.push(spotOf(joint.parent, i), spotOf(joint.child, i));
     for (const load of contents.loads) if (load.kind === "spring") found.push(...load.spots.map((spot) => spotOf(spot, i)));
     for (const path of contents.paths) found.push(spotOf(path, i));
+    for (const line of contents.carried) for (let k = 0; k < line.points.length; k += 6) found.push(placeOf(line.body, line.points[k], i));
   }
   return found.filter((place) => place.every(Number.isFinite));
 }

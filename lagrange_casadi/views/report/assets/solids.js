@@ -119,22 +119,20 @@ function box(paper, middle, directions, halves, colour) {
   });
 }
 
-/** A spring between two places: coils that stretch. */
-function coil(paper, start, stop, colour) {
+/** A spring, damper or gas spring between two places, by the polylines that all pictures of the package share. */
+function between(paper, { lines, closed }, start, stop) {
   const [a, b] = [paper.on(start), paper.on(stop)];
   const [length, x, y] = wayTo(a, b);
-  const wide = Math.max(4, 1.5 * girth * paper.camera.scale);
-  const straight = Math.min(0.12 * length, 12);
-  const turns = 9;
-  const points = [a];
-  for (let k = 0; k <= 2 * turns; k += 1) {
-    const along = straight + ((length - 2 * straight) * k) / (2 * turns);
-    const aside = k === 0 || k === 2 * turns ? 0 : k % 2 ? wide : -wide;
-    points.push([a[0] + along * x - aside * y, a[1] + along * y + aside * x]);
+  const wide = Math.max(4, 1.4 * girth * paper.camera.scale);
+  const barrel = (closed * length) / (sizeOf(less(stop, start)) || 1);
+  for (const line of lines) {
+    const points = line.map(([share, side, , beyond]) => {
+      const along = share * length + beyond * barrel;
+      return [a[0] + along * x - side * wide * y, a[1] + along * y + side * wide * x];
+    });
+    paper.put(ORDER.solids, (a[2] + b[2]) / 2, (context) => {
+      lineThrough(context, points);
+      strokeWith(context, paper.inks.soft, 1.6);
+    });
   }
-  points.push(b);
-  paper.put(ORDER.solids, (a[2] + b[2]) / 2, (context) => {
-    lineThrough(context, points);
-    strokeWith(context, colour, 1.6);
-  });
 }

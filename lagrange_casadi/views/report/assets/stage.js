@@ -122,10 +122,11 @@ class Stage {
     if (known && shows.ribbon && ribbon) for (const section of sections) drawRibbon(paper, section, section.forces.get(shows.ribbon), instant, ribbon);
     for (const body of bodies.values()) drawBody(paper, body, instant);
     for (const load of contents.loads) {
-      if (load.kind === "spring") coil(paper, spotOf(load.spots[0], instant), spotOf(load.spots[1], instant), paper.inks.soft);
+      if (load.kind === "spring") between(paper, load, ...load.spots.map((spot) => spotOf(spot, instant)));
     }
+    drawCarried(paper, instant);
     for (const joint of contents.joints) drawJoint(paper, joint, instant);
-    for (const path of contents.paths) drawPoint(paper, spotOf(path, instant));
+    for (const path of contents.paths) stamp(paper, "point", paper.on(spotOf(path, instant)), ORDER.joints, Infinity);
     drawActions(paper, instant, shows, this.scale, shows.values);
     if (shows.names) drawNames(paper, instant);
     live.drag?.draw(paper);
@@ -186,16 +187,6 @@ function drawTraces(paper, traces) {
       strokeWith(context, own ? paper.inks.path : sheer(paper.inks.soft, 0.45), own ? 1.8 : 1);
     });
   }
-}
-
-function drawPoint(paper, place) {
-  const [x, y] = paper.on(place);
-  paper.put(ORDER.joints, Infinity, (context) => {
-    context.translate(x, y);
-    context.rotate(Math.PI / 4);
-    context.fillStyle = paper.inks.path;
-    context.fillRect(-4, -4, 8, 8);
-  });
 }
 
 /** The gap of a loop that does not close, between its ends, with how wide it is. */

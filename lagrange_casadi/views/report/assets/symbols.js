@@ -12,7 +12,7 @@ function drawJoint(paper, joint, instant) {
   const axes = joint.axes.map((axis) => directionOf(joint.parent.body, axis, instant));
   const grounded = joint.kind !== "free" && (joint.parent.body === "ground" || joint.child.body === "ground");
   if (grounded && !slides(joint)) groundMark(paper, joint.parent.body === "ground" ? parent : place);
-  if (slides(joint)) rail(paper, joint, parent, axes[0], grounded);
+  if (slides(joint)) rail(paper, joint, parent, axes[0]);
   if (contents.space) inSpace(paper, joint, place, axes, instant);
   else inPlane(paper, joint, place, axes[0]);
 }
@@ -21,40 +21,33 @@ function slides(joint) {
   return ["prismatic", "slot", "cylindrical"].includes(joint.kind);
 }
 
-function inPlane(paper, joint, place, axis) {
-  const [x, y] = paper.on(place);
-  const r = pinSize(paper);
-  const ink = joint.driven.length ? paper.inks.effort : paper.inks.ink;
-  const { sheet, metal } = paper.inks;
-  const [dx, dy] = paper.along(axis);
-  const turn = Math.atan2(dy, dx);
-  // A block never hides the pin that goes through it.
-  paper.put(ORDER.joints, joint.kind === "prismatic" ? -1 : 0, (context) => {
-    context.strokeStyle = ink;
-    context.lineWidth = joint.driven.length ? 2.2 : 1.6;
+/** Half the width of a pin of the symbols [points]. */
+const PIN = 4.8;
+
+/** A symbol that all pictures of the package share, at a point of the sheet. */
+function stamp(paper, kind, [x, y], order, depth, { turn = 0, ...own } = {}) {
+  const inks = { ...paper.inks, body: paper.inks.metal, ...own };
+  const size = pinSize(paper) / PIN;
+  paper.put(order, depth, (context) => {
     context.translate(x, y);
-    if (slides(joint)) {
-      context.rotate(turn);
-      context.beginPath();
-      context.roundRect(-2.1 * r, -1.25 * r, 4.2 * r, 2.5 * r, 2.5);
-      fillWith(context, metal);
-      context.stroke();
-      if (joint.kind === "prismatic") return;
-    }
-    if (joint.kind === "weld") {
-      context.beginPath();
-      context.rect(-0.55 * r, -0.55 * r, 1.1 * r, 1.1 * r);
-      fillWith(context, ink);
-      return;
-    }
-    circleAround(context, 0, 0, r);
-    fillWith(context, sheet);
-    context.stroke();
-    if (joint.driven.length) {
-      circleAround(context, 0, 0, 0.35 * r);
-      fillWith(context, ink);
+    context.rotate(turn);
+    context.scale(size, -size);
+    for (const one of contents.symbols[kind]) {
+      lineThrough(context, one.points, one.closed);
+      if (one.fill) fillWith(context, inks[one.fill]);
+      strokeWith(context, inks[one.ink], one.width);
     }
   });
+}
+
+function inPlane(paper, joint, place, axis) {
+  const on = paper.on(place);
+  const [dx, dy] = paper.along(axis);
+  const turn = slides(joint) ? Math.atan2(dy, dx) : 0;
+  // A block never hides the pin that goes through it.
+  const depth = joint.kind === "prismatic" ? -1 : 0;
+  stamp(paper, joint.kind, on, ORDER.joints, depth, joint.driven.length ? { turn, ink: paper.inks.effort } : { turn });
+  if (joint.driven.length && joint.kind !== "prismatic") stamp(paper, "drive", on, ORDER.joints, depth, { ink: paper.inks.effort });
 }
 
 function inSpace(paper, joint, place, axes, instant) {
@@ -109,55 +102,24 @@ function reachOf(joint) {
   return reaches.get(joint.name);
 }
 
-/** The line on which something slides, as far as it ever does; hatched where it stands still. */
-function rail(paper, joint, parent, axis, grounded) {
+/** The line on which something slides, as far as it ever does. */
+function rail(paper, joint, parent, axis) {
   const [low, high] = reachOf(joint);
   const more = 3.5 * pinSize(paper) / paper.camera.scale;
   const [a, b] = [paper.on(plus(parent, axis, low - more)), paper.on(plus(parent, axis, high + more))];
-  const [length, x, y] = wayTo(a, b);
-  const r = pinSize(paper);
+  const [length] = wayTo(a, b);
   if (length < 1) return;
   paper.put(ORDER.rails, a[2], (context) => {
-    if (!grounded || contents.space) {
-      context.setLineDash([7, 4]);
-      lineThrough(context, [a, b]);
-      strokeWith(context, paper.inks.soft, 1.2);
-      return;
-    }
-    const [n, m] = x >= -1e-9 ? [-y, x] : [y, -x];
-    const edge = [a, b].map(([px, py]) => [px + 1.35 * r * n, py + 1.35 * r * m]);
-    lineThrough(context, edge);
+    context.setLineDash([7, 4]);
+    lineThrough(context, [a, b]);
     strokeWith(context, paper.inks.soft, 1.2);
-    hatchAlong(context, edge, [n, m], 0.8 * r);
   });
-}
-
-/** Short slanted strokes behind an edge of what stands still. */
-function hatchAlong(context, [a, b], [n, m], deep) {
-  const [length, x, y] = wayTo(a, b);
-  context.lineWidth = 0.9;
-  context.beginPath();
-  for (let at = 3; at < length; at += 6) {
-    addLine(context, [a[0] + at * x, a[1] + at * y], [a[0] + (at - deep) * x + deep * n, a[1] + (at - deep) * y + deep * m]);
-  }
-  context.stroke();
 }
 
 /** A bearing on the ground. */
 function groundMark(paper, place) {
-  const [x, y, depth] = paper.on(place);
-  const r = pinSize(paper);
-  const order = contents.space ? ORDER.solids : ORDER.rails;
-  paper.put(order, depth - 0.01 * extent.size, (context) => {
-    const foot = y + 2.5 * r;
-    lineThrough(context, [[x, y], [x + 1.5 * r, foot], [x - 1.5 * r, foot]], true);
-    fillWith(context, sheer(paper.inks.metal, 0.75));
-    strokeWith(context, paper.inks.soft, 1.2);
-    const edge = [[x - 2.3 * r, foot], [x + 2.3 * r, foot]];
-    lineThrough(context, edge);
-    context.stroke();
-    hatchAlong(context, edge, [0, 1], 0.8 * r);
-  });
+  const on = paper.on(place);
+  stamp(paper, "stand", on, contents.space ? ORDER.solids : ORDER.rails, on[2] - 0.01 * extent.size);
 }
 
 /** Links that slide within others, as rods in cylinders: they are drawn thinner, and inside. */
@@ -189,20 +151,26 @@ function disc(paper, body, instant, colour) {
 }
 
 /** A point mass: a block, behind the joint that carries it. */
-function block(paper, place, colour) {
-  const r = 1.7 * pinSize(paper);
-  if (contents.space) {
-    const half = r / paper.camera.scale;
-    box(paper, place, GROUND.slice(1), [half, half, half], colour);
-    return;
+function block(paper, place, body) {
+  const half = (1.7 * pinSize(paper)) / paper.camera.scale;
+  if (contents.space) box(paper, place, GROUND.slice(1), [half, half, half], body);
+  else stamp(paper, "mass", paper.on(place), ORDER.solids, 0, { body });
+}
+
+/** The lines that move with bodies, where they are of the numbers that these have. */
+function drawCarried(paper, instant) {
+  if (live.engine && !live.engine.carries) return;
+  for (const line of contents.carried) {
+    const points = line.points.map((at) => paper.on(placeOf(line.body, at, instant)));
+    const depth = points.reduce((sum, [, , near]) => sum + near, 0) / points.length;
+    const ink = line.of ? paper.inks.bodies[bodies.get(line.of).number % BODY_COLOURS] : paper.inks.soft;
+    paper.put(ORDER.solids, depth, (context) => {
+      if (line.dashed) context.setLineDash([5, 5]);
+      lineThrough(context, points, line.closed);
+      if (line.filled) fillWith(context, sheer(ink, 0.3));
+      strokeWith(context, ink, line.width);
+    });
   }
-  const [x, y] = paper.on(place);
-  paper.put(ORDER.solids, 0, (context) => {
-    context.beginPath();
-    context.roundRect(x - r, y - r, 2 * r, 2 * r, 3);
-    fillWith(context, colour);
-    strokeWith(context, shade(colour, -0.35), 1.2);
-  });
 }
 
 /** A centre of mass: the quartered circle. */
