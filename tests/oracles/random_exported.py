@@ -15,7 +15,8 @@ def by_exported_c(many, folder):
     """
     for drawn, scene, solution in many:
         own = folder / scene.mechanism.name
-        _, told = exported(scene, own, parameters=drawn.keywords.get("parameters"))
+        lasting = replace(scene, t=drawn.grid)
+        _, told = exported(lasting, own, parameters=drawn.keywords.get("parameters"))
         found = by_c99(own, told, instants(solution.t, "double"), ("-O0",)).T
         outputs, off, rest = dict(solution.outputs), 0.0, iter(found[len(told["outputs"]) :])
         for row, values in zip(told["outputs"], found, strict=False):

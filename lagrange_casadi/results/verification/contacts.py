@@ -13,7 +13,7 @@ from ...base.arrays import Array
 from ...base.quantities import Output
 from ...model.description import Description
 from ...model.stated import Touch
-from .instant_vectors import NIL, constant, cross, dot, most, size, turn
+from .instant_vectors import NIL, cross, dot, most, size, turn
 from .placing import Moving
 from .reported import Reported
 
@@ -49,8 +49,11 @@ def actions(
     force, couple = (
         sum((share * np.reshape(of[k], (3, -1)) for share, of in shares), NIL) for k in (0, 1)
     )
-    reach, axes = constant(touch.reach), carrier.axes
-    at, pushed = carrier.at + turn(axes, constant(touch.centre)), turn(axes, force)
+    axes, centre, reach = (
+        carrier.axes,
+        *(np.reshape(of, (3, -1)) for of in (touch.centre, touch.reach)),
+    )
+    at, pushed = carrier.at + turn(axes, centre), turn(axes, force)
     yield touch.first, at, pushed, turn(axes, couple)
     yield touch.second, at + turn(axes, reach), -pushed, turn(axes, cross(reach, force) - couple)
 
