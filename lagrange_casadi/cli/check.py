@@ -10,7 +10,7 @@ from ..base.vocabulary import TIME_LIMIT
 from ..errors import StoreError
 from ..results.store import runs as store
 from ..results.store.opening import IDENTIFICATION, check_identification, kind_of
-from ..results.store.untrusted import check_shape
+from ..results.store.untrusted import structured
 from ..studies.optimise.search_file import check_optimum, is_optimum
 from ..studies.sweep import is_sweep
 from ..studies.sweep.checking import check_sweep, flaws, progress, unfinished
@@ -77,7 +77,7 @@ def _findings_apart(file: Path, seconds: float) -> list[str]:
     """
     try:
         found: list[str] = run_apart(found_in, str(file), seconds=seconds, variables=_VARIABLES)
-        check_shape(found, [str], "answer")
+        structured(tuple[str, ...], found, "answer")
     except subprocess.TimeoutExpired:
         raise StoreError(
             f"{file}: was not read within {seconds:g} s, so it is large or forged; --time-limit"

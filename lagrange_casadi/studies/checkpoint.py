@@ -17,7 +17,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, TypedDict
 
 from ..base.files import LOCK, check_writable, digest, held, reporting, settled, writing
 from ..errors import BusyError, DeclarationError, PathError, StoreError, one_line
@@ -26,6 +26,16 @@ from ..results.store.untrusted import parsed
 _PLAN, _PART = "plan.json", ".part"
 _OURS = re.compile(rf"{_PLAN}|{LOCK}|\..*|[0-9a-f-]+{_PART}")
 """Names in the folder; those of drafts begin with a point."""
+
+
+class Begun(TypedDict):
+    """A study that was begun: its kind, whether it was ``forced`` to replace what was there, and
+    its identity.
+    """
+
+    study: str
+    forced: bool
+    identity: Mapping[str, Any]
 
 
 @dataclass(frozen=True)
@@ -51,15 +61,13 @@ class Checkpoint:
         return os.path.isfile(self.path / _PLAN)  # of a name that is too long too
 
     @property
-    def plan(self) -> dict[str, Any]:
-        """The study that was begun: its kind, whether it was ``forced`` to replace what was there,
-        and its identity.
+    def plan(self) -> Begun:
+        """The study that was begun.
 
         Raises :class:`StoreError` if it cannot be read.
         """
         try:
-            shape = {"study": str, "forced": bool, "identity": {}}
-            found: dict[str, Any] = parsed((self.path / _PLAN).read_bytes(), shape, "plan")
+            found: Begun = parsed((self.path / _PLAN).read_bytes(), Begun, "plan")
         except (OSError, ValueError) as error:
             raise StoreError(
                 f"{self.path / _PLAN}: damaged: {one_line(error)}; start anew with force=True"

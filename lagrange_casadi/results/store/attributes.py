@@ -14,10 +14,12 @@ from ...model.description import Description
 from ..solution import Solution
 from .dataset_words import conventions
 from .specs import Spec, parse_specs
-from .untrusted import check_shape, number, parsed, read_json, shown, structured
+from .untrusted import number, parsed, read_json, shown, structured
 
 Attributes: TypeAlias = Mapping[str, Any]
 """Texts and numbers of a file, by name."""
+
+_NAMES = tuple[str, ...]
 
 _PROVENANCE = {key: key for key in ("backend", "precision", "compiler", "flags")} | {
     "rung": "method"
@@ -30,7 +32,7 @@ def attributes_to_write(solution: Solution, figures: str, grids: Sequence[str]) 
 
     Raises ``ValueError``, ``TypeError`` or ``KeyError`` for attributes that a reader refuses.
     """
-    check_shape(dict(solution.errors), {str: float}, "errors")
+    structured(Mapping[str, float], dict(solution.errors), "errors")
     found = _attributes(solution, figures, grids)
     fields, _ = read_attributes(found)
     for fault in check_attributes(found, fields["description"]):
@@ -78,24 +80,24 @@ def read_attributes(attributes: Attributes) -> tuple[dict[str, Any], dict[str, A
     Raises ``ValueError``, ``TypeError`` or ``KeyError`` for attributes that are not written.
     """
 
-    def stated(key: str, shape: Any, otherwise: str | None = None) -> Any:
+    def stated(key: str, kind: Any, otherwise: str | None = None) -> Any:
         text = attributes[key] if otherwise is None else attributes.get(key, otherwise)
-        return parsed(text, shape, key)
+        return parsed(text, kind, key)
 
     description = described(read_json(attributes["mechanism"], "mechanism"))
     description.check_places()
     words = {name: shown(attributes[key]) for key, name in _PROVENANCE.items()}
-    completed, reasons = (stated(key, [str], "[]") for key in ("by_elasticity", "open_because"))
+    completed, reasons = (stated(key, _NAMES, "[]") for key in ("by_elasticity", "open_because"))
     return {
         "case": shown(attributes["case"]),
         "description": description,
-        "provenance": Provenance(**words, versions=stated("versions", {str: str})),
-        "indeterminate": tuple(map(Output.of, stated("undetermined", [str]))),
+        "provenance": Provenance(**words, versions=stated("versions", Mapping[str, str])),
+        "indeterminate": tuple(map(Output.of, stated("undetermined", _NAMES))),
     }, {
-        "errors": stated("error_estimates", {str: float}, "{}"),
+        "errors": stated("error_estimates", Mapping[str, float], "{}"),
         "tolerance": number(attributes, "certificate_tolerance"),
-        "elasticity": Elasticity(tuple(map(Output.of, completed)), tuple(reasons)),
-        "holding": stated("holding", {str: str}, "{}"),
+        "elasticity": Elasticity(tuple(map(Output.of, completed)), reasons),
+        "holding": stated("holding", Mapping[str, str], "{}"),
     }
 
 
@@ -112,7 +114,7 @@ def check_attributes(attributes: Attributes, description: Description) -> Iterat
     except ValueError as error:
         yield str(error)
     if (
-        parsed(attributes["parameters"], {str: float}, "parameters") != description.values
+        parsed(attributes["parameters"], Mapping[str, float], "parameters") != description.values
         or attributes["case"] != description.name
     ):
         yield "case or parameters: differ from those of the mechanism"

@@ -241,7 +241,9 @@ def check(path: str | os.PathLike[str]) -> list[str]:
     with opened_file(path, RUN) as file:
         solution = _read(file)
         certificate = (Output("certificate", "", name) for name in solution.certificate)
-        grids = parsed(file.attrs["grids"], [str], "grids") if "grids" in file.attrs else None
+        grids = (
+            parsed(file.attrs["grids"], tuple[str, ...], "grids") if "grids" in file.attrs else None
+        )
         quantities = (
             output
             for output in solution.quantities()
@@ -250,7 +252,7 @@ def check(path: str | os.PathLike[str]) -> list[str]:
         outputs = dict.fromkeys(
             [*quantities, *solution.outputs, *held_outputs(solution.holding), *certificate]
         )
-        listed = map(Output.of, parsed(file.attrs["outputs"], [str]))
+        listed = map(Output.of, parsed(file.attrs["outputs"], tuple[str, ...]))
         found = [f"{place_of(output)}: missing" for output in listed if output not in outputs]
         found += check_attributes(file.attrs, solution.description)
         if not found:

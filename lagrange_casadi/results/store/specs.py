@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
@@ -19,9 +19,8 @@ from ...base.quantities import Output
 from ...base.tables import PLANE
 from ...base.units import Within
 from ...base.vocabulary import AZIMUTH, ELEVATION
-from ...errors import DeclarationError
 from ..solution import Solution
-from .untrusted import parsed
+from .untrusted import parsed, structured
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -248,17 +247,13 @@ def parse_specs(text: str) -> tuple[Spec, ...]:
 
     Raises ``ValueError`` for others.
     """
-    return tuple(map(_parse, parsed(text or "[]", [{"kind": str, "name": str}], "figures")))
+    return tuple(map(_parse, parsed(text or "[]", tuple[Mapping[str, Any], ...], "figures")))
 
 
-def _parse(entry: dict[str, Any]) -> Spec:
-    fields: dict[str, Any] = {
-        key: tuple(value) if isinstance(value, list) else value for key, value in entry.items()
-    }
-    kind = fields.pop("kind")
+def _parse(entry: Mapping[str, Any]) -> Spec:
+    kind = structured(str, entry.get("kind"), "figures.kind")
     if kind not in KINDS:
         raise ValueError(f"figures: unknown kind {kind!r}; valid: {', '.join(KINDS)}")
-    try:
-        return KINDS[kind](**fields)
-    except DeclarationError as error:
-        raise ValueError(f"figures: {error}") from None
+    fields = {name: value for name, value in entry.items() if name != "kind"}
+    found: Spec = structured(KINDS[kind], fields, "figures")
+    return found

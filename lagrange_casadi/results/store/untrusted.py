@@ -1,4 +1,4 @@
-"""Checks of a file before it is believed: the shape of its JSON, the targets of its links, and the
+"""Checks of a file before it is believed: the form of its JSON, the targets of its links, and the
 kinds of its datasets.
 
 HDF5 and JSON allow far more than this package writes. Anything else is reported as damage, in one
@@ -12,22 +12,18 @@ import json
 import math
 import os
 import re
+import sys
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import MISSING, fields, is_dataclass
 from types import NoneType, UnionType
-from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
+from typing import Any, Literal, Union, get_args, get_origin, get_type_hints, is_typeddict
 
 import h5py
 import numpy as np
 
 from ...base.arrays import Array
 from ...errors import DeclarationError, LagrangeCasadiError, StoreError, one_line
-
-Shape = Any
-"""``str``, ``int``, ``float`` or ``bool``, or None for null; a tuple of shapes, any of which will
-do; ``[shape]`` for a list, and ``[shape, shape, ...]`` for one of so many; ``{str: shape}`` for a
-mapping of any names, ``{"name": shape, ...}`` for one that has these, at least."""
 
 _hints = functools.cache(get_type_hints)
 
@@ -47,33 +43,26 @@ def reported_as(what: str, path: str | os.PathLike[str]) -> Iterator[None]:
         raise StoreError(f"{path}: {what}: {text}") from error
 
 
-def parsed(text: str | bytes, shape: Shape, what: str = "JSON") -> Any:
-    """JSON of a shape.
+def parsed(text: str | bytes, kind: Any, what: str = "JSON") -> Any:
+    """A value of a type from JSON.
 
-    Raises ``ValueError`` for what is not JSON, and as :func:`check_shape` does.
+    Raises ``ValueError`` for what is not JSON, and as :func:`structured` does.
     """
-    found = read_json(text, what)
-    check_shape(found, shape, what)
-    return found
+    return structured(kind, read_json(text, what), what)
 
 
 def read_json(text: str | bytes, what: str) -> Any:
-    """JSON of any shape. Raises ``ValueError`` for what is not JSON."""
+    """JSON of any form. Raises ``ValueError`` for what is not JSON."""
     try:
         return json.loads(text)
     except (ValueError, TypeError, RecursionError):
         raise ValueError(f"{what} is not JSON") from None
 
 
-def check_shape(value: object, shape: Shape, what: str) -> None:
-    """Raise ``ValueError`` for what came from JSON and has another shape, with the place."""
-    if place := _mismatch(value, shape, what):
-        raise ValueError(f"{place} is not of the expected kind")
-
-
 def structured(kind: Any, value: Any, place: str) -> Any:
-    """Make a value of a type from JSON: of a dataclass, ``tuple``, ``Mapping``, ``Literal`` of
-    texts, the last of ``X | Y | None``, ``Any``, or ``str``, ``float`` or ``bool``.
+    """Make a value of a type from JSON: of a dataclass, a ``TypedDict``, ``tuple``, ``Mapping``,
+    ``Literal`` of texts, ``Any``, ``str``, ``int``, ``float`` or ``bool``, or of the first that
+    fits of a union.
 
     Raises ``ValueError`` for JSON of another form, with the place.
     """
@@ -81,36 +70,61 @@ def structured(kind: Any, value: Any, place: str) -> Any:
     if kind is Any:
         return value
     if origin in (Union, UnionType):
-        *_, last = (one for one in of if one is not NoneType)
-        return None if value is None else structured(last, value, place)
-    if isinstance(kind, type) and is_dataclass(kind):
-        check_shape(value, {}, place)
-        hints, known = _hints(kind), {one.name for one in fields(kind)}
-        if more := sorted(value.keys() - known):
-            raise ValueError(f"{place} has an unknown part '{more[0]}'")
-        given = {
-            one.name: structured(hints[one.name], value.get(one.name), f"{place}.{one.name}")
-            for one in fields(kind)
-            if one.name in value or one.default is one.default_factory is MISSING
-        }
-        try:
-            return kind(**given)
-        except DeclarationError as error:
-            raise ValueError(f"{place}: {error}") from None
+        # The last names the fault, so null comes first.
+        *others, last = sorted(of, key=lambda one: one is not NoneType)
+        for one in others:
+            with suppress(ValueError):
+                return structured(one, value, place)
+        return structured(last, value, place)
+    if is_dataclass(kind) or is_typeddict(kind):
+        return _record(kind, value, place)
     if origin in (tuple, Sequence):
         several = origin is Sequence or of[-1] is ...
         each = of[:1] * len(value) if isinstance(value, list) and several else of
-        if not isinstance(value, list) or len(each) != len(value):
-            raise ValueError(f"{place} is not of the expected kind")
+        _check_kind(isinstance(value, list) and len(each) == len(value), place)
         pairs = enumerate(zip(each, value, strict=True))
         return tuple(structured(*pair, f"{place}[{k}]") for k, pair in pairs)
-    if origin is Mapping:
-        check_shape(value, {}, place)
-        return {name: structured(of[1], one, f"{place}.{name}") for name, one in value.items()}
-    check_shape(value, str if origin is Literal else kind, place)
-    if origin is Literal and value not in of:
+    if origin in (Mapping, dict):
+        _check_kind(isinstance(value, dict), place)
+        return {
+            structured(of[0], name, f"{place}.{name!r}"): structured(of[1], one, f"{place}.{name}")
+            for name, one in value.items()
+        }
+    if origin is Literal:
+        _check_kind(value in of, place)
+    elif kind is float:
+        real = type(value) is float or (type(value) is int and abs(value) <= sys.float_info.max)
+        _check_kind(real, place)
+        return float(value)
+    else:
+        _check_kind(_is_shown(value) if kind is str else type(value) is kind, place)
+    return value
+
+
+def _record(kind: Any, value: Any, place: str) -> Any:
+    """Make a dataclass or a ``TypedDict`` from JSON."""
+    _check_kind(isinstance(value, dict), place)
+    hints = _hints(kind)
+    needed = dict.fromkeys(hints, True)
+    if is_dataclass(kind):
+        needed = {one.name: one.default is one.default_factory is MISSING for one in fields(kind)}
+    if more := sorted(value.keys() - needed):
+        raise ValueError(f"{place} has an unknown part {more[0]!r}")
+    given = {
+        name: structured(hints[name], value.get(name), f"{place}.{name}")
+        for name in needed
+        if needed[name] or name in value
+    }
+    try:
+        return kind(**given)
+    except DeclarationError as error:
+        raise ValueError(f"{place}: {error}") from None
+
+
+def _check_kind(fits: bool, place: str) -> None:
+    """Raise ``ValueError`` for a place whose value does not fit."""
+    if not fits:
         raise ValueError(f"{place} is not of the expected kind")
-    return float(value) if kind is float else value
 
 
 def shown(value: str) -> str:
@@ -195,56 +209,8 @@ def check_chunks(dataset: h5py.Dataset) -> None:
             raise ValueError(f"{dataset.name} has {count} chunks of {expected}")
 
 
-def _mismatch(value: object, shape: Shape, place: str) -> str:
-    """The first place where a value has another shape; nothing where none has."""
-    if isinstance(shape, tuple):
-        return "" if any(not _mismatch(value, one, place) for one in shape) else place
-    if isinstance(shape, list):
-        if not isinstance(value, list) or len(shape) not in (1, len(value)):
-            return place
-        each = shape if len(shape) > 1 else shape * len(value)
-        return next(
-            filter(
-                None,
-                (
-                    _mismatch(*pair, f"{place}[{k}]")
-                    for k, pair in enumerate(zip(value, each, strict=True))
-                ),
-            ),
-            "",
-        )
-    if isinstance(shape, Mapping):
-        if not isinstance(value, dict):
-            return place
-        if strange := next((name for name in value if not _is_shown(name)), ""):
-            return f"{place}.{strange!r}"
-        asked = dict.fromkeys(value, shape[str]) if str in shape else shape
-        missing = next((f"{place}.{name}" for name in asked if name not in value), "")
-        return missing or next(
-            filter(
-                None,
-                (_mismatch(value[name], one, f"{place}.{name}") for name, one in asked.items()),
-            ),
-            "",
-        )
-    if shape is None:
-        return "" if value is None else place
-    if shape is float:
-        return "" if _is_real(value) else place
-    if shape is str:
-        return "" if isinstance(value, str) and _is_shown(value) else place
-    return "" if type(value) is shape else place
-
-
 def _is_shown(value: str) -> bool:
     try:
         return shown(value) == value
     except ValueError:
-        return False
-
-
-def _is_real(value: object) -> bool:
-    try:
-        return type(value) is float or (type(value) is int and math.isfinite(float(value)))
-    except OverflowError:
         return False

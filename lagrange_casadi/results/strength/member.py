@@ -211,12 +211,17 @@ class Member(Brief):
         return cls(link, body.beam, law, t, np.zeros(0), data.space, CLOSE)
 
     @cached_property
+    def counts(self) -> npt.NDArray[np.bool_]:
+        """True at the instants that count (t,): see :func:`.counted`."""
+        return counted(np.moveaxis(self.at(np.tile([0.0, 1.0], (self.t.size, 1))), 1, 2))
+
+    @cached_property
     def counted(self) -> Member:
-        """Member at the instants that count: see :func:`.counted`.
+        """Member at the instants that count.
 
         Raises :class:`.DeclarationError` where none does.
         """
-        counts = counted(np.moveaxis(self.at(np.tile([0.0, 1.0], (self.t.size, 1))), 1, 2))
+        counts = self.counts
         if counts.all():
             return self
         if not counts.any():

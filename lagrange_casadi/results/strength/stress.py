@@ -11,23 +11,24 @@ an end, or at a zero of its slope.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from ...base.arguments import Share, public
 from ...base.arrays import Array
 from ...base.bernstein import product, slope, value, zeros
 from ...base.brief import Brief
-from ...engine.section_function import Side
+from ...engine.section_function import SIDES, Side
 from ...engine.section_stress import KINDS, concentration, squared
 from ...errors import DeclarationError, UnknownNameError, shown
 from ...model.beams.beam import Notch
 from .member import Member
 
 _BLOCK = 1 << 21
-_SIDES: tuple[Side, Side] = ("base", "tip")
 
 
 @dataclass(frozen=True)
@@ -97,7 +98,7 @@ class Stress:
         DeclarationError
             If a ratio is out of 0 to 1.
         """
-        weights = _weights(kind)
+        _weights(kind)
         u = self.member.xi if xi is None else np.atleast_1d(xi)
         if u.ndim != 1 or not ((u >= 0.0) & (u <= 1.0)).all():
             raise DeclarationError(
@@ -117,10 +118,7 @@ class Stress:
                     np.broadcast_to(u[chosen], (self.member.t.size, chosen.size))
                 )
                 values = np.einsum("cfkn,ktn->cftn", factors[..., start : start + width], forces)
-                squares = squared(values, weights)
-                best = np.argmax(squares, axis=0)[None]
-                square, normal = (np.take_along_axis(a, best, 0)[0] for a in (squares, values[0]))
-                found[:, chosen] = _signed(kind, square, normal)
+                _, found[:, chosen] = _of_fibres(kind, values)
         return found
 
     def at(self, xi: Share, side: Side = "tip", notch: Notch | None = None) -> Array:
@@ -177,19 +175,12 @@ class Stress:
             Value [Pa], ratio and fibre, exact whatever the grid of xi; NaN at instants that do not
             count.
         """
-        moving = self.member.counted
-        values, places, fibres = zip(
-            *(stress._largest(kind) for stress in Stress(moving)._blocks()), strict=True
-        )
-        value = np.concatenate(values)
-        place = np.concatenate(places)
-        names = [name for some in fibres for name in some]
-        if moving is self.member:
-            return Largest(value, place, tuple(names))
-        found, place_names = np.full((2, self.member.t.size), np.nan), [""] * self.member.t.size
-        for k, at in enumerate(np.searchsorted(self.member.t, moving.t).tolist()):
-            found[:, at], place_names[at] = (value[k], place[k]), names[k]
-        return Largest(found[0], found[1], tuple(place_names))
+        found = Stress(self.member.counted)._along(kind)
+        at = np.flatnonzero(self.member.counts)
+        value, xi = np.full((2, self.member.t.size), np.nan)
+        value[at], xi[at] = found.value, found.xi
+        names = dict(zip(at.tolist(), found.fibre, strict=True))
+        return Largest(value, xi, tuple(names.get(k, "") for k in range(self.member.t.size)))
 
     def peak(self, kind: str, *, notches: bool = False) -> StressPeak:
         """Return the largest stress over all instants that count.
@@ -212,20 +203,16 @@ class Stress:
             If notches are wanted, and the beam has none.
         """
         moving = Stress(self.member.counted)
-        if notches:
-            _weights(kind)
-            self._require_notches()
-            return max(
-                (moving._at_notch(kind, notch) for notch in self.member.beam.notches),
-                key=lambda peak: abs(peak.value),
-            )
-        best: StressPeak | None = None
-        for stress in moving._blocks():
-            found = stress._highest(kind, 0.0 if best is None else abs(best.value))
-            if best is None or (found is not None and abs(found.value) > abs(best.value)):
-                best = found
-        assert best is not None
-        return best
+        found = moving._at_notches(kind) if notches else moving._along(kind, peak=True)
+        k = int(np.argmax(np.abs(found.value)))
+        return StressPeak(
+            kind,
+            float(found.value[k]),
+            float(moving.member.t[k]),
+            float(found.xi[k]),
+            found.fibre[k],
+            notches,
+        )
 
     def largest_at_notches(self, kind: str) -> Array:
         """Return the size of a stress at notches, their factors included.
@@ -245,53 +232,20 @@ class Stress:
         DeclarationError
             If the beam has no notches.
         """
-        weights = _weights(kind)
-        self._require_notches()
-        each = [
-            self.at(notch.at, side, notch) for notch in self.member.beam.notches for side in _SIDES
-        ]
-        return np.asarray(
-            np.sqrt(np.max([squared(values, weights).max(axis=0) for values in each], axis=0))
-        )
+        return np.abs(self._at_notches(kind).value)
 
-    def _require_notches(self) -> None:
+    def _at_notches(self, kind: str) -> Largest:
+        """The stress that is largest in size at notches, at every instant."""
+        _weights(kind)
         if not self.member.beam.notches:
             raise DeclarationError(f"the beam of link '{self.member.link}' has no notches")
-
-    def _highest(self, kind: str, floor: float) -> StressPeak | None:
-        """The peak of a few instants; None where it is not above a floor.
-
-        Ordinates leave out instants that have it not.
-        """
-        bounds = [part.bounds(_weights(kind)) for part in self._parts()]
-        least = np.max([low for low, _ in bounds], axis=0)
-        most = np.max([high.max(axis=(0, 1)) for _, high in bounds], axis=0)
-        chosen = np.flatnonzero((most >= least.max()) & (most >= floor**2))
-        if not chosen.size:
-            return None
-        near = Stress(self.member.during(chosen))
-        value, place, fibre = near._largest(kind)
-        k = int(np.argmax(np.abs(value)))
-        return StressPeak(kind, float(value[k]), float(near.member.t[k]), float(place[k]), fibre[k])
-
-    def _at_notch(self, kind: str, notch: Notch) -> StressPeak:
-        found = []
-        for side in _SIDES:
-            values = self.at(notch.at, side, notch)
-            squares = squared(values, _weights(kind))
-            fibre, k = np.unravel_index(int(np.argmax(squares)), squares.shape)
-            value = float(_signed(kind, squares[fibre, k], values[0, fibre, k]))
-            found.append(
-                StressPeak(
-                    kind,
-                    value,
-                    float(self.member.t[k]),
-                    notch.at,
-                    self.fibres(notch.at, side)[fibre],
-                    True,
-                )
-            )
-        return max(found, key=lambda peak: abs(peak.value))
+        every = [*itertools.product(self.member.beam.notches, SIDES)]
+        stresses = [self.at(notch.at, side, notch) for notch, side in every]
+        names = [self.fibres(notch.at, side) for notch, side in every]
+        places = np.repeat([notch.at for notch, _ in every], [*map(len, names)])
+        best, value = _of_fibres(kind, np.concatenate(stresses, axis=1))
+        fibres = np.array([*itertools.chain.from_iterable(names)], object)[best]
+        return Largest(value, places[best], tuple(fibres.tolist()))
 
     def _scale(self, notch: Notch | None) -> Array:
         return np.array([concentration(notch, force) for force in self.member.forces])
@@ -308,16 +262,33 @@ class Stress:
                 else Stress(member.during(slice(start, start + height)))
             )
 
-    def _largest(self, kind: str) -> tuple[Array, Array, list[str]]:
-        """Values, ratios and fibres at every instant."""
+    def _along(self, kind: str, *, peak: bool = False) -> Largest:
+        """The stress that is largest in size along the link, at every instant; or if only the
+        ``peak`` is sought, less at others.
+        """
+        found, floor = [], 0.0 if peak else None
+        for block in self._blocks():
+            found.append(block._largest(kind, floor))
+            if floor is not None:
+                floor = max(floor, float(np.max(found[-1][0] ** 2)))
+        values, places, names = zip(*found, strict=True)
+        fibre = tuple(itertools.chain.from_iterable(names))
+        return Largest(np.concatenate(values), np.concatenate(places), fibre)
+
+    def _largest(self, kind: str, floor: float | None) -> tuple[Array, Array, list[str]]:
+        """Values, ratios and fibres at every instant; with a ``floor``, of squares, 0 where the
+        value is below that, or not the peak.
+        """
         weights, count, names = _weights(kind), self.member.t.size, list[str]()
         parts = [*self._parts()]
         bounds = [part.bounds(weights) for part in parts]
-        floor = np.max([low for low, _ in bounds], axis=0)
+        least = np.max([low for low, _ in bounds], axis=0)
+        if floor is not None:
+            least = np.full(count, max(floor, least.max()))
         best, place, signs = np.full(count, -1.0), np.zeros(count), np.zeros(count)
         fibre = np.zeros(count, int)
         for part, (_, high) in zip(parts, bounds, strict=True):
-            f, p, t = np.nonzero(high >= floor)
+            f, p, t = np.nonzero(high >= least)
             normal, *shears = np.moveaxis(part.stresses[:, :, f, p, t], 1, 0)
             c = weights[0] * product(normal, normal)
             c += weights[1] * sum(product(shear, shear) for shear in shears)
@@ -369,6 +340,16 @@ def _weights(kind: str) -> tuple[float, float]:
     if kind not in KINDS:
         raise UnknownNameError("kind of stress", kind, KINDS)
     return KINDS[kind]
+
+
+def _of_fibres(kind: str, stresses: Array) -> tuple[npt.NDArray[np.intp], Array]:
+    """The stress that is largest in size of all fibres, whose stresses are (3, fibres, ...): the
+    fibre's number, and the value.
+    """
+    squares = squared(stresses, KINDS[kind])
+    best = np.argmax(squares, axis=0)
+    square, normal = (np.take_along_axis(rows, best[None], 0)[0] for rows in (squares, stresses[0]))
+    return best, _signed(kind, square, normal)
 
 
 def _signed(kind: str, square: Array, normal: Array) -> Array:

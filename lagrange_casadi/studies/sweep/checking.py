@@ -14,12 +14,12 @@ from ...errors import one_line
 from ...model.even_points import points
 from ...results.store.attributes import described
 from ...results.store.dataset_words import unlike, unlike_conventions
-from ...results.store.untrusted import check_chunks, check_shape, parsed, reported_as
+from ...results.store.untrusted import check_chunks, parsed, reported_as, structured
 from ..checkpoint import Checkpoint
 from .axes import are_described, counted, grouped, size_of
 from .design_blocks import designs_in, slabs
 from .meanings import CYCLE, OVER, STATUS, Column, Meanings
-from .plan import IDENTITY, Identity
+from .plan import Identity
 from .reading import Sweep
 
 
@@ -61,12 +61,10 @@ def unfinished(path: Path) -> Checkpoint | None:
 
 def identity_of(folder: Checkpoint) -> Identity:
     """The identity of an unfinished sweep. Raises :class:`StoreError` for a damaged one."""
-    identity: Any = folder.plan["identity"]
     with reported_as("damaged", folder.path):
-        check_shape(identity, IDENTITY, "plan")
+        identity: Identity = structured(Identity, folder.plan["identity"], "plan")
         described(identity["mechanism"])
-    found: Identity = identity
-    return found
+    return identity
 
 
 def progress(folder: Checkpoint) -> str:
@@ -126,7 +124,7 @@ def _check_asked(file: h5py.File, sweep: Sweep) -> Iterator[str]:
     description = sweep.description
     parameter_values = description.values
     if (
-        parsed(file.attrs["parameters"], {str: float}, "parameters") != parameter_values
+        parsed(file.attrs["parameters"], Mapping[str, float], "parameters") != parameter_values
         or sweep.case != description.name
     ):
         yield "case or parameters: differ from those of the mechanism"

@@ -4,6 +4,7 @@ its statuses.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import h5py
@@ -13,14 +14,14 @@ from ...results.store.attributes import described
 from ...results.store.untrusted import (
     check_dataset,
     check_links,
-    check_shape,
     parsed,
     read_json,
     shown,
+    structured,
 )
 from .axes import DESIGN
 from .meanings import KINDS, STATUS, Column
-from .plan import IDENTITY
+from .plan import Identity
 from .sweep_file import WORDS
 
 _NAMED = (
@@ -46,7 +47,7 @@ def contents(file: h5py.File) -> dict[str, Any]:
     identity: Any = {key: read_json(attributes[key], key) for key in WORDS} | {
         key: _plain(attributes[key]) for key in _NAMED
     }
-    check_shape(identity, IDENTITY, "attributes")
+    structured(Identity, identity, "attributes")
     described(identity["mechanism"])
     columns: dict[str, Column] = {}
     status = file[STATUS]
@@ -80,7 +81,7 @@ def contents(file: h5py.File) -> dict[str, Any]:
         )
     if len(columns) != _plain(attributes["columns"]):
         raise ValueError(f"it has {len(columns)} columns of {attributes['columns']}")
-    sentences = parsed(status.attrs["sentences"], {str: str}, "sentences")
+    sentences = parsed(status.attrs["sentences"], Mapping[str, str], "sentences")
     meanings = shown(status.attrs["flag_meanings"]).split()
     if len(meanings) != len(sentences):
         raise ValueError(f"it has {len(meanings)} words for {len(sentences)} statuses")

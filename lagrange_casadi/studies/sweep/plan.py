@@ -13,7 +13,7 @@ from typing import Any, TypedDict
 
 import numpy as np
 
-from ...base.arrays import Array, Json, spread
+from ...base.arrays import Array, spread
 from ...base.space import in_words, require
 from ...base.vocabulary import Keep, PeakSearch, Precision
 from ...engine.derive import compile_scene, derived
@@ -29,26 +29,12 @@ from .columns import Harvest, Task, check_keep
 from .design_blocks import Slab, chunk_of, slabs
 from .meanings import Column
 
-_BOUND = (float, str)
-"""Start and end of instants: a number, or an expression of parameters in words."""
-
-IDENTITY = {
-    "case": str,
-    "versions": {str: str},
-    **dict.fromkeys(
-        ("sources", "backend", "precision", "compiler", "flags", "rung", "keep", "scene"), str
-    ),
-    "wanted": {},
-    "t": ([float, float, int], [_BOUND, _BOUND, int], [_BOUND, _BOUND, int, str, _BOUND]),
-    "xi": (None, [float, float, int]),
-    "mechanism": {},
-    "grid": {str: str},
-}
-"""The shape of :attr:`Plan.identity`, in the words of :mod:`.untrusted`."""
+_Bound = float | str
+"""Start or end of instants: a number, or an expression of parameters in words."""
 
 
 class Identity(TypedDict):
-    """Inputs of every number of a sweep, as its file keeps them."""
+    """Inputs of every number of a sweep, as its file keeps them: its tuples are JSON's lists."""
 
     case: str
     versions: dict[str, str]
@@ -60,10 +46,10 @@ class Identity(TypedDict):
     rung: str
     keep: Keep
     scene: str
-    wanted: dict[str, Json]
-    t: list[Any]
-    xi: list[Any] | None
-    mechanism: dict[str, Json]
+    wanted: dict[str, Any]
+    t: tuple[_Bound, _Bound, int] | tuple[_Bound, _Bound, int, str, _Bound]
+    xi: tuple[float, float, int] | None
+    mechanism: dict[str, Any]
     grid: dict[str, str]
 
 

@@ -6,7 +6,6 @@ The mechanism is a live page within the page: it evaluates the design that is ch
 
 from __future__ import annotations
 
-import dataclasses
 import json
 import math
 import os
@@ -23,7 +22,7 @@ from ...engine.model_data import template
 from ...errors import DeclarationError, shown
 from ...model.scene import Scene, Wanted
 from ...model.wanted_names import SENSITIVITY
-from ...results.store.untrusted import check_shape, reported_as
+from ...results.store.untrusted import reported_as, structured
 from ...studies.evaluate import evaluate
 from ...studies.sweep.axes import DESIGN
 from ...studies.sweep.best import best
@@ -186,17 +185,13 @@ def _frame(sweep: Sweep, scene: Scene, front: list[int], command: str) -> str:
 
 def _wanted(sweep: Sweep) -> Wanted:
     """The outputs that were wanted. Raises :class:`.StoreError` where the file does not say."""
-    content: dict[str, Any] = sweep.identity["wanted"]
-    needed = [one.name for one in dataclasses.fields(Wanted) if one.default is dataclasses.MISSING]
-    kinds = {name: bool if name in _FLAGS else [str] for name in (*needed, *content)}
+    # Of sensitivities the graph knows nothing.
+    content = {
+        name: value for name, value in sweep.identity["wanted"].items() if name != SENSITIVITY
+    }
     with reported_as("the outputs of the sweep", sweep.path):
-        check_shape(content, kinds, "wanted")
-        found: dict[str, Any] = {
-            name: tuple(value) if isinstance(value, list) else value
-            for name, value in content.items()
-            if name != SENSITIVITY  # of which the graph knows nothing
-        }
-        return Wanted(**found)
+        found: Wanted = structured(Wanted, content, "wanted")
+    return found
 
 
 def _names(wanted: Wanted) -> list[str]:
