@@ -258,11 +258,6 @@ def loaded(values: Array) -> Loaded:
     return Loaded(amplitude, mean, np.array(counts), list(zip(*ends, strict=True)))
 
 
-def widest(values: Array) -> tuple[int, int]:
-    """The two instants between which stresses (3, t) differ most, by von Mises."""
-    return _farthest(values * _VON_MISES)
-
-
 _VON_MISES = np.array([[1.0], [math.sqrt(3.0)], [math.sqrt(3.0)]])
 
 
@@ -277,10 +272,11 @@ def cycle_squares(first: Operand, last: Operand) -> tuple[Operand, Operand]:
     return amplitude, larger(normal, 0.0) ** 2 + 3.0 * sum(shear**2 for shear in shears)
 
 
-def _farthest(points: Array) -> tuple[int, int]:
-    """Two points (3, t) farthest from each other: those that are outermost in many directions, and
-    from there on uphill.
+def widest(values: Array) -> tuple[int, int]:
+    """The two instants between which stresses (3, t) differ most, by von Mises: of those that are
+    outermost in many directions, and from there on uphill.
     """
+    points = values * _VON_MISES
     sheared = [axis for axis in (1, 2) if points[axis].any()]
     if not sheared:
         return int(np.argmin(points[0])), int(np.argmax(points[0]))
