@@ -547,6 +547,14 @@ def test_a_joint_on_ground_goes_where_it_is_dragged(chromium, tmp_path):
     quiet(chromium)
 
 
+def test_a_screw_keeps_count_of_its_turns(chromium, tmp_path):
+    """A nut is dragged, though its spindle turns by almost half a turn from instant to instant."""
+    assert command("report screw_lift --live --out", tmp_path / "lift.html") == 0
+    alive.opened(chromium, tmp_path / "opened.html", (tmp_path / "lift.html").read_text())
+    chromium.run("page.player.seek(60)")
+    assert chromium.run("page.live.drag.take(page.contents.joints[1])")
+
+
 def test_what_cannot_come_alive_is_told_in_one_line(tmp_path, capsys, monkeypatch):
     m = Mechanism("fixed")
     m.revolute("O", m.ground, m.link("bar", length=1.0, mass=1.0))

@@ -73,6 +73,21 @@ class Postures {
     });
   }
 
+  /** The coordinates from which those near others are sought: driven ones as they are now, free ones along the slopes where loops are less open
+   *  there, so that screws keep count of their turns. */
+  ahead(time, { u, q }) {
+    const { rows, free, driven, alive } = this;
+    const [now, still] = [this.at(time, u, q), [...u]];
+    for (const [k, source, size] of driven) {
+      still[k] = alive.engine.inputs[source] / size;
+      for (let i = 0; i < rows; i += 1) now[i] += (still[k] - u[k]) * now[rows + i * u.length + k];
+    }
+    const moved = [...still];
+    solved(this.normal(now, new Float64Array(rows).fill(1), []), 1e-9).forEach((step, j) => (moved[free[j]] += step));
+    const [open, before] = [moved, still].map((at) => sizeOf(this.at(time, at, q).subarray(0, rows)));
+    return open < before ? moved : still;
+  }
+
   /** The loops that are open in a posture, by their numbers. */
   openOf({ found }) {
     return this.loops.flatMap(({ rows }, k) => (found.subarray(...rows).every((value) => Math.abs(value) < CLOSED) ? [] : [k]));
@@ -84,8 +99,7 @@ class Postures {
     const { alive, loops } = this;
     const time = alive.prepareAt(values, instant);
     if (time === null) return null;
-    let found = { time, u: [...from.u], q: from.q };
-    for (const [k, source, size] of this.driven) found.u[k] = alive.engine.inputs[source] / size;
+    let found = { time, u: this.ahead(time, from), q: from.q };
     const whole = this.least(found, weights ?? loops.map(() => 1), Boolean(weights));
     let left = weights ? from.left : this.openOf(whole);
     if (!weights && left.length) {
@@ -113,11 +127,7 @@ class Postures {
       for (let k = 1; k <= ON_THE_WAY && this.last; k += 1) this.last = this.find(file.values.map((value, n) => value + (k / ON_THE_WAY) * (known[n] - value)), 0, this.last);
       if (this.last) this.last.values = known;
     }
-    let before = this.last;
-    while (this.last && this.last.instant !== instant) {
-      const u = this.last.u.map((value, k) => 2 * value - before.u[k]);
-      [before, this.last] = [this.last, this.find(known, this.last.instant + Math.sign(instant - this.last.instant), { ...this.last, u })];
-    }
+    while (this.last && this.last.instant !== instant) this.last = this.find(known, this.last.instant + Math.sign(instant - this.last.instant), this.last);
     return this.last;
   }
 
