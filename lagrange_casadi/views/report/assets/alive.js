@@ -10,6 +10,7 @@ class Alive {
     this.values = Float64Array.from(contents.parameters, (one) => one.value);
     this.file = { values: this.values.slice(), defaults: live.defaults, rows: structuredClone(contents.rows), t: instants.t.slice() };
     this.why = null;
+    this.turn = 0; // Of the links whose forces are looked at.
     this.known = this.file.values;
     this.postures = new Postures(this);
     this.read();
@@ -63,8 +64,9 @@ class Alive {
   }
 
   /** Show a design. What it is without, as where it cannot be assembled, is then said by `why`. Unless `whole`, series of what is
-   *  largest along a link, and rows but for their peaks, are left as they are there, which is quicker. */
+   *  largest along a link, rows but for their peaks, and these of every other link, are left as they are there, which is quicker. */
   show(values, whole = true) {
+    whole ||= Boolean(this.why);
     this.values = Float64Array.from(values);
     contents.parameters.forEach((one, k) => (one.value = this.values[k]));
     this.why = this.stood = null;
@@ -73,7 +75,7 @@ class Alive {
       contents.rows.forEach((row, k) => Object.assign(row, structuredClone(this.file.rows[k])));
       this.engine.prepare(this.values);
       this.place();
-      for (const curve of this.curves) curve.forget();
+      for (const curve of this.curves) curve.pieces = []; // The page's rows are those of another design now.
       this.known = this.values;
       return;
     }
@@ -103,7 +105,9 @@ class Alive {
     for (let from = 0; from < times.length; from += BLOCK) this.block(times, weights, from, Math.min(BLOCK, times.length - from));
     this.put(instants.t, times, 0, times.length);
     if (over) this.put(array(over.values), this.coordinates, 0, times.length);
-    for (const curve of this.curves) this.along(curve, times.length, whole, (row) => tallyOf(row, true));
+    // Unless it is the whole that is shown links take turns: the peaks of the others are those of the design before.
+    this.turn += 1;
+    this.curves.forEach((curve, k) => this.along(curve, times.length, whole, (row) => (whole || (k + this.turn) % 2 === 0) && tallyOf(row, true)));
     for (const [row, tally] of tallies) Object.assign(row, tally.described(times, this.coordinates, whole));
     for (const bar of this.bars) {
       for (let i = 0; i < bar[0].length; i += 1) {
@@ -159,7 +163,7 @@ class Alive {
     const { position } = this;
     curve.prepare(this.lengths[curve.entry.link]);
     const rows = curve.entry.forces.map((_, k) => [k, tallyOf(curve.rowOf.get(k)), whole && curve.series.get(k)]).filter((row) => row[1] || row[2]);
-    curve.reachAll(count, whole, (found, i) => {
+    if (rows.length) curve.reachAll(count, whole, (found, i) => {
       const place = position ? position[i] : i;
       for (const [k, tally, series] of rows) {
         const ends = found[k];
@@ -224,7 +228,8 @@ class Alive {
       const status = engine.prepare(values);
       if (status) return status;
       if (from) loops().set(from);
-      return this.step(time);
+      engine.fit(1);
+      return engine.motion(time) || engine.evaluate(1);
     };
     let status = closes(this.values, null);
     for (let many = 4; status && many <= 64; many *= 4) {
@@ -289,13 +294,6 @@ class Alive {
       body.pose.forEach((column, k) => (column[posture.instant] = numbers[k]));
     }
     framesOf = -1;
-  }
-
-  /** Evaluate one instant; returns its status. */
-  step(time) {
-    const { engine } = this;
-    engine.fit(1);
-    return engine.motion(time) || engine.evaluate(1);
   }
 
   loops() {

@@ -96,11 +96,6 @@ class Along {
     }
   }
 
-  /** Let what follows begin anew, for the page's rows are those of another design. */
-  forget() {
-    this.pieces = [];
-  }
-
   forcesAt(u) {
     const found = this.engine.section(this.live.number, u);
     if (!found) throw new Error(this.engine.message(this.engine.failed));

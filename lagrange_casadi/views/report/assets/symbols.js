@@ -11,7 +11,10 @@ function drawJoint(paper, joint, instant) {
   const parent = spotOf(joint.parent, instant);
   const axes = joint.axes.map((axis) => directionOf(joint.parent.body, axis, instant));
   const grounded = joint.kind !== "free" && (joint.parent.body === "ground" || joint.child.body === "ground");
-  if (grounded && !slides(joint)) groundMark(paper, joint.parent.body === "ground" ? parent : place);
+  if (grounded && !slides(joint)) {
+    const on = paper.on(joint.parent.body === "ground" ? parent : place);
+    stamp(paper, "stand", on, contents.space ? ORDER.solids : ORDER.rails, on[2] - 0.01 * extent.size);
+  }
   if (slides(joint)) rail(paper, joint, parent, axes[0]);
   if (contents.space) inSpace(paper, joint, place, axes, instant);
   else inPlane(paper, joint, place, axes[0]);
@@ -114,12 +117,6 @@ function rail(paper, joint, parent, axis) {
     lineThrough(context, [a, b]);
     strokeWith(context, paper.inks.soft, 1.2);
   });
-}
-
-/** A bearing on the ground. */
-function groundMark(paper, place) {
-  const on = paper.on(place);
-  stamp(paper, "stand", on, contents.space ? ORDER.solids : ORDER.rails, on[2] - 0.01 * extent.size);
 }
 
 /** Links that slide within others, as rods in cylinders: they are drawn thinner, and inside. */
