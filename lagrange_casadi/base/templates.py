@@ -30,15 +30,15 @@ def mapped(tree: Any, leaf: Callable[[Any], object]) -> Any:
         return {key: mapped(part, leaf) for key, part in tree.items()}
     if kind is tuple or kind is list:
         return kind([mapped(part, leaf) for part in tree])
-    if is_dataclass(kind):
-        return _again(kind, [mapped(getattr(tree, name), leaf) for name in _names(tree.__class__)])
+    if names := _names(tree.__class__):
+        return _again(kind, [mapped(getattr(tree, name), leaf) for name in names])
     return leaf(tree)
 
 
 @cache
 def _names(kind: Any) -> tuple[str, ...]:
-    """Return the names of a dataclass's fields."""
-    return tuple([entry.name for entry in fields(kind)])
+    """Return the names of a dataclass's fields; none of another type."""
+    return tuple([entry.name for entry in fields(kind)]) if is_dataclass(kind) else ()
 
 
 def _again(kind: Any, parts: Iterable[object]) -> object:

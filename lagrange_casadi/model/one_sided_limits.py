@@ -245,15 +245,17 @@ def halved(same: Callable[[Array], Flags], low: Array, high: Array) -> tuple[Arr
 
 
 def called(function: ca.Function, *columns: Array) -> Array:
-    """The numbers (n, m) of a function of columns, column after column if they are a matrix."""
-    many = columns[0].shape[1]
+    """The numbers (n, m) of a function of columns, column after column if they are a matrix; one
+    column alone stands for all.
+    """
+    many = max(of.shape[1] for of in columns)
     if not many:
         return np.zeros((function.numel_out(0), 0))
     # Few sizes of batches, for each takes some milliseconds to make.
     size = 1 << (many - 1).bit_length()
     found = np.empty((size, function.numel_out(0)))
     buffer, call = _mapped(function, size).buffer()
-    given = [np.concatenate([of.T, of.T[:1].repeat(size - many, axis=0)]) for of in columns]
+    given = [np.concatenate([of.T, of.T[:1].repeat(size - len(of.T), axis=0)]) for of in columns]
     for number, rows in enumerate(given):
         buffer.set_arg(number, np.ascontiguousarray(rows).data)
     buffer.set_res(0, found.data)

@@ -26,6 +26,7 @@ from .loads import Force, Friction, LineLoad, Spring, Torque
 from .mechanism import Mechanism
 from .meshes import Transmission, Wrench
 from .motion_laws import Motion
+from .one_sided_limits import called
 
 EntryKind = Literal["coordinate", "x", "y", "z", "direction"]
 
@@ -155,7 +156,7 @@ class Equation(Graphs):
         if self.wrenches is None:
             yield from self.touches
             return
-        found = self.wrenches(moved()[0], list(self.p)).full()
+        found = called(self.wrenches, moved()[0], np.c_[[*self.p]])
         each = found.reshape(len(self.touches), 4, 2, 3, -1)
         for touch, ((at, to), along, apart, braking) in zip(self.touches, each, strict=True):
             yield replace(touch, centre=at, reach=to, along=along, apart=apart, braking=braking)
@@ -164,11 +165,11 @@ class Equation(Graphs):
         """The equation over instants and, of a constraint, its derivatives: a row each, from the
         places, rates and accelerations of entries, (3, entries, t).
         """
-        return np.asarray(self.values(*moved, t[None], list(self.p)).full())
+        return called(self.values, *moved, t[None], np.c_[[*self.p]])
 
     def slopes_at(self, moved: Array, t: Array) -> Array:
         """Derivatives by each entry, (entries, t)."""
-        return np.asarray(self.slopes(*moved[:2], t[None], list(self.p)).full())
+        return called(self.slopes, *moved[:2], t[None], np.c_[[*self.p]])
 
 
 @dataclass(frozen=True, eq=False)
@@ -206,7 +207,7 @@ class LoadLaw(Graphs):
 
     def at(self, moved: Array, t: Array) -> Array:
         """Numbers over instants, a row each, from what entries measure, (3, entries, t)."""
-        return np.asarray(self.values(*moved[:2], t[None], list(self.p)).full())
+        return called(self.values, *moved[:2], t[None], np.c_[[*self.p]])
 
 
 @dataclass(frozen=True, eq=False)

@@ -153,7 +153,7 @@ def all_actions(placed: Placed) -> Iterator[Action]:
     """Yield every force of joints, drives, loads and equations."""
     reported, declared = placed.reported, placed.declared
     for name, joint in declared.joints.items():
-        at, child, parent = placed.pins[name][0], joint.child.body, joint.parent.body
+        at, child, parent = placed.pin(name)[0], joint.child.body, joint.parent.body
         yield Action(
             f"reaction:{name}",
             child,
@@ -188,7 +188,7 @@ def all_actions(placed: Placed) -> Iterator[Action]:
 def _of_rotor(placed: Placed, name: str, motor: DriveNumbers) -> Iterator[Action]:
     """Action of a drive's rotor on the bodies of its joint, by its acceleration."""
     joint = placed.declared.joints[motor.coordinate]
-    at, near = placed.pins[joint.name][0], placed.bodies[joint.parent.body]
+    at, near = placed.pin(joint.name)[0], placed.bodies[joint.parent.body]
     _, rate, change = placed.reported.motion(joint.name)
     about = turn(near.axes, constant(joint.axes[0].direction))
     taken = motor.reflected * change + motor.spin * dot(about, near.spin[1])
@@ -227,7 +227,7 @@ def _held(placed: Placed, equation: Equation) -> Iterator[Action]:
             yield Action(
                 name,
                 joint.child.body,
-                placed.pins[joint_name][0],
+                placed.pin(joint_name)[0],
                 *placed.along(joint_name, axis, force),
                 joint.parent.body,
             )

@@ -30,9 +30,9 @@ def closure(placed: Placed) -> list[Residuals]:
     gaps: list[list[Array]] = [[], [], []]
     for name in placed.closing:
         points, axes, spins = placed.missed(name)
-        turns = most(axes.reshape(9, -1)), *map(size, spins)
-        for of_order, point, turned in zip(gaps, points, turns, strict=True):
-            of_order += [size(point), turned * length]
+        turns = most(axes), *size(spins)
+        for of_order, point, turned in zip(gaps, size(points), turns, strict=True):
+            of_order += [point, turned * length]
     for rotations, off in _of_motions(placed):
         for of_order, residual in zip(gaps, off, strict=True):
             of_order.append(residual * length if rotations else residual)
@@ -99,14 +99,14 @@ def _of_poses(placed: Placed) -> Iterator[Array]:
         if not declared.oriented(name):
             continue
         axes = reported.axes(name)
-        off = most((axes - body.axes).reshape(9, -1))
+        off = most(axes - body.axes)
         if not reported.space:
             known = reported.rounded(reported.outputs[Output("pose", name, "angle")])
             yield (off - known) * declared.size
             continue
         x, y, z = axes
         yield off * declared.size
-        yield most([resolve(axes, axis) for axis in axes] - GROUND) * declared.size
+        yield most(resolve(axes, axes) - GROUND) * declared.size
         yield size(cross(x, y) - z) * declared.size
         if name in reported.two_force_links and name in declared.beside:
             beside = constant(declared.beside[name])

@@ -5,7 +5,6 @@ work.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 
 import numpy as np
 
@@ -13,7 +12,7 @@ from ...base.arrays import Array
 from ...base.quantities import Output
 from ...model.description import Description
 from ...model.stated import Touch
-from .instant_vectors import NIL, cross, dot, most, size, turn
+from .instant_vectors import NIL, cross, dot, resolve, size, turn
 from .placing import Moving
 from .reported import Reported
 
@@ -64,17 +63,14 @@ def idle(touch: Touch, bodies: Mapping[str, Moving], turned: Array, fastest: Arr
 
     Its own bodies may rest while others move: a rack that rolls on a pinion at rest has no speed.
     """
-    residuals: list[Array] = []
-    sizes: list[Array] = []
-    for sign in (1.0, -1.0):
-        # What presses apart takes none either.
-        power = np.zeros_like(fastest)
-        for name, at, force, couple in actions(
-            replace(touch, slack=0.0), bodies[touch.carrier], np.array([sign]), 0.0
-        ):
-            body = bodies[name]
-            power += dot(force, body.speed_at(at)) + dot(couple, body.spin[0])
-            sizes += [size(force) * fastest, size(couple) * turned]
-        residuals.append(power)
-    residual, largest = most(residuals), float(np.max(most(sizes)))
-    return residual / largest if largest > 0.0 else residual
+    first, second, carrier = (bodies[one] for one in (touch.first, touch.second, touch.carrier))
+    at = carrier.at + turn(carrier.axes, np.reshape(touch.centre, (3, -1)))
+    speed = resolve(carrier.axes, first.speed_at(at) - second.speed_at(at))
+    rate = resolve(carrier.axes, first.spin[0] - second.spin[0])
+    residual, largest = np.zeros_like(fastest), np.zeros_like(fastest)
+    # What presses apart takes none either.
+    for wrench in (touch.along, touch.apart):
+        force, couple = (np.reshape(of, (3, -1)) for of in wrench)
+        residual += np.abs(dot(force, speed) + dot(couple, rate))
+        largest += size(force) * fastest + size(couple) * turned
+    return residual / (float(np.max(largest)) or 1.0)

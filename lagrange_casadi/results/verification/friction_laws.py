@@ -12,7 +12,7 @@ from ...base.arrays import Array
 from ...base.quantities import Output
 from ...model.description import JointNumbers, LoadNumbers
 from ..vector_sizes import most
-from .instant_vectors import carry, constant, resolve, size
+from .instant_vectors import constant, resolve, size, turn
 from .placing import Placed
 from .reported import Reported
 
@@ -181,7 +181,7 @@ def _pressing(placed: Placed, name: str, numbers: Mapping[str, float], rotates: 
     joint, reported = placed.declared.joints[name], placed.reported
     if "coulomb" in numbers:
         return lambda _: 1.0
-    axes = carry(placed.ends(name)[0].axes, constant(joint.triad))
+    axes = turn(placed.ends(name)[0].axes, constant(joint.triad))
     force, moment = (resolve(axes, reported.force("reaction", name, letter)) for letter in "fm")
     radius = numbers.get("radius", 0.0)
     if joint.kind == "screw" and "mu" in numbers:

@@ -13,6 +13,8 @@ from ...base.arrays import Array
 _ACROSS = np.cross(np.eye(3)[:, None], np.eye(3)).reshape(3, 9)
 """Vector products of each direction with all three."""
 
+_NEXT, _LAST = np.roll(np.arange(3), -1), np.roll(np.arange(3), 1)
+
 
 def constant(values: npt.ArrayLike) -> Array:
     """A vector or axes that are the same throughout."""
@@ -27,36 +29,36 @@ GROUND = constant(np.eye(3))
 
 
 def size(vector: Array) -> Array:
-    """The length (t,); no square of a component under- or overflows."""
-    x, y, z = vector
+    """Lengths (..., t) of vectors (..., 3, t); no square of a component under- or overflows."""
+    x, y, z = (vector[..., k, :] for k in range(3))
     found = np.hypot(x, y)
     return np.asarray(np.hypot(found, z) if z.any() else found)  # in a plane at half the cost
 
 
 def dot(a: Array, b: Array) -> Array:
-    """The scalar product (t,)."""
-    return np.asarray((a * b).sum(axis=0))
+    """The scalar product (..., t)."""
+    return np.asarray((a * b).sum(axis=-2))
 
 
 def cross(a: Array, b: Array) -> Array:
     """The vector product."""
-    (x, y, z), (u, v, w) = a, b
-    return np.array([y * w - z * v, z * u - x * w, x * v - y * u])
+    first, second = a.take(_NEXT, -2) * b.take(_LAST, -2), a.take(_LAST, -2) * b.take(_NEXT, -2)
+    return np.asarray(first - second)
+
+
+def across(vectors: Array) -> Array:
+    """Axes (..., 3, 3, t) that turn what is given on them into the vector product with it."""
+    return np.asarray(_ACROSS.T @ vectors).reshape(*vectors.shape[:-2], 3, 3, -1)
 
 
 def turn(axes: Array, vector: Array) -> Array:
-    """A vector that is given on axes."""
-    return np.asarray(np.einsum("kit,kt->it", axes, vector))
+    """Vectors, (..., 3, t), that are given on axes; or other axes."""
+    return np.asarray(np.einsum("kit,...kt->...it", axes, vector))
 
 
 def resolve(axes: Array, vector: Array) -> Array:
-    """A vector on axes."""
-    return np.asarray(np.einsum("kit,it->kt", axes, vector))
-
-
-def carry(axes: Array, other: Array) -> Array:
-    """Other axes that are given on axes."""
-    return np.asarray(np.einsum("kit,jkt->jit", axes, other))
+    """Vectors, (..., 3, t), on axes."""
+    return np.asarray(np.einsum("kit,...it->...kt", axes, vector))
 
 
 def about(direction: npt.ArrayLike, angle: Array) -> Array:

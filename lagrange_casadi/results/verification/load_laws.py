@@ -56,7 +56,7 @@ def _given(placed: Placed, name: str) -> Array:
 
 
 def _apart(placed: Placed, one: Array, other: Array) -> Array:
-    force, couple = map(size, one - other)
+    force, couple = size(one - other)
     return np.asarray(force + couple / placed.declared.size)
 
 

@@ -36,7 +36,7 @@ _BESIDE = 256.0
 _DOUBLES = numpy_arithmetic().operations
 _WHOLE = {ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_NOT, ca.OP_AND, ca.OP_OR}
 _WHOLE |= {ca.OP_SIGN, ca.OP_FLOOR, ca.OP_CEIL}
-_PERIODIC = REMAINDERS | {ca.OP_ATAN2}
+_DECIDED = _WHOLE | REMAINDERS | {ca.OP_ATAN2, ca.OP_COPYSIGN, ca.OP_IF_ELSE_ZERO}
 
 
 def long_doubles() -> Arithmetic:
@@ -135,9 +135,13 @@ def _deciding(longer: Arithmetic, known: Mapping[float, Any]) -> Arithmetic:
         return _Number(_longer(_common(found), longer), found)
 
     def rule(code: int) -> Callable[..., _Number]:
+        decided, operation = _DOUBLES[code], longer.operations[code]
+
         def apply(*values: _Number) -> _Number:
-            decision = _DOUBLES[code](*(value.deciding for value in values))
-            operands = [value.exact for value in values]
+            operands, deciding = zip(*values, strict=True)
+            decision = decided(*deciding)
+            if code not in _DECIDED:
+                return _Number(operation(*operands), decision)
             if code == ca.OP_COPYSIGN and values[0] is values[1]:
                 return values[0]  # a number that CasADi must not look into
             if code in _WHOLE:
@@ -148,10 +152,8 @@ def _deciding(longer: Arithmetic, known: Mapping[float, Any]) -> Arithmetic:
             if code == ca.OP_IF_ELSE_ZERO:
                 there = _common(values[0].deciding != 0.0)
                 return _Number(np.where(there, operands[1], 0.0), decision)
-            found = longer.operations[code](*operands)
-            if code in _PERIODIC:
-                period = turn if code == ca.OP_ATAN2 else abs(operands[1])
-                found = found - period * _common(np.rint(_real((found - decision) / period)))
+            found, period = operation(*operands), turn if code == ca.OP_ATAN2 else abs(operands[1])
+            found = found - period * _common(np.rint(_real((found - decision) / period)))
             return _Number(found, decision)
 
         return apply

@@ -8,8 +8,8 @@ it is reported (:mod:`.unplaced`).
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass
+from functools import cached_property, reduce
 
 import numpy as np
 import numpy.typing as npt
@@ -22,11 +22,10 @@ from .instant_vectors import (
     GROUND,
     NIL,
     about,
-    carry,
+    across,
     constant,
     cross,
     dot,
-    most,
     resolve,
     size,
     turn,
@@ -50,17 +49,16 @@ class Moving:
     @classmethod
     def of(cls, origin: Array, axes: Array, spin: Array) -> Moving:
         """The motion of a body by its axes and its angular velocity and acceleration."""
-        (rate, acceleration), directions = spin[:, :, None], axes.swapaxes(0, 1)
-        moves = cross(rate, directions)
-        changes = cross(acceleration, directions) + cross(rate, moves)
-        rotation = np.array(np.broadcast_arrays(directions, moves, changes))
-        return cls(origin, rotation.swapaxes(1, 2), spin)
+        moved, changed = across(spin)
+        moves = turn(moved, axes)
+        changes = turn(changed, axes) + turn(moved, moves)
+        return cls(origin, np.array([np.broadcast_to(axes, moves.shape), moves, changes]), spin)
 
     def holding(self, point: npt.ArrayLike, motion: Array, slide: Array = NO_SLIDE) -> Moving:
         """The motion of a body that turns like this, and whose point, which slides, moves as
         said.
         """
-        return replace(self, origin=motion + self.origin - self.point(point, slide))
+        return Moving(motion + self.origin - self.point(point, slide), self.rotation, self.spin)
 
     @property
     def at(self) -> Array:
@@ -75,7 +73,7 @@ class Moving:
     @cached_property
     def sizes(self) -> tuple[Array, Array, Array, Array]:
         """The sizes of speed, change, rate and acceleration."""
-        speed, change, rate, acceleration = map(size, (*self.origin[1:], *self.spin))
+        (speed, change), (rate, acceleration) = size(self.origin[1:]), size(self.spin)
         return speed, change, rate, acceleration
 
     def point(self, point: npt.ArrayLike, slide: Array = NO_SLIDE) -> Array:
@@ -84,10 +82,11 @@ class Moving:
         found = np.asarray(self.origin + arm)
         if not slide.any():
             return found
-        (place, moves, changes), (axes, rates, accelerations) = slide, self.rotation
-        speed = turn(axes, moves) + turn(rates, place)
-        change = turn(axes, changes) + 2.0 * turn(rates, moves) + turn(accelerations, place)
-        return np.asarray(found + np.array([turn(axes, place), speed, change]))
+        axes, rates, accelerations = self.rotation
+        place, moves = turn(rates, slide[:2])
+        found = found + turn(axes, slide)
+        found[1:] += place, 2.0 * moves + turn(accelerations, slide[0])
+        return found
 
     def speed_at(self, place: Array) -> Array:
         """The velocity of the body's point at a place."""
@@ -95,8 +94,9 @@ class Moving:
 
     def turning(self, inertia: Array) -> Array:
         """The moment that turns what has an inertia about its centre, on the body's axes."""
-        rate, acceleration = (resolve(self.axes, one) for one in self.spin)
-        return turn(self.axes, turn(inertia, acceleration) + cross(rate, turn(inertia, rate)))
+        spin = resolve(self.axes, self.spin)
+        momentum, change = turn(inertia, spin)
+        return turn(self.axes, change + cross(spin[0], momentum))
 
 
 AT_REST = Moving.of(NO_SLIDE, GROUND, NO_SLIDE[1:])
@@ -144,11 +144,6 @@ class Placed:
         return self.bodies[child.body].point(child.at)
 
     @cached_property
-    def pins(self) -> Mapping[str, Array]:
-        """Motions of all joints' points on their children."""
-        return {name: self.pin(name) for name in self.declared.joints}
-
-    @cached_property
     def rates(self) -> tuple[Array, Array, Array]:
         """The largest rate of turning at each instant, of joints too; and a speed and an
         acceleration that none exceeds.
@@ -156,17 +151,16 @@ class Placed:
         The acceleration is at least (largest speed)^2 / size: uniform motion has none but rounding.
         """
         reported, declared = self.reported, self.declared
-        angles = [
+        angles = (
             reported.motion(name)
             for name, kind in declared.coordinates.items()
             if kind == "angle" and name not in reported.unmeasured
-        ]
-        sizes = (np.broadcast_arrays(reported.t, *body.sizes) for body in self.bodies.values())
-        _, speeds, changes, turning, gains = zip(*sizes, strict=True)
-        turned = most([*turning, *(rate for _, rate, _ in angles)])
-        gained = most([*gains, *(change for _, _, change in angles)])
-        fastest = most(speeds) + turned * declared.extent
-        changed = most(changes) + (gained + turned**2) * declared.extent
+        )
+        sizes = [body.sizes for body in self.bodies.values()]
+        sizes += [(NIL[0], NIL[0], np.abs(rate), np.abs(change)) for _, rate, change in angles]
+        speed, change, turned, gained = (reduce(np.maximum, of) for of in zip(*sizes, strict=True))
+        fastest = speed + turned * declared.extent
+        changed = change + (gained + turned**2) * declared.extent
         return turned, fastest, np.maximum(changed, fastest**2 / declared.size)
 
     @property
@@ -263,22 +257,21 @@ def _relative(declared: Description, reported: Reported, joint: JointNumbers) ->
             carried = cross(spin[0], motion[1] * directions[name])
             spin = spin + motion[1:, None] * directions[name]
             spin[1] += carried
-            angle = reported.phase(Output("motion", name))
-            turned = carry(turned, about(axis.direction, angle))
+            turned = turn(turned, about(axis.direction, reported.phase(Output("motion", name))))
     # In a plane a slot turns about an axis that no coordinate describes.
     whole = (
         (declared.space or joint.kind != "slot")
         and reported.unmeasured.isdisjoint(axis.coordinate for axis in joint.axes)
         and all(declared.oriented(end.body) for end in joint.ends)
     )
-    return Relative(slide, carry(turned, constant(joint.turned)), spin, directions, whole)
+    return Relative(slide, turn(turned, constant(joint.turned)), spin, directions, whole)
 
 
 def _turned(motion: Relative, base: Moving) -> tuple[Array, Array]:
     """The axes of a joint's child, and their angular velocity and acceleration."""
-    spin = base.spin + [turn(base.axes, one) for one in motion.spin]
+    spin = base.spin + turn(base.axes, motion.spin)
     spin[1] += cross(base.spin[0], spin[0])
-    return carry(base.axes, motion.axes), spin
+    return turn(base.axes, motion.axes), spin
 
 
 def _outward(joint: JointNumbers, motion: Relative, base: Moving) -> Moving:
@@ -291,8 +284,8 @@ def _inward(joint: JointNumbers, motion: Relative, far: Moving) -> Moving:
     """The motion of a joint's parent by that of its child."""
     found = AT_REST
     if motion.whole:
-        axes = carry(far.axes, motion.axes.swapaxes(0, 1))
-        spin = far.spin - [turn(axes, one) for one in motion.spin]
+        axes = turn(far.axes, motion.axes.swapaxes(0, 1))
+        spin = far.spin - turn(axes, motion.spin)
         spin[1] += cross(far.spin[0], spin[0])
         found = Moving.of(AT_REST.origin, axes, spin)
     return found.holding(joint.parent.at, far.point(joint.child.at), motion.slide)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -121,10 +123,18 @@ class Reported:
         second = self.outputs[Output("motion", rotations[1])]
         return [] if np.min(np.cos(second) ** 2) > _NEAR else rotations
 
+    @cached_property
+    def members(self) -> Mapping[tuple[str, str], Mapping[str, Array]]:
+        """The outputs of each group and part by their members; of sections, the last one's."""
+        found: dict[tuple[str, str], dict[str, Array]] = defaultdict(dict)
+        for output, values in self.outputs.items():
+            found[output.group, output.part][output.member] = values
+        return found
+
     def motion(self, coordinate: str) -> Array:
         """The value of a coordinate, its rate and its acceleration, (3, t)."""
-        members = ("", "rate", "acceleration")
-        return np.array([self.outputs[Output("motion", coordinate, one)] for one in members], float)
+        moving = self.members["motion", coordinate]
+        return np.array([moving[one] for one in ("", "rate", "acceleration")], float)
 
     def phase(self, output: Output) -> Array:
         """An angle up to whole turns, as closely as it is known."""
@@ -150,10 +160,8 @@ class Reported:
         return self._vector(group, part, (letter + x for x in axes))
 
     def _vector(self, group: str, part: str, members: Iterable[str]) -> Array:
-        found = np.zeros((3, self.t.size))
-        for row, member in zip(found, members, strict=True):
-            row[:] = self.outputs.get(Output(group, part, member), 0.0)
-        return found
+        given, nothing = self.members[group, part], np.zeros_like(self.t)
+        return np.array([given.get(member, nothing) for member in members], float)
 
     def inside(self, link: str) -> tuple[Array, Array]:
         """The force and the moment of a link's section at its base, in the link's axes."""
@@ -161,8 +169,5 @@ class Reported:
         names = ("axial", "shear", "", "", "", "bending")
         if self.space:
             names = ("axial", "shear_y", "shear_z", "torsion", "bending_y", "bending_z")
-        found = np.zeros((2, 3, self.t.size))
-        for row, name in zip(found.reshape(6, -1), names, strict=True):
-            if name:
-                row[:] = law.at(name, base)[:, 0]
-        return found[0], found[1]
+        found = [(law.at(name, base) if name else base)[:, 0] for name in names]
+        return np.array(found[:3]), np.array(found[3:])
