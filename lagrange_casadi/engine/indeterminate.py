@@ -14,6 +14,11 @@ from ..base.arrays import Expression
 from ..base.quantities import Check, Column, Output
 from ..base.scalars import column
 
+_SOME = 577.0
+"""Value of what is open [N or N m] at which it is seen what changes with it: with nothing, a force
+that is zero has a size without a slope, and a square of slope zero.
+"""
+
 
 @dataclass(frozen=True, eq=False)
 class Forces:
@@ -37,7 +42,8 @@ class Forces:
         forces = column(map(ca.SX, acting.values()))
         slopes = ca.jacobian(forces, free)
         slopes, forces = (
-            ca.substitute(part, free, ca.SX.zeros(free.numel())) for part in (slopes, forces)
+            ca.substitute(part, free, value * ca.SX.ones(free.numel()))
+            for part, value in ((slopes, _SOME), (forces, 0.0))
         )
         doubted = {
             key: slopes[k, :]

@@ -20,6 +20,7 @@ from mechanisms import (
     parallelogram,
     pins_of,
     slider_crank,
+    standing_rod,
     truss_platform,
 )
 from packer import scene as packer
@@ -152,8 +153,9 @@ REFUSED = {
     "grows": (loaded(lambda q, w, t: 2 * q**2), "repeat after at most 4 turns of joint 'pin'"),
     "friction": (
         lambda: replace(packer(), wanted=["effort"]),
-        "but friction depends on its sign: 'rub'",
+        "but friction 'rub' depends on its sign",
     ),
+    "contact": (standing_rod, "but the margin of contact 'foot' is none; evaluate without"),
     "gear": (lambda: geared(0.7), "after at most 4 turns of joint 'first', but"),
     "iterated": (truss_platform, "expected a drive that can make whole revolutions"),
     "dead centre": (flat_parallelogram, "the loop closed by joint 'B' passes a dead centre"),

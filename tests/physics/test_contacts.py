@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from mechanisms import standing_rod
 
-from lagrange_casadi import Mechanism, Scene, evaluate
+from lagrange_casadi import Mechanism, Scene, evaluate, optimise
 from lagrange_casadi.errors import AssemblyError
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
@@ -38,16 +38,27 @@ def test_a_lost_contact_is_refused_where_forces_are_wanted(given, says):
 
 
 def test_a_contact_that_equilibrium_leaves_open_is_not_judged():
-    """How two feet share what pushes along the line between them is open."""
+    """How two feet push along the line between them is open, also where nothing else does."""
     m = Mechanism("table")
     top = m.link("top", length=1.0, mass=2.0)
     m.contact("left", top, friction=0.0, at=(0.0, 0.0))
     m.contact("right", top.tip, friction=0.0, at=(1.0, 0.0))
-    m.force("push", top, x=5.0)
+    m.output("square", m.results.reaction(m.joints["left"])[0] ** 2)
     m.torque("turn", top, m.parameter("turning", 5.0, "N m"))
     scene = Scene(m, {}, posture={"top": 0.0})
     solution = evaluate(scene)
     assert solution.output("left_normal") == pytest.approx(9.81 + 5.0)
-    assert np.isnan(solution.output("left_margin")).all()
+    assert np.isnan([solution.output("left_margin"), solution.output("square")]).all()
     with pytest.raises(AssemblyError, match="contact 'left' pulls"):
         evaluate(scene, parameters={"turning": -10.0})
+
+
+def test_no_search_calls_a_design_an_optimum_beside_those_whose_contacts_slide():
+    """Of a parameter alone no force is asked for, and contacts are judged all the same."""
+    asked = {"minimise": "mu", "over": {"mu": (0.01, 1.0)}, "starts": 1, "screen": 8}
+    found = optimise(standing_rod(), **asked)
+    assert not found.converged
+    assert found.start.ending == "a design beside it fails: a contact pulls or slides"
+    limited = optimise(standing_rod(), **asked, subject_to=["min:output:foot_margin >= 0"])
+    assert limited.converged
+    assert limited.objective == pytest.approx(found.objective, rel=1e-3)

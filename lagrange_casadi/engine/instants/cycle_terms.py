@@ -328,10 +328,12 @@ def cycle_of(program: Program, p: Array, rates: tuple[float, float]) -> Cycle:
     Raises :class:`DeclarationError`, with the reason, where there is none.
     """
     drive = Drive.of(program, p)
-    if sliding := program.checks("rest"):
+    reasons = [f"friction '{name}' depends on its sign" for name in program.checks("rest")]
+    reasons += [f"the margin of {part} is none" for part in program.checks("slides")]
+    if reasons:
         raise DeclarationError(
-            f"table: expected columns quadratic in the rate of joint '{drive.joint}', but friction"
-            " depends on its sign: " + ", ".join(f"'{name}'" for name in sliding)
+            f"table: expected columns quadratic in the rate of joint '{drive.joint}', but"
+            f" {', '.join(reasons)}; evaluate without a table"
         )
     for revolutions in range(1, TURNS + 1):
         course, values = drive.follow(2 * revolutions)

@@ -31,7 +31,7 @@ from .passed_dead_centres import Placed, dead_steps
 
 _SAMPLED = 4001
 _TURNING = (Status.OUT_OF_REACH, Status.DEAD_CENTRE, Status.PASSES_DEAD_CENTRE)
-"""Statuses where a cylinder may turn back."""
+"""Statuses where a cylinder may be at its longest or shortest."""
 
 
 @dataclass(frozen=True)
@@ -118,9 +118,12 @@ def words_of(program: Program, number: int, out: Array, most: Sequence[float], a
         it = Instance(part, program.data.closing(part), at, float(out[column]), most[k])
     words = rule.words.format(it=it)
     if rule.status in _TURNING:
-        where = "before" if rule.status == Status.OUT_OF_REACH else "here"
+        where = "before that" if rule.status == Status.OUT_OF_REACH else "there"
         for name in _cylinders(program.data.content, it.part.split(", ")):
-            words += f"; cylinder '{name}' turns back {where}: move its mount"
+            words += (
+                f"; cylinder '{name}' is at its longest or shortest {where}, and drives no further:"
+                " move its mount"
+            )
     return words
 
 

@@ -180,13 +180,14 @@ class Descent:
             self._note(following)
             back = 0
             while following.sampled is None and back < _HALVINGS:
-                # Loops do not close somewhere between the points: go back until they do, and look
-                # there from then on.
+                # Between the points loops do not close, or there is no result: go back until there
+                # is one, and look there from then on.
                 back += 1
                 x = (x + box.share(current.p)) / 2
                 following = self.evaluator.evaluate(box.all(x))
             if following.sampled is None:
-                self._better(current, None, "loops close nowhere near")
+                why = following.status.meaning if following.status else "loops do not close"
+                self._better(current, None, f"a design beside it fails: {why}")
                 return
             added = self._learn(held, closures, following, everything=back > 0)
             done = not back and self._settled(found, following)

@@ -209,7 +209,10 @@ class Question:
         """Make the engine that evaluates designs. Raises :class:`UnknownNameError` for a term
         without values.
         """
-        engine = DesignEngine.of(scene, self.wanted, method=self.method, timing=self.timing)
+        # Contacts hold whatever is minimised.
+        margins = [f"output:{name}_margin" for name in scene.mechanism.contacts]
+        wanted = [*self.wanted, *margins]
+        engine = DesignEngine.of(scene, wanted, method=self.method, timing=self.timing)
         for term in self.terms:
             if term.output is None:
                 term.of_parameters(engine.program.data)

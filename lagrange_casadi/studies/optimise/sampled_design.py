@@ -12,6 +12,7 @@ import numpy as np
 
 from ...base.arrays import Array
 from ...base.quantities import Output
+from ...base.status import Status
 from ...engine.codegen.peak_search import Listed
 from ..designs.engine import DesignEngine
 from ..designs.outcome import History
@@ -161,7 +162,8 @@ Signed = tuple[Point, float]
 
 @dataclass(frozen=True, eq=False)
 class EvaluatedDesign:
-    """A design after its evaluation: the value of every term, NaN without a result.
+    """A design after its evaluation: the value of every term, NaN without a result, and the
+    ``status`` by which there may be none.
 
     ``closure`` is the least square of the sine of a transmission angle, NaN without loops;
     ``closing`` by how much it is below its limit, relative to the limit. ``sampled`` and the local
@@ -170,6 +172,7 @@ class EvaluatedDesign:
 
     p: Array
     values: Mapping[Term, float]
+    status: Status
     sampled: SampledDesign | None = None
     closure: float = math.nan
     closing: float = -math.inf

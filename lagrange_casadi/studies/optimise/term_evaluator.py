@@ -63,8 +63,9 @@ class TermEvaluator:
     def _evaluated(
         self, p: Array, found: Outcome, row: int, sampled: SampledDesign | None
     ) -> EvaluatedDesign:
-        nothing = EvaluatedDesign(p, dict.fromkeys(self.terms, math.nan))
-        if found.status[row] != Status.OK:
+        status = Status(int(found.status[row]))
+        nothing = EvaluatedDesign(p, dict.fromkeys(self.terms, math.nan), status)
+        if status != Status.OK:
             return nothing
         closure, closing = math.nan, -math.inf
         if sampled is not None:
@@ -103,7 +104,7 @@ class TermEvaluator:
                 )
             else:
                 values[term] = signed[0][0].value if signed else math.nan
-        evaluated = EvaluatedDesign(p, values, sampled, closure, closing, points)
+        evaluated = EvaluatedDesign(p, values, status, sampled, closure, closing, points)
         return evaluated if evaluated.has_result else nothing
 
     def _points(self, sampled: SampledDesign, term: Term) -> list[Signed]:
