@@ -124,7 +124,7 @@ def profile_lift(
     PathError
         For a file that cannot be read.
     """
-    what, slides = "profile", follower.kind == "prismatic"
+    what, slides = "profile", mechanism.ownership.joint(follower).kind == "prismatic"
     smoothing = quantity(f"{what}: smoothing", smoothing, "m" if slides else "rad")
     layout = layout_of(what, mechanism, cam, follower, point, roller, flat, side)
     values = mechanism.values()
