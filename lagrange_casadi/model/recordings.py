@@ -254,6 +254,12 @@ def _recordings(
     """Read columns by name, and the unit of the times in s."""
     path, at = table.path, table.times(time)
     places = {name: table.place(column) for name, column in named.items()}
+    for name, k in places.items():
+        if k in at:
+            raise DeclarationError(
+                f"{path.name}: column {named[name]!r} has times; expected one of values, of columns"
+                f" {', '.join(table.names) or 'by number'}"
+            )
     stated = for_each(path.name, named, "coordinate of unit=", unit, None)
     units = {name: stated[name] or table.units[k] or "rad" for name, k in places.items()}
     turns = count_sizes(path.name, named, units, counts_per_turn)

@@ -161,6 +161,10 @@ RAMP_ROWS = "\n".join(f"{0.1 * k:g},{1.0 * k * k}" for k in range(8))
 REFUSED = {
     "column": ("t,q", RAMP_ROWS, {"value": "w"}, r"unknown column 'w'; valid: t, q"),
     "number": ("t,q", RAMP_ROWS, {"value": 3}, "column 3 is not one of its 2 columns, numbered"),
+    "times": (
+        "secs,nsecs,q", RAMP_ROWS.replace(",", ",0,"), {},
+        "column 2 has times; expected one of values, of columns secs, nsecs, q",
+    ),
     "two columns": (
         "t,q,q", RAMP_ROWS.replace("\n", ",0\n") + ",0", {"value": "q"},
         "expected one column 'q', got 2",
