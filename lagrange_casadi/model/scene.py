@@ -629,3 +629,8 @@ class Scene(Graphs):
 @lru_cache(maxsize=32)
 def _compliant(scene: Scene, elastic: Elastic) -> Scene:
     return replace(scene, elastic=elastic)
+
+
+def margins(scene: Scene) -> list[str]:
+    """Names of the margins of a scene's contacts, among its outputs."""
+    return [f"output:{name}_margin" for name in scene.mechanism.contacts]

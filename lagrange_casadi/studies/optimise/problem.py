@@ -19,7 +19,7 @@ from ...engine.identity import sources
 from ...engine.instants.evaluation_method import EvaluationMethod
 from ...engine.model_data import ModelData, template
 from ...errors import DeclarationError, UnknownNameError
-from ...model.scene import Scene
+from ...model.scene import Scene, margins
 from ...model.times import Times, Timing
 from ...results.strength.fatigue import lacking, strengths
 from ..designs.engine import DesignEngine
@@ -210,8 +210,7 @@ class Question:
         without values.
         """
         # Contacts hold whatever is minimised.
-        margins = [f"output:{name}_margin" for name in scene.mechanism.contacts]
-        wanted = [*self.wanted, *margins]
+        wanted = [*self.wanted, *margins(scene)]
         engine = DesignEngine.of(scene, wanted, method=self.method, timing=self.timing)
         for term in self.terms:
             if term.output is None:
