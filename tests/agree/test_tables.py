@@ -158,6 +158,10 @@ REFUSED = {
     "contact": (standing_rod, "but the margin of contact 'foot' is none; evaluate without"),
     "gear": (lambda: geared(0.7), "after at most 4 turns of joint 'first', but"),
     "iterated": (truss_platform, "expected a drive that can make whole revolutions"),
+    "reach": (
+        lambda: four_bar(lengths=(0.3, 0.35, 0.2)),
+        "the loop closed by joint 'B' cannot be closed, where O = 2.4",
+    ),
     "dead centre": (flat_parallelogram, "the loop closed by joint 'B' passes a dead centre"),
     "jump": (lambda: case("geneva"), r"'\S+' jumps near main = .*; evaluate without a table"),
     "engine": (lambda: case("engine"), r"an accuracy of 1e-09 is not possible; the best is \S+,"),
