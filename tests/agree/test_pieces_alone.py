@@ -59,6 +59,7 @@ class Kind(NamedTuple):
 
 KINDS = {
     "even": Kind(),
+    "even cells": Kind((0.0, 0.4, 1.0)),
     "tapered": Kind(terms=2),
     "cells": Kind((0.0, 0.3, 0.55, 1.0), 3),
     "loaded": Kind(stations=2),
