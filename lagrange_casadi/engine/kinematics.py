@@ -100,7 +100,7 @@ def solve(multibody: Multibody, posture: Mapping[str, float], start: Start) -> K
         )
     blocks = solving_order(multibody, solver.beginning(), solver.numbers)
     waiting: list[tuple[int, ...]] = []
-    for tried in range(_WAYS):
+    for left in reversed(range(_WAYS)):
         try:
             for block in blocks:
                 solver.close(block)
@@ -113,7 +113,7 @@ def solve(multibody: Multibody, posture: Mapping[str, float], start: Start) -> K
                 waiting += [
                     (*solver.branches, *(0,) * k, other) for other in reversed(range(1, len(modes)))
                 ]
-            if not waiting or tried == _WAYS - 1:
+            if not waiting or not left:
                 raise
             solver = _Solver(multibody, dict(posture), start, waiting.pop())
     if solver.undecided:

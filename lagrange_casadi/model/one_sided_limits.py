@@ -255,9 +255,13 @@ def called(function: ca.Function, *columns: Array) -> Array:
     size = 1 << (many - 1).bit_length()
     found = np.empty((size, function.numel_out(0)))
     buffer, call = _mapped(function, size).buffer()
-    given = [np.concatenate([of.T, of.T[:1].repeat(size - len(of.T), axis=0)]) for of in columns]
+    # The buffer has the places of numbers alone: they are kept here while it is called.
+    given = [
+        np.ascontiguousarray(np.r_[of.T, of.T[:1].repeat(size - len(of.T), axis=0)])
+        for of in columns
+    ]
     for number, rows in enumerate(given):
-        buffer.set_arg(number, np.ascontiguousarray(rows).data)
+        buffer.set_arg(number, rows.data)
     buffer.set_res(0, found.data)
     call()
     return np.ascontiguousarray(found[:many].T)

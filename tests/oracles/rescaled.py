@@ -26,10 +26,10 @@ _DIMENSIONS = {
 }
 _FIELDS = {
     **dict.fromkeys(("between", "centre", "couple", "length", "lift", "origin", "outlines"), "m"),
-    **dict.fromkeys(("pitch", "radius", "reach", "tip"), "m"),
+    **dict.fromkeys(("closed", "open", "pitch", "radius", "reach", "tip"), "m"),
     **dict.fromkeys(("value", "across"), "N m"),
     "mass": "kg",
-    "inertia": "kg m^2",
+    **dict.fromkeys(("inertia", "rotor_inertia"), "kg m^2"),
     "stiffness": "N/m",
     "damping": "N s/m",
     "stribeck": "m/s",
@@ -37,6 +37,16 @@ _FIELDS = {
     "gravity": "m/s^2",
 }
 """The units of fields of whatever part has them; other fields are numbers, names, or parts."""
+
+_ALONG = {
+    "viscous": ("N m s", "N s/m"),
+    "smooth": ("1/s", "m/s"),
+    "speed": ("1/s", "m/s"),
+    **dict.fromkeys(("coulomb", "effort"), ("N m", "N")),
+    "armature": ("kg m^2", "kg"),
+    "ratio": ("1", "1/m"),
+}
+"""The units of fields of what is along a joint's axis: an angle, and a slide."""
 
 _KEPT = ("accelerations", "beam", "fits", "loss", "mu", "name", "places", "rates", "static")
 _KEPT += ("symbol",)
@@ -49,9 +59,8 @@ def unit_of(part: Any, name: str) -> str:
     if name in ("x", "y", "z"):
         along, axes = hasattr(part, "between"), hasattr(part, "angle")
         return "N/m" if along else "1" if axes else "m"
-    if name in ("viscous", "smooth"):
-        slides = part.axis.kind == "slide"
-        return {"viscous": ("N m s", "N s/m"), "smooth": ("1/s", "m/s")}[name][slides]
+    if name in _ALONG and hasattr(part, "axis"):
+        return _ALONG[name][part.axis.kind == "slide"]
     if name == "phi" and part.transmission is not None:
         return "m"
     return _FIELDS.get(name, "1")
