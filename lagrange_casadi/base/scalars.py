@@ -1,4 +1,5 @@
-"""Sums, differences and products of numbers and expressions, columns of them, and functions.
+"""Sums, differences and products of numbers and expressions, columns of them, and functions, also
+of many columns of numbers.
 
 CasADi's operators first ask of each operand which of all kinds it is. That takes ten times as long
 as to write the operation down. Here there are two kinds alone: numbers, and expressions of scalars
@@ -7,11 +8,13 @@ as to write the operation down. Here there are two kinds alone: numbers, and exp
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterable, Mapping
 
 import casadi as ca
+import numpy as np
 
-from .arrays import Expression
+from .arrays import Array, Expression
 
 _SX, _binary = ca.SX, ca.SX.binary
 _ADD, _SUB, _MUL = ca.OP_ADD, ca.OP_SUB, ca.OP_MUL
@@ -76,3 +79,31 @@ def entries(whole: Expression) -> list[ca.SX]:
     """The entries of a column, of which there may be none."""
     found = as_expression(whole)
     return ca.vertsplit(found) if found.numel() else []
+
+
+def called(function: ca.Function, *columns: Array) -> Array:
+    """The numbers (n, m) of a function of columns, column after column if they are a matrix; one
+    column alone stands for all. Its inputs and its result are dense.
+    """
+    many = max(of.shape[1] for of in columns)
+    if not many:
+        return np.zeros((function.numel_out(0), 0))
+    # Few sizes of batches, for each takes some milliseconds to make.
+    size = 1 << (many - 1).bit_length()
+    found = np.empty((size, function.numel_out(0)))
+    buffer, call = _mapped(function, size).buffer()
+    # A buffer has addresses alone: the arrays are kept here while it is called.
+    given = [
+        np.ascontiguousarray(np.r_[of.T, of.T[:1].repeat(size - len(of.T), axis=0)])
+        for of in columns
+    ]
+    for number, rows in enumerate(given):
+        buffer.set_arg(number, rows.data)
+    buffer.set_res(0, found.data)
+    call()
+    return np.ascontiguousarray(found[:many].T)
+
+
+@functools.lru_cache(maxsize=64)
+def _mapped(function: ca.Function, size: int) -> ca.Function:
+    return function.map(size) if size > 1 else function

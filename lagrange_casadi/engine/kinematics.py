@@ -19,7 +19,6 @@ from typing import Any
 
 import casadi as ca
 
-from ..base.compensated import ROUNDING
 from ..base.scalars import column, graph
 from ..base.vectors import AXES, Vector
 from ..errors import AssemblyError, DeclarationError, MobilityError
@@ -36,14 +35,12 @@ from .screws import signed_volume
 from .sizes import reach
 from .spherical import SphericalCoordinates
 from .substitution import Expressions, Numbers
+from .verdicts import DEAD
 
 _WAYS = 32
 """Largest number of ways to close open loops that are tried if the first does not close the
 others.
 """
-
-_DEAD = 64.0 * ROUNDING["double"]
-"""Closure of a loop, the square of a sine, that is zero within rounding: see :mod:`.verdicts`."""
 
 _READ = {"angle": 12, "slide": 15}
 """Decimals of what is said of a coordinate [rad or m]."""
@@ -285,12 +282,12 @@ class _Solver:
         values = {
             signs: found
             for signs, (closure, *found) in every.items()
-            if closure > _DEAD and not any(map(math.isnan, found))
+            if closure > DEAD["double"] and not any(map(math.isnan, found))
         }
         if not values:
             what = (
                 "is at a dead centre"
-                if any(abs(closure) <= _DEAD for closure, *_ in every.values())
+                if any(abs(closure) <= DEAD["double"] for closure, *_ in every.values())
                 else "cannot be closed"
             )
             raise AssemblyError(

@@ -17,11 +17,11 @@ import casadi as ca
 import numpy as np
 
 from ..base.arrays import Array, Expression, Operand
+from ..base.scalars import called
 from ..base.symbolic import Graphs, symbolic
 from ..model.beams.beam import Beam, Notch
 from ..model.beams.properties import Properties, smaller
 from ..model.beams.shape import Shape, between
-from ..model.one_sided_limits import called
 
 FORCES = {
     False: ("axial", "shear", "bending"),

@@ -37,6 +37,9 @@ MISFIT: dict[Precision, float] = {"double": 1e-8, "single": 1e-5}
 its terms.
 """
 
+DEAD: dict[Precision, float] = {name: 64.0 * rounding for name, rounding in ROUNDING.items()}
+"""Closure of a loop, the square of a sine, that is zero within rounding."""
+
 OPEN: dict[Precision, float] = {"double": 1e-9, "single": 1e-4}
 _COUNTED = 1e-3
 """Limit for iterated loops that are closed by a fixed number of steps: zero is as small as their
@@ -66,7 +69,7 @@ class Tolerances:
     @property
     def zero(self) -> float:
         """Roundings below which a closure says nothing but that it is zero."""
-        return 64.0 * ROUNDING[self.precision]
+        return DEAD[self.precision]
 
     def residual(self, limits: Mapping[Precision, float]) -> float:
         """Limit of a residual that depends on how far loops are closed."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
@@ -11,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..base.arrays import Array, Flags, spread
+from ..base.scalars import called
 
 Numbers = npt.NDArray[np.intp]
 
@@ -242,31 +242,3 @@ def halved(same: Callable[[Array], Flags], low: Array, high: Array) -> tuple[Arr
         at = same(middle)
         low, high = np.where(at, middle, low), np.where(at, high, middle)
     return low, high
-
-
-def called(function: ca.Function, *columns: Array) -> Array:
-    """The numbers (n, m) of a function of columns, column after column if they are a matrix; one
-    column alone stands for all.
-    """
-    many = max(of.shape[1] for of in columns)
-    if not many:
-        return np.zeros((function.numel_out(0), 0))
-    # Few sizes of batches, for each takes some milliseconds to make.
-    size = 1 << (many - 1).bit_length()
-    found = np.empty((size, function.numel_out(0)))
-    buffer, call = _mapped(function, size).buffer()
-    # The buffer has the places of numbers alone: they are kept here while it is called.
-    given = [
-        np.ascontiguousarray(np.r_[of.T, of.T[:1].repeat(size - len(of.T), axis=0)])
-        for of in columns
-    ]
-    for number, rows in enumerate(given):
-        buffer.set_arg(number, rows.data)
-    buffer.set_res(0, found.data)
-    call()
-    return np.ascontiguousarray(found[:many].T)
-
-
-@functools.lru_cache(maxsize=64)
-def _mapped(function: ca.Function, size: int) -> ca.Function:
-    return function.map(size) if size > 1 else function

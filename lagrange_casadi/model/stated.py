@@ -14,7 +14,7 @@ import casadi as ca
 import numpy as np
 
 from ..base.arrays import Array, Expression
-from ..base.scalars import column
+from ..base.scalars import called, column
 from ..base.symbolic import Graphs, symbolic
 from ..base.templates import Template
 from ..base.vectors import ZERO
@@ -26,7 +26,6 @@ from .loads import Force, Friction, LineLoad, Spring, Torque
 from .mechanism import Mechanism
 from .meshes import Transmission, Wrench
 from .motion_laws import Motion
-from .one_sided_limits import called
 
 EntryKind = Literal["coordinate", "x", "y", "z", "direction"]
 

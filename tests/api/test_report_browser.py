@@ -434,6 +434,13 @@ def loose(one, end):
     one.run("new Promise((done) => setTimeout(done, 300))")
 
 
+def pin_pulled(one, way, by):
+    """Drag the pin of a crank of 0.1 m along it [m]; return the sheet's scale, and the pointer."""
+    start = np.array(one.run(ON_SCREEN.format(*(0.1 * way))))
+    scale = one.run("page.deck.stage.paper.camera.scale")
+    return scale, shift(one, start, by * scale * way * [1, -1])
+
+
 VALUE = "page.contents.parameters.find((one) => one.name === '{}').value"
 
 
@@ -459,9 +466,7 @@ def test_a_joint_is_dragged_and_the_parameters_of_its_place_follow(held_crank):
     """The crank's pin along the crank: r, forces, and what is copied; Escape goes back."""
     one, angle = held_crank(4), 25 * np.pi * 0.008 + np.pi / 200
     way = np.array([np.cos(angle), np.sin(angle)])
-    start = np.array(one.run(ON_SCREEN.format(*(0.1 * way))))
-    scale = one.run("page.deck.stage.paper.camera.scale")
-    end = shift(one, start, 0.03 * scale * way * [1, -1])
+    scale, end = pin_pulled(one, way, 0.03)
     r = one.run(VALUE.format("r"))
     assert r == pytest.approx(0.13, abs=1 / scale)
     assert one.run(ON_SCREEN.format(*(r * way))) == pytest.approx(end, abs=1.0)
@@ -487,9 +492,7 @@ def test_a_drag_keeps_to_bounds_and_draws_the_gap_of_what_does_not_close(held_cr
     for _ in range(5):
         one.run("document.querySelector('.views [title^=Farther]').click()")
     way = np.array([np.cos(angle), np.sin(angle)])
-    start = np.array(one.run(ON_SCREEN.format(*(0.1 * way))))
-    scale = one.run("page.deck.stage.paper.camera.scale")
-    end = shift(one, start, 0.15 * scale * way * [1, -1])
+    scale, end = pin_pulled(one, way, 0.15)
     r = one.run(VALUE.format("r"))
     assert r == pytest.approx(0.25, abs=1 / scale)
     found = one.run("page.live.engine.stand(30)[0]")

@@ -403,12 +403,14 @@ def _refuse_jumps(cycle: Cycle, values: Array, sizes: Array) -> None:
 
     some = np.argsort(apart(values[..., 1:], values[..., :-1]))[-_STEEPEST:]
     low, high = cycle.course.angles[some], cycle.course.angles[some + 1]
+    before, after = map(cycle.at, (low, high))
     for _ in range(_HALVINGS):
         middle = (low + high) / 2.0
-        before, here, after = map(cycle.at, (low, middle, high))
+        here = cycle.at(middle)
         first = apart(before, here) > apart(here, after)
         low, high = np.where(first, (low, middle), (middle, high))
-    jumps = np.abs(cycle.at(high) - cycle.at(low)) / least
+        before, after = np.where(first, (before, here), (here, after))
+    jumps = np.abs(after - before) / least
     if jumps.max() > _JUMP:
         _, column, k = np.unravel_index(np.argmax(jumps), jumps.shape)
         raise DeclarationError(
