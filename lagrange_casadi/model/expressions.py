@@ -4,38 +4,18 @@ from __future__ import annotations
 
 import math
 import re
-import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from types import ModuleType
 
 import casadi as ca
 
 from ..base.interpret import written_out
 from ..base.scalars import column
 from ..base.units import Unit, number, typed
-from ..errors import DeclarationError, NumberError, UnknownNameError, one_line, shown
+from ..errors import DeclarationError, NumberError, shown
 from .declared_parts import Expression
+from .mistakes import error_text
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
-
-_INSTEAD = {
-    "truth value of a CasADi": (
-        "a symbol has no truth value: use casadi.if_else(condition, a, b) for 'if',"
-        " casadi.logic_and and logic_or for 'and' and 'or', casadi.fmin and fmax for 'min' and"
-        " 'max'"
-    ),
-    r"'SX' and 'str'|'str' and 'SX'|str \(not \"SX\"\)|non-int of type 'SX'": (
-        "a text with a unit goes into no formula: write its number in SI units, as 0.1 for"
-        " '100 mm'; the entries of a list are multiplied one by one"
-    ),
-    "to_int not defined for SymbolicSX|not SX|'SX' object cannot be inter|to SX.__format": (
-        "a symbol has no number while a mechanism is declared"
-    ),
-    "'(SX|Link|Point|Ground|PointMass|Mechanism|Scene)' object is not callable": (
-        r"'\1' is no function: leave out the ()"
-    ),
-}
-"""Words on what can be done, by those of Python and CasADi about a symbol or a part."""
 
 
 def check_name(kind: str, name: str) -> None:
@@ -159,22 +139,6 @@ def expressed(
             f"{what} cannot be made as an expression of {names} (CasADi's functions, numbers"
             f" without units): {error_text(error)[:240]}"
         ) from None
-
-
-def error_text(error: BaseException) -> str:
-    """Message of an error in a line; for what Python cannot do with a symbol, what can be done, and
-    for a name that a module lacks, the nearest.
-    """
-    text = one_line(error)
-    for words, instead in _INSTEAD.items():
-        if found := re.search(words, text):
-            return found.expand(instead)
-    module = getattr(error, "obj", sys.modules.get(str(getattr(error, "name", ""))))
-    lacking = re.search(r"(?:import name|attribute) '?(\w+)", text)
-    if isinstance(module, ModuleType) and lacking:
-        place, names = module.__name__, [name for name in dir(module) if name[0] != "_"]
-        return str(UnknownNameError(f"name in {place}", lacking[1], names, f"dir({place})"))
-    return f"{type(error).__name__}{text and ': '}{text}"
 
 
 def plain(value: Expression) -> Expression:

@@ -25,7 +25,7 @@ from typing import TypeVar
 from ..base.arguments import public
 from ..base.shipped_cases import shipped_cases
 from ..errors import CaseError, LagrangeCasadiError, shown
-from ..model.expressions import error_text
+from ..model.mistakes import error_text
 from ..model.scene import Scene
 from ..results.store.specs import Spec, dump_specs, parse_specs
 
