@@ -301,6 +301,17 @@ def _in_order(parts: Sequence[Part], loops: Sequence[LoopEquations]) -> list[Par
     return found
 
 
+def row_units(multibody: Multibody, rows: Sequence[Equation]) -> Expression:
+    """Factors by which equations are of one size, a column: a user's constraint is a number of any
+    size; 1 for those of joints and transmissions, which are beside each other as they are.
+    """
+    alike = {loop.name for loop in multibody.loop_equations if not loop.declared}
+    alike |= {one.name for one in multibody.mechanism.constraints.values() if one.transmission}
+    if len(rows) == 1 or alike.issuperset(equation.loop.name for equation in rows):
+        return 1
+    return ca.DM([1.0 / equation.unit for equation in rows])
+
+
 def _forms(
     multibody: Multibody,
     rows: Sequence[Equation],
@@ -317,7 +328,14 @@ def _forms(
     def verified(forms: Sequence[ClosedForm]) -> bool:
         return solves(forms, beside_units, sampling)
 
-    form = solve_loop(phi, unknown, sampling, verified, two_force_link=two_force_link)
+    form = solve_loop(
+        phi,
+        unknown,
+        sampling,
+        verified,
+        units=row_units(multibody, rows),
+        two_force_link=two_force_link,
+    )
     forms: tuple[ClosedForm, ...] = (form,) if form is not None else ()
     if (
         not forms

@@ -116,8 +116,10 @@ class Iterated:
             ca.SX(expression), axes, column(axes_of(self.parts[k]) for k in self.sphericals)
         )
 
-    def step(self, residuals: ca.SX) -> tuple[ca.SX, ca.SX]:
-        """Newton correction of the symbols, and its size; a large one is shortened."""
+    def step(self, residuals: ca.SX, units: Expression) -> tuple[ca.SX, ca.SX]:
+        """Newton correction of the symbols, and its size; a large one is shortened. By their
+        ``units`` the residuals are of one size.
+        """
         slope = ca.jacobian(
             residuals,
             column(
@@ -134,7 +136,7 @@ class Iterated:
             slope = self.placed(
                 slope @ ca.diagcat(*(turned.get(k, ca.SX(1)) for k in range(len(self.parts))))
             )
-        correction = -LinearSystem.of(slope).solve(self.placed(residuals))
+        correction = -LinearSystem.of(slope, units).solve(self.placed(residuals))
         relative = ca.mmax(ca.fabs(correction / column(self.scales)))
         # Not fmin(1, limit / relative): where the loops are closed, its derivative would be 0 times
         # infinity.

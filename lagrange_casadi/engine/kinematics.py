@@ -23,7 +23,7 @@ from ..base.scalars import column, graph
 from ..base.vectors import AXES, Vector
 from ..errors import AssemblyError, DeclarationError, MobilityError
 from ..model.directions import most_across
-from .blocks import Block, solving_order
+from .blocks import Block, row_units, solving_order
 from .iteration import Iterated, NewtonLoop, Start, place_roughly
 from .linear import LinearSystem
 from .loop_turns import Guide
@@ -534,7 +534,8 @@ class _Solver:
         if not self.residuals:
             return None
         residuals = self.found.put_into(column(block.residual for block in self.residuals))
-        correction, relative = self.iterated.step(residuals)
+        rows = [equation for block in self.residuals for equation in block.equations]
+        correction, relative = self.iterated.step(residuals, row_units(self.multibody, rows))
         mechanism = self.multibody.mechanism
         inputs = {"z": self.iterated.symbols, "t": mechanism.time, "d": self.d}
         inputs["p"] = mechanism.symbols

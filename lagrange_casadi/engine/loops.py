@@ -71,15 +71,17 @@ def solve_loop(
     sampling: Sampling,
     verified: Verified,
     *,
+    units: Expression = 1,
     two_force_link: bool = False,
 ) -> ClosedForm | None:
     """The closed form of Phi = 0 for some unknown ones of all coordinates, or None where there is
     none that was ``verified``.
 
-    Phi of a ``bar`` is half of a square, and may be one of the unknown.
+    Phi of a ``bar`` is half of a square, and may be one of the unknown. By the factors ``units`` [a
+    column, or one for all] equations are beside each other.
     """
     form = _spanned(phi, unknown, sampling) if two_force_link and len(unknown) == 1 else None
-    form = form or _matching(phi, unknown, sampling)
+    form = form or _matching(phi, unknown, sampling, units)
     if form is None:
         return None
     form = replace(form, unknown=tuple(unknown))
@@ -194,13 +196,15 @@ def _askew(
     )
 
 
-def _matching(phi: ca.SX, unknown: Sequence[Coordinate], sampling: Sampling) -> ClosedForm | None:
+def _matching(
+    phi: ca.SX, unknown: Sequence[Coordinate], sampling: Sampling, units: Expression = 1
+) -> ClosedForm | None:
     """The closed form of the pattern that the equations have; None where they have none."""
     kinds = "".join(sorted(c.kind[0] for c in unknown))
     if phi.numel() != len(unknown):
         return None
     if ca.depends_on(phi, column(c.value for c in unknown if c.kind == "angle")):
-        return _tied(phi, unknown)
+        return _tied(phi, unknown, units)
     if kinds == "a":
         return _one_direction(phi, unknown[0])
     if kinds == "aa":
@@ -211,7 +215,7 @@ def _matching(phi: ca.SX, unknown: Sequence[Coordinate], sampling: Sampling) -> 
         return (
             replace(form, variables=form.variables[::-1]) if form and unknown[0] is slide else form
         )
-    return _slides(phi, unknown) if set(kinds) == {"s"} else None
+    return _slides(phi, unknown, units) if set(kinds) == {"s"} else None
 
 
 def solves(forms: Sequence[ClosedForm], phi: ca.SX, sampling: Sampling) -> bool:
@@ -377,7 +381,7 @@ def _direction_and_slide(
     return ClosedForm((_variables(direction), place), closure, (branch,))
 
 
-def _tied(phi: ca.SX, unknown: Sequence[Coordinate]) -> ClosedForm | None:
+def _tied(phi: ca.SX, unknown: Sequence[Coordinate], units: Expression) -> ClosedForm | None:
     """Angles that count turns, and slides, that follow others, as in a train of gears; of several,
     by their volume.
     """
@@ -388,7 +392,7 @@ def _tied(phi: ca.SX, unknown: Sequence[Coordinate]) -> ClosedForm | None:
         return None
     if len(unknown) == 1:
         return ClosedForm((_with_sine(unknown[0], -affine[1] / affine[0]),))
-    system = LinearSystem.of(affine[0])
+    system = LinearSystem.of(affine[0], units)
     values = ca.vertsplit(system.solve(-affine[1]))
     return ClosedForm(
         tuple(_with_sine(c, value) for c, value in zip(unknown, values, strict=True)),
@@ -400,7 +404,7 @@ def _with_sine(coordinate: Coordinate, value: Expression) -> Expression:
     return value if coordinate.kind == "slide" else ca.vertcat(ca.cos(value), ca.sin(value), value)
 
 
-def _slides(phi: ca.SX, unknown: Sequence[Coordinate]) -> ClosedForm | None:
+def _slides(phi: ca.SX, unknown: Sequence[Coordinate], units: Expression) -> ClosedForm | None:
     """Slides along lines that none of them turns; of several, the closure is the square of the
     volume that their slopes span.
     """
@@ -408,7 +412,7 @@ def _slides(phi: ca.SX, unknown: Sequence[Coordinate]) -> ClosedForm | None:
     affine = _affine(phi, symbols, symbols)
     if affine is None:
         return None
-    system = LinearSystem.of(affine[0])
+    system = LinearSystem.of(affine[0], units)
     places = system.solve(-affine[1])
     return ClosedForm(
         tuple(ca.vertsplit(places)), _square(system.volume) if len(unknown) > 1 else None

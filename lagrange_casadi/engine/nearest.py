@@ -87,7 +87,7 @@ class Nearest:
 
     def note(self, state: State) -> None:
         """Take the coordinates of a state for the numbers of the mechanism's symbols."""
-        values = self.released.placed(*state[:2]).full().ravel()
+        values = self.released.placed(*state).full().ravel()
         self.numbers.note(self.released.variables, values.tolist())
 
     @cached_property
@@ -240,6 +240,8 @@ class Nearest:
             residual, slope = self.released.at(state)
             _, multipliers = self._gradient(residual, slope[:, self.free], closed, left)
             wide = float(np.linalg.norm(residual[left]))
+            if wide == 0.0:
+                return float(state[3][k])
             by_value = self._by_parameters(*state).full()[:, k]
             rate = float((residual * left / wide + multipliers / wide) @ by_value)
             if abs(rate) * size < _WEAK:

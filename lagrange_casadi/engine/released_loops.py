@@ -40,10 +40,10 @@ class ReleasedLoops:
     mechanism's extent, and so are gaps; a constraint is beside its slopes where it starts.
 
     ``gaps(u, q, *inputs)`` gives the equations and their derivatives by u; ``turned(u, q)`` the
-    quaternions after the small rotations u of balls, which ``resting`` marks; ``placed(u, q)`` the
-    coordinates' ``variables``. ``residuals`` are the equations over ``given``, the symbols of u and
-    q and the inputs. ``first`` is the state at the start, and ``sizes`` are the units of u. What is
-    below ``slack`` may be the rounding of axes and places.
+    quaternions after the small rotations u of balls, which ``resting`` marks;
+    ``placed(u, q, *inputs)`` the coordinates' ``variables``. ``residuals`` are the equations over
+    ``given``, the symbols of u and q and the inputs. ``first`` is the state at the start, and
+    ``sizes`` are the units of u. What is below ``slack`` may be the rounding of axes and places.
     """
 
     gaps: Any
@@ -105,7 +105,7 @@ class ReleasedLoops:
                 [free, quaternion],
                 [column(turn(turned[spherical], local[spherical]) for spherical in turned)],
             ),
-            ca.Function("placed", given[:2], [column(placed)]),
+            ca.Function("placed", given, [column(placed)]),
             column(variables),
             residuals,
             given,

@@ -43,6 +43,8 @@ SPATIAL = [
 ]
 ROUNDED = 1e-10
 """Of the largest quantity of its kind: iterated loops are closed by other roundings."""
+AT_REST = 1e-15
+"""Rates and accelerations [SI] of mechanisms of about a metre that stand still."""
 MANY_DIGITS = 1.0 + 2.0**-20 / 3.0
 """Instants between ends of few decimals are rounded to decimals, which other units do not share."""
 
@@ -79,7 +81,7 @@ def assert_the_same(scene, units, keywords=None, rescaled=None):
             size = units.of(scene, here, output)
             again = there.outputs[output] / size
             exact &= np.array_equal(again, values, equal_nan=True)
-            atol = ROUNDED * peaks[here.unit(output)]
+            atol = max(ROUNDED * peaks[here.unit(output)], AT_REST * (output.group == "motion"))
             np.testing.assert_allclose(again, values, rtol=0, atol=atol, err_msg=str(output))
     for output, error in here.errors.items():
         if exact and output in here.outputs and output.group != "output":
@@ -113,9 +115,12 @@ def test_random_mechanisms_do_not_depend_on_units(seed):
     assert_drawn_the_same(seed)
 
 
-@pytest.mark.parametrize("seed", [9, 12, 21, 27, 41])
+@pytest.mark.parametrize("seed", [9, 12, 21, 27, 41, 468, 687, 835, 863, 870, 997])
 def test_nor_do_these_that_did(seed):
-    """By a misfit, a dead centre, a rank twice, and a bar between slots at a steady rate."""
+    """By a misfit, a dead centre, a rank twice, and a bar between slots at a steady rate; a length
+    with which a constraint holds exactly, constraints of another size beside joints, slides askew
+    by a parameter, and rest.
+    """
     assert_drawn_the_same(seed)
 
 

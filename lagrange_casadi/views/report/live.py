@@ -151,7 +151,7 @@ def _posture(nearest: Nearest) -> ca.Function:
     u, q, t, p = released.given
     ends = (ends_of(multibody, loop) for loop in multibody.loop_equations if not loop.declared)
     placed = ca.substitute(
-        column([nearest.placed, *ends]), released.variables, released.placed(u, q)
+        column([nearest.placed, *ends]), released.variables, released.placed(*released.given)
     )
     slopes = ca.densify(ca.jacobian(released.residuals, u))
     found = column([released.residuals, ca.vec(slopes.T), placed, released.turned(u, q)])
