@@ -3,6 +3,7 @@ lines that make a link of what reaches there, and sections where there are none.
 """
 
 import re
+from itertools import product
 
 import numpy as np
 import pytest
@@ -17,12 +18,14 @@ from lagrange_casadi.motion import polynomial
 pytestmark = pytest.mark.usefixtures("interpreted")
 
 
-def shelf(x, length):
-    """A lump on a level arm, without a mass of its own; both are parameters."""
+def shelf(x, length, parameters=True):
+    """A lump on a level arm, without a mass of its own; both are parameters, or numbers."""
     m = Mechanism("shelf")
-    arm = m.link("arm", length=m.parameter("l", length, "m"), mass=0.0)
+    if parameters:
+        length, x = m.parameter("l", length, "m"), m.parameter("x", x, "m")
+    arm = m.link("arm", length=length, mass=0.0)
     m.revolute("O", m.ground, arm)
-    place = arm.at(m.parameter("x", x, "m"))
+    place = arm.at(x)
     m.weld("lump", place, m.point_mass("mass", 2.0))
     m.force("push", place, y=-1.0)
     return Scene(m, {"O": polynomial(0.0)}, t=(0.0, 1.0, 3), xi=(0.0, 1.0, 3))
@@ -36,8 +39,9 @@ def test_a_station_that_misses_an_end_by_rounding_is_there(parts):
     """
     forward, backward = (sum(part / 1000 for part in way) for way in (parts, parts[::-1]))
     weight = 2.0 * 9.81 + 1.0
-    for x, length in ((forward, backward), (backward, forward), (sum(parts) / 1000, forward)):
-        section = evaluate(shelf(x, length)).section("arm")
+    ways = ((forward, backward), (backward, forward), (sum(parts) / 1000, forward))
+    for (x, length), parameters in product(ways, (True, False)):
+        section = evaluate(shelf(x, length, parameters)).section("arm")
         np.testing.assert_allclose(section.shear, -weight, rtol=1e-14)
         moments = -weight * length * np.array([1.0, 0.5, 0.0])
         np.testing.assert_allclose(section.bending[0], moments, rtol=1e-14, atol=1e-13 * length)

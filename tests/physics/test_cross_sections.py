@@ -104,6 +104,24 @@ def test_walls_are_the_polygon_of_their_outline(kind):
         )
 
 
+@pytest.mark.parametrize(
+    ("kind", "along_y", "along_z"),
+    [
+        ("i_section", (H - TF) * TW, 5 / 6 * 2 * B * TF),
+        ("t_section", H * TW, 5 / 6 * B * TF),
+        ("c_section", (H - TF) * TW, 5 / 6 * 2 * B * TF),
+        ("box", 2 * (H - TF) * TW, 2 * (B - TW) * TF),
+        ("hollow_section", 2 * (H - TW) * TW, 2 * (B - TW) * TW),
+    ],
+)
+def test_walls_along_a_force_carry_it(kind, along_y, along_z):
+    """Areas of Timoshenko's beam, as books have them: webs between the middles of flanges, of
+    flanges five sixths, of boxes the walls.
+    """
+    found = shapes()[kind].properties()
+    assert (found.shear_y, found.shear_z) == pytest.approx((along_y, along_z), rel=1e-12)
+
+
 def test_shear_in_the_middle_of_a_polygon_is_that_of_its_shape():
     """Along both axes: a rectangle's, half as much again as the mean."""
     corners = [(H / 2, B / 2), (-H / 2, B / 2), (-H / 2, -B / 2), (H / 2, -B / 2)]
