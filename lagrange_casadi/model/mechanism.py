@@ -21,7 +21,7 @@ from ..base.drawn import Drawing
 from ..base.methods import method
 from ..base.symbolic import symbolic
 from ..base.tables import FORCE, MOMENT
-from ..base.units import Number, quantity
+from ..base.units import Number, quantity, typed
 from ..base.vectors import dot, minus, norm, times
 from ..errors import DeclarationError
 from .beams.beam import Beam
@@ -129,7 +129,7 @@ class Mechanism(Declaration):
         self,
         name: str,
         default: Number,
-        unit: str = "1",
+        unit: str = "",
         *,
         low: Number = -math.inf,
         high: Number = math.inf,
@@ -142,8 +142,8 @@ class Mechanism(Declaration):
             A letter, then letters, digits or underscores.
         default : float or str
             Its value, in ``unit``, or a text with its unit such as ``"45 deg"`` or ``"5 kN"``.
-        unit : str
-            Its unit, by default none.
+        unit : str, optional
+            Its unit; by default that of the text, in SI, or none.
         low, high : float or str
             Its range, ends included.
 
@@ -161,6 +161,7 @@ class Mechanism(Declaration):
         """
         self.ownership.free("parameter", name, self.parameters)
         check_line(f"parameter '{name}': its unit", unit)
+        unit = unit or typed(default)[1] or "1"
         default, low, high = (
             quantity(f"parameter '{name}'", x, unit, finite=False) for x in (default, low, high)
         )

@@ -416,6 +416,17 @@ def test_numpys_functions_of_symbols_are_what_they_are_of_numbers(function):
     np.testing.assert_allclose(load, expected, rtol=1e-15, atol=1e-15)
 
 
+def test_a_parameter_has_the_unit_of_its_text():
+    m = Mechanism("press")
+    for name, text in (("speed", "1500 rpm"), ("gap", "5 mm"), ("lean", "90 deg"), ("count", 3.0)):
+        m.parameter(name, text)
+    units = {name: one.unit for name, one in m.parameters.items()}
+    assert units == {"speed": "rad/s", "gap": "m", "lean": "rad", "count": "1"}
+    assert m.parameters["gap"].default == 0.005
+    with pytest.raises(DeclarationError, match=r"'5 kN' is a force; expected a length \[m\]"):
+        m.parameter("reach", "5 mm", high="5 kN")
+
+
 def test_designs_of_texts_are_in_the_units_of_their_parameters(tmp_path):
     scene, listed = crank(), tmp_path / "listed.csv"
     swept = sweep(scene, {"p": ["350 kPa", 4.0, "0.5 MPa"]}, out=tmp_path / "x.h5")
