@@ -30,9 +30,10 @@ from ...errors import DeclarationError
 from ..constraints import Constraint
 from ..declared_parts import Body, Expression, PitchCircles, Point
 from ..mechanism import Mechanism
-from ..meshes import FITTING, Fit, Loss, Mesh, Transmission, Wrench
-from .courses import along, courses_on, fits_of, size
-from .ranges import at_least, positive, share
+from ..meshes import FITTING, Loss, Mesh, Transmission, Wrench
+from .contact import output_loss, touching
+from .courses import along, courses_on, keep_on_axis, size
+from .fits import Fits
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -99,34 +100,31 @@ def belt(
         pulleys touch, a negative preload, and an efficiency outside 0 to 1.
     """
     what, ownership = f"belt '{name}'", mechanism.ownership
-    ownership.free("constraint", name, mechanism.constraints)
     ends = ownership.point(what, first), ownership.point(what, second)
-    carrier = None if carrier is None else ownership.point(what, carrier).body
     one, two = courses_on(mechanism, what, *ends, carrier, rack=False)
     if not isinstance(radii, (list, tuple)) or len(radii) != 2:
         raise DeclarationError(f"{what}: expected 2 radii, got {radii!r}")
     r1, r2 = (ownership.expression(f"{what}: radii", radius, "m") for radius in radii)
-    fits = [fit for radius in (r1, r2) for fit in positive(what, "radii", radius)]
-    tension = ownership.expression(f"{what}: preload", preload, "N")
-    fits += at_least(what, "preload [N] must not be negative", tension, 0.0, tension)
     number = ownership.at_defaults
+    fits = Fits(what, number)
+    fits.positive("radii", r1)
+    fits.positive("radii", r2)
+    tension = ownership.expression(f"{what}: preload", preload, "N")
+    fits.at_least("preload [N] must not be negative", tension, 0.0, tension)
     u, v, away = one.axis, two.axis, minus(two.place, one.place)
     beside, scale = dot(away, u), r1 + r2
-    if size(cross(u, v), number) > FITTING or abs(number(beside)) > FITTING * number(scale):
+    if size(cross(u, v), number) > FITTING:
         raise DeclarationError(
             f"{what}: expected pulleys in one plane, which turn about parallel axes"
         )
-    distance, reach = norm(away), r1 + r2 if crossed else ca.fabs(ca.SX(r1 - r2))
-    if not number(distance) > number(reach):
-        which = "the sum" if crossed else "the difference"
-        raise DeclarationError(
-            f"{what}: its centres are {number(distance):.6g} m apart; expected more than"
-            f" {which} of its radii, {number(reach):.6g} m"
-        )
     words = "its pulleys are offset by {got} m along their axes; expected {meant} m"
-    fits.append(Fit(words, beside, 0.0, scale))
-    words = "its centres are {got} m apart, too near for the radii"
-    fits.append(Fit(words, distance, ca.fmax(distance, reach), scale))
+    fits.same(words, beside, 0.0, scale)
+    distance = norm(away)
+    which, reach = ("sum", scale) if crossed else ("difference", ca.fabs(r1 - r2))
+    words = (
+        f"its centres are {{got}} m apart; expected more than the {which} of its radii, {{meant}} m"
+    )
+    fits.same(words, distance, ca.fmax(distance, reach + 2 * FITTING * scale), scale)
     e = along(away, distance)
     # The sine of the angle between a strand and the line of the centres, where the strands lead
     # apart.
@@ -140,23 +138,21 @@ def belt(
     loss = None
     if efficiency is not None:
         value = ownership.expression(f"{what}: efficiency", efficiency)
-        fits += share(what, value)
+        fits.share(value)
         sideways = times((r1 - r2 if crossed else r1 + r2) / distance, cross(u, e))
         mesh = replace(mesh, braking=Wrench(sideways, times(r1, u)))
         loss = Loss(f"{name}:loss", (1 - value) / (1 + value), 0.0, one.rotations)
+    phi = r1 * one.displacement(mechanism) + other * two.displacement(mechanism) - ahead
+    keep_on_axis(fits, one, two)
+    transmission = Transmission(name, (mesh,), 2 * tension, tuple(fits.found), loss)
+    constraint = touching(mechanism, name, phi, transmission=transmission)
     mechanism.pitch_circles[name] = PitchCircles(
         one.carrier.name, (one.place, two.place), (u, v), (r1, r2), belt=True, crossed=crossed
     )
-    phi = r1 * one.displacement(mechanism) + other * two.displacement(mechanism) - ahead
-    fits += [fit for course in (one, two) for fit in fits_of("its centre", course)]
-    transmission = Transmission(name, (mesh,), 2 * tension, tuple(fits), loss)
-    constraint = replace(mechanism.constraint(name, phi), transmission=transmission)
-    mechanism.constraints[name] = constraint
     force = ca.fabs(mechanism.results.multiplier(constraint))
     whole = ca.fmax(2 * tension, force)
     mechanism.output(f"{name}_tight", (whole + force) / 2, unit="N")
     mechanism.output(f"{name}_slack", (whole - force) / 2, unit="N")
     if loss is not None:
-        rate = sum((sign * mechanism.rate(joint) for sign, joint in loss.rotations), ca.SX(0))
-        mechanism.output(f"{name}_loss", 2 * r1 * loss.arm * force * ca.fabs(rate), unit="W")
+        output_loss(mechanism, constraint, loss, 2 * r1)
     return Belt(constraint, -(r1 / other))

@@ -17,6 +17,7 @@ from ..joints import Joint
 from ..mechanism import Mechanism
 from ..meshes import FITTING, Fit
 from ..validity import Evaluator
+from .fits import Fits
 
 _KINDS = ("revolute", "prismatic", "weld")
 _AS_IT_IS = Rotation()
@@ -81,6 +82,7 @@ def courses_on(
         if name in found[1] and not found[0][name].slides and (rack or not found[1][name].slides)
     ]
     if carrier is not None:
+        carrier = mechanism.ownership.point(what, carrier).body
         both = [name for name in both if name == carrier.name]
     if not both:
         where = f"'{carrier.name}'" if carrier is not None else "one body"
@@ -97,17 +99,16 @@ def courses_on(
     return found[0][nearest], found[1][nearest]
 
 
-def fits_of(what: str, course: Course) -> list[Fit]:
-    """Condition that the axes of all joints of a course are one, for other parameters too."""
-    words = (
-        f"{what} and joints {', '.join(joint.name for joint in course.joints)} must be on one axis,"
-        " {got} m off"
-    )
-    return [
-        Fit(words, off, 0.0, 1.0)
-        for off in course.shifted
-        if isinstance(off, ca.SX) and not off.is_constant()
-    ]
+def keep_on_axis(fits: Fits, *courses: Course) -> None:
+    """Note that the axes of all joints of a course are one, for other values of parameters too."""
+    for course in courses:
+        joints = ", ".join(joint.name for joint in course.joints)
+        words = f"its centre and joints {joints} must be on one axis, {{got}} m off"
+        fits.found.extend(
+            Fit(words, off, 0.0, 1.0)
+            for off in course.shifted
+            if isinstance(off, ca.SX) and not off.is_constant()
+        )
 
 
 def _courses(mechanism: Mechanism, point: Point) -> list[Course]:

@@ -19,7 +19,6 @@ In place of it there may be the friction of teeth that slide on each other.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -28,18 +27,16 @@ import casadi as ca
 
 from ...base.arguments import public
 from ...base.brief import Brief
-from ...base.vectors import cross, dot, minus, norm, plus
+from ...base.vectors import cross, dot, minus, norm, plus, times
 from ...errors import DeclarationError
 from ..constraints import Constraint
 from ..declared_parts import Body, Expression, PitchCircles, Point
 from ..mechanism import Mechanism
-from ..meshes import Fit, Loss, Mesh, Transmission, Wrench
-from .courses import Course, along, courses_on, fits_of
+from ..meshes import Loss, Mesh, Transmission, Wrench
+from .contact import output_loss, touching
+from .courses import Course, along, courses_on, keep_on_axis
+from .fits import LEAST, Fits
 from .pitch import Pitch, Teeth, pitch_of
-from .ranges import LEAST, at_least, positive, share, whole, within
-
-_FLATTEST, _STEEPEST = math.pi / 4, 75 * math.pi / 180
-"""Pressure and helix angles are below these [rad]."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -125,11 +122,8 @@ def gears(
         that violate these are refused as well.
     """
     what, ownership = f"gears '{name}'", mechanism.ownership
-    ownership.free("constraint", name, mechanism.constraints)
     if hand not in ("right", "left"):
         raise DeclarationError(f"{what}: hand must be 'right' or 'left', got {hand!r}")
-    if carrier is not None:
-        carrier = ownership.point(what, carrier).body
     centre = ownership.point(what, first)
     many = [
         ownership.point(what, one) for one in (second if isinstance(second, Sequence) else [second])
@@ -137,21 +131,21 @@ def gears(
     if not many:
         raise DeclarationError(f"{what}: expected a second gear")
     found = [courses_on(mechanism, what, centre, one, carrier) for one in many]
-    fits, lossy = [], efficiency is not None or mu is not None
+    fits = Fits(what, ownership.at_defaults)
     angles, right = (pressure_angle, helix_angle), hand == "right"
-    toothing, more = _teeth(what, mechanism, found[0], teeth, module, radii, angles, right)
-    fits += more
-    pitches = [pitch_of(what, ownership.at_defaults, *pair, toothing) for pair in found]
-    meshes = []
+    toothing = _teeth(fits, mechanism, found[0], teeth, module, radii, angles, right)
+    pitches = [pitch_of(fits, *pair, toothing) for pair in found]
+    loss = _loss_of(fits, mechanism, name, found[0][0], pitches[0], toothing, efficiency, mu)
+    meshes, circles = [], {}
     for k, (pair, pitch, point) in enumerate(zip(found, pitches, many, strict=True), 1):
         if pitch.kind == "crossed" and (teeth is None or radii is None):
             raise DeclarationError(
                 f"{what}: gears with crossed axes need teeth= and radii= of both gears"
             )
         mesh = _mesh(mechanism, centre, point, *pair, pitch)
-        meshes.append(replace(mesh, braking=braking_of(pitch)) if lossy else mesh)
-        fits += [*pitch.fits, *(fit for one in pair for fit in fits_of("its centre", one))]
-        mechanism.pitch_circles[f"{name}_{k}" if len(many) > 1 else name] = PitchCircles(
+        meshes.append(mesh if loss is None else replace(mesh, braking=_braking_of(pitch)))
+        keep_on_axis(fits, *pair)
+        circles[f"{name}_{k}" if len(many) > 1 else name] = PitchCircles(
             pair[0].carrier.name,
             (pair[0].place, pair[1].place),
             (pair[0].axis, pair[1].axis),
@@ -161,25 +155,17 @@ def gears(
     directions = [course.displacement(mechanism) for course in found[0]]
     ahead = ownership.expression(f"{what}: offset", offset, "m")
     phi = toothing.radii[0] * directions[0] + pitches[0].other * directions[1] - ahead
-    loss = None
-    if lossy:
-        loss, more = loss_of(
-            what, mechanism, name, found[0][0], pitches[0], toothing, efficiency, mu
-        )
-        fits += more
-    transmission = Transmission(name, tuple(meshes), 0.0, tuple(fits), loss)
-    constraint = replace(mechanism.constraint(name, phi), transmission=transmission)
-    mechanism.constraints[name] = constraint
+    transmission = Transmission(name, tuple(meshes), 0.0, tuple(fits.found), loss)
+    constraint = touching(mechanism, name, phi, transmission=transmission)
+    mechanism.pitch_circles |= circles
     _outputs(mechanism, name, constraint, pitches[0])
     if loss is not None:
-        mechanism.output(
-            f"{name}_loss", len(meshes) * lost(mechanism, constraint, loss, pitches[0]), unit="W"
-        )
+        output_loss(mechanism, constraint, loss, len(meshes) * norm(pitches[0].relative))
     return Gears(constraint, pitches[0].kind, -(toothing.radii[0] / pitches[0].other))
 
 
 def _teeth(
-    what: str,
+    fits: Fits,
     mechanism: Mechanism,
     pair: tuple[Course, Course],
     teeth: Sequence[Expression] | None,
@@ -187,10 +173,9 @@ def _teeth(
     radii: Sequence[Expression] | None,
     angles: tuple[Expression, Expression],
     right: bool,
-) -> tuple[Teeth, list[Fit]]:
-    """Radii, ratio and angles, and what they must be for other parameters."""
-    ownership, count = mechanism.ownership, 1 if pair[1].slides else 2
-    fits: list[Fit] = []
+) -> Teeth:
+    """Radii, ratio and angles."""
+    what, ownership, count = fits.what, mechanism.ownership, 1 if pair[1].slides else 2
 
     def each(word: str, values: Expression, unit: str = "1") -> list[Expression]:
         listed = list(values) if isinstance(values, (list, tuple)) else [values]
@@ -198,34 +183,32 @@ def _teeth(
             raise DeclarationError(f"{what}: expected {count} {word}, got {len(listed)}")
         return [ownership.expression(f"{what}: {word}", value, unit) for value in listed]
 
-    if (module is None) == (radii is None):
+    if (module is None) == (radii is None) or (radii is None and teeth is None):
         raise DeclarationError(f"{what}: expected module= and teeth=, or radii=")
     names = ("pressure_angle", "helix_angle")
     pressure, helix = (
         ownership.expression(f"{what}: {one}", angle, "rad")
         for one, angle in zip(names, angles, strict=True)
     )
-    fits += within(what, "pressure_angle", pressure, 0.0, _FLATTEST)
-    fits += within(what, "helix_angle", helix, -_STEEPEST, _STEEPEST)
+    fits.within("pressure_angle", pressure, 0.0, 45.0)
+    fits.within("helix_angle", helix, -75.0, 75.0)
     if not mechanism.space and not (isinstance(helix, float) and helix == 0.0):
         raise DeclarationError(
             f"{what}: gears in a plane have no helix; in space declare a SpatialMechanism"
         )
-    z = None if teeth is None else each("numbers of teeth", teeth)
-    for value in z or ():
-        fits += whole(what, "numbers of teeth", value)
+    z = [] if teeth is None else each("numbers of teeth", teeth)
+    for value in z:
+        fits.whole("numbers of teeth", value)
     if module is not None:
-        if z is None:
-            raise DeclarationError(f"{what}: expected module= and teeth=, or radii=")
         size = ownership.expression(f"{what}: module", module, "m")
-        fits += positive(what, "module", size)
+        fits.positive("module", size)
         r = [size * value / (2 * ca.cos(helix)) for value in z]
     else:
         r = each("radii", radii, "m")
         for value in r:
-            fits += positive(what, "radii", value)
-    ratio = 1.0 if count == 1 else r[1] / r[0] if z is None else z[1] / z[0]
-    return Teeth(tuple(r), ratio, pressure, helix, right), fits
+            fits.positive("radii", value)
+    first, *second = z or r
+    return Teeth(tuple(r), second[0] / first if second else 1.0, pressure, helix, right)
 
 
 def _mesh(
@@ -234,11 +217,8 @@ def _mesh(
     """Place where two gears touch; on a rack the place moves."""
     if two.slides:
         direction = two.displacement(mechanism)
-        gone = tuple(direction * x for x in two.axis)
-        back = two.seen.resolve(
-            minus(minus(plus(one.place, pitch.arm), two.place), (gone[0], gone[1], gone[2]))
-        )
-        x, y, z = plus(second.place, back)
+        way = minus(plus(one.place, pitch.arm), plus(two.place, times(direction, two.axis)))
+        x, y, z = plus(second.place, two.seen.resolve(way))
         second = Point(second.body, x, y, z=z)
     wrenches = (Wrench(force, cross(pitch.arm, force)) for force in (pitch.force, pitch.apart))
     return Mesh(first, second, one.carrier, one.place, pitch.reach, *wrenches)
@@ -255,7 +235,7 @@ def _outputs(mechanism: Mechanism, name: str, constraint: Constraint, pitch: Pit
         mechanism.output(f"{name}_axial", along * force + apart * size, unit="N")
 
 
-def braking_of(pitch: Pitch) -> Wrench:
+def _braking_of(pitch: Pitch) -> Wrench:
     """Action of a unit of friction on the first gear: a couple against its turning on the second,
     or a force against sliding.
     """
@@ -265,8 +245,8 @@ def braking_of(pitch: Pitch) -> Wrench:
     return Wrench(couple=direction)
 
 
-def loss_of(
-    what: str,
+def _loss_of(
+    fits: Fits,
     mechanism: Mechanism,
     name: str,
     first: Course,
@@ -274,33 +254,28 @@ def loss_of(
     teeth: Teeth,
     efficiency: Expression | None,
     mu: Expression | None,
-) -> tuple[Loss, list[Fit]]:
-    """The law of a loss. Raises :class:`.DeclarationError` for numbers that cannot be."""
-    ownership = mechanism.ownership
+) -> Loss | None:
+    """The law of a loss, if there is one. Raises :class:`.DeclarationError` for numbers that cannot
+    be.
+    """
+    what, ownership = fits.what, mechanism.ownership
+    if mu is None and efficiency is None:
+        return None
     if (mu is None) == (pitch.kind == "crossed") or (mu is not None and efficiency is not None):
         raise DeclarationError(f"{what}: expected mu= for crossed axes, efficiency= for others")
     if mu is not None:
         value = ownership.expression(f"{what}: mu", mu)
-        fits = at_least(what, "mu must not be negative", value, 0.0, value)
+        fits.at_least("mu must not be negative", value, 0.0, value)
         # The force at right angles to the teeth, of that along the pitch circle.
         arm = value * norm(pitch.force) / ca.cos(teeth.pressure)
-        return Loss(f"{name}:loss", arm, 0.0, first.rotations), fits
+        return Loss(f"{name}:loss", arm, 0.0, first.rotations)
     value = ownership.expression(f"{what}: efficiency", efficiency)
-    fits = share(what, value)
+    fits.share(value)
     q, radius = norm(pitch.relative), teeth.radii[0]
     k = dot(pitch.axis, pitch.relative) / q
     slip = 1 - value
     driving, driven = q - slip * k, value * q + slip * k
     for divisor in (driving, driven):
-        fits += at_least(
-            what, "efficiency is too low for a gear in this ring", divisor, LEAST, value
-        )
+        fits.at_least("efficiency is too low for a gear in this ring", divisor, LEAST, value)
     ahead, back = slip * radius / driving, slip * radius / driven
-    return Loss(f"{name}:loss", (ahead + back) / 2, (back - ahead) / 2, first.rotations), fits
-
-
-def lost(mechanism: Mechanism, constraint: Constraint, loss: Loss, pitch: Pitch) -> Expression:
-    """The power that one mesh takes."""
-    rate = sum((sign * mechanism.rate(joint) for sign, joint in loss.rotations), ca.SX(0))
-    force = mechanism.results.multiplier(constraint)
-    return norm(pitch.relative) * (loss.arm * ca.fabs(force * rate) + loss.lean * force * rate)
+    return Loss(f"{name}:loss", (ahead + back) / 2, (back - ahead) / 2, first.rotations)

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import casadi as ca
 
@@ -33,8 +33,9 @@ from ..constraints import Constraint
 from ..declared_parts import Expression, Link, Outline, Point, Roller, Vector
 from ..joints import Joint
 from ..mechanism import Mechanism
-from ..meshes import Fit, Mesh, Transmission, Wrench
-from .pitch import held
+from ..meshes import Mesh, Transmission, Wrench
+from .contact import touching
+from .fits import Fits
 
 _LOCK, _PIN = 0.8, 0.4
 """Radius of the locking arc, of the pin's distance; and that of the pin as it is drawn, of the room
@@ -103,7 +104,6 @@ def geneva(
         In space, for joints of other kinds, another number of slots, and sizes that do not fit.
     """
     what, ownership = f"geneva '{name}'", mechanism.ownership
-    ownership.free("constraint", name, mechanism.constraints)
     slots = count(f"{what}: slots", slots, 3, 12)
     for joint in (crank, wheel):
         kind, carrier = ownership.joint(joint).kind, joint.parent.body
@@ -127,23 +127,18 @@ def geneva(
     locked = _LOCK * radius if lock is None else ownership.expression(f"{what}: lock", lock, "m")
     # Of the horn's angle at the crank's axis.
     cosine = (locked * locked + radius * radius) / (2.0 * locked * apart)
-    fits = [
-        Fit(
-            "its pin is {got} m from the crank's axis; expected {meant} m, the distance of the"
-            f" axes times the sine of {180.0 / slots:.6g} deg",
-            radius,
-            apart * math.sin(math.pi / slots),
-            apart,
-        ),
-        Fit(
-            "its locking arc of {got} m does not reach the wheel, or reaches the pin; expected"
-            " less than the pin's radius, as {meant} m",
-            locked,
-            ca.fmin(ca.fmax(locked, apart * (1.0 - math.cos(math.pi / slots))), radius),
-            apart,
-        ),
-    ]
-    fits = [held(what, ownership.at_defaults, fit) for fit in fits]
+    fits = Fits(what, ownership.at_defaults)
+    words = (
+        "its pin is {got} m from the crank's axis; expected {meant} m, the distance of the axes"
+        f" times the sine of {180.0 / slots:.6g} deg"
+    )
+    fits.same(words, radius, apart * math.sin(math.pi / slots), apart)
+    words = (
+        "its locking arc of {got} m does not reach the wheel, or reaches the pin; expected less"
+        " than the pin's radius, as {meant} m"
+    )
+    nearest = ca.fmin(ca.fmax(locked, apart * (1.0 - math.cos(math.pi / slots))), radius)
+    fits.same(words, locked, nearest, apart)
     way = 1 if internal else -1
     half = math.pi / 2.0 + way * math.pi / slots
     turn, middle = mechanism.coordinate(crank), times(-way, reach)
@@ -180,11 +175,8 @@ def geneva(
         Wrench(_either(engaged, ZERO, spread)),
     )
     phi = mechanism.coordinate(wheel) - way * (slewed + math.tau / slots * turns)
-    made = replace(
-        mechanism.constraint(name, phi),
-        transmission=Transmission(name, (at_pin, at_arc), fits=tuple(fits)),
-    )
-    mechanism.constraints[name] = made
+    transmission = Transmission(name, (at_pin, at_arc), fits=tuple(fits.found))
+    made = touching(mechanism, name, phi, transmission=transmission)
     torque = mechanism.results.multiplier(made)
     force = ca.if_else(engaged, torque / ca.sqrt(far), 0.0)
     held_back = ca.if_else(engaged, 0.0, ca.fabs(torque) * ca.sqrt(1.0 + lean * lean) / apart)

@@ -16,12 +16,13 @@ from dataclasses import dataclass
 
 import casadi as ca
 
-from ...base.vectors import ZERO, cross, dot, minus, norm, plus, times
+from ...base.vectors import cross, dot, minus, norm, plus, times
 from ...errors import DeclarationError
 from ..declared_parts import Expression, Vector
-from ..meshes import FITTING, Fit
+from ..meshes import FITTING
 from ..validity import Evaluator
 from .courses import Course, along, size
+from .fits import Fits
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +36,11 @@ class Teeth:
     pressure: Expression
     helix: Expression
     right: bool
+
+    @property
+    def pressing(self) -> Expression:
+        """What presses the gears apart for a unit of the force along the pitch circle."""
+        return ca.tan(self.pressure) / ca.cos(self.helix)
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,61 +61,57 @@ class Pitch:
     other: Expression
     outward: Vector
     axis: Vector
-    relative: Vector = ZERO
-    fits: tuple[Fit, ...] = ()
+    relative: Vector
 
 
-def pitch_of(what: str, number: Evaluator, first: Course, second: Course, teeth: Teeth) -> Pitch:
+def pitch_of(fits: Fits, first: Course, second: Course, teeth: Teeth) -> Pitch:
     """The pitch point of two gears, or of a gear and a rack, by how their axes lie.
 
     Raises :class:`.DeclarationError` where these do not fit.
     """
     if second.slides:
-        return _rack(what, number, first, second, teeth)
+        return _rack(fits, first, second, teeth)
+    number = fits.number
     across = cross(first.axis, second.axis)
     if size(across, number) < FITTING:
-        return _parallel(what, number, first, second, teeth)
+        return _parallel(fits, first, second, teeth)
     apart = dot(minus(second.place, first.place), across)
     scale = size(across, number) * (number(teeth.radii[0]) + number(teeth.radii[1]))
     if abs(number(apart)) < FITTING * scale:
-        return _bevel(what, number, first, second, teeth)
-    return _crossed(what, number, first, second, teeth)
+        return _bevel(fits, first, second, teeth)
+    return _crossed(fits, first, second, teeth)
 
 
-def _parallel(what: str, number: Evaluator, first: Course, second: Course, teeth: Teeth) -> Pitch:
-    u, (r1, r2) = first.axis, teeth.radii
-    away = minus(second.place, first.place)
-    beside, sense = dot(away, u), _sign(number, dot(u, second.axis))
-    away = minus(away, times(beside, u))
+def _parallel(fits: Fits, first: Course, second: Course, teeth: Teeth) -> Pitch:
+    u, (r1, r2), number = first.axis, teeth.radii, fits.number
+    reach = minus(second.place, first.place)
+    beside, sense = dot(reach, u), _sign(number, dot(u, second.axis))
+    away = minus(reach, times(beside, u))
     distance = norm(away)
     between = number(distance)
     sides = {1: r1 + r2, -1: r2 - r1, -2: r1 - r2}
     side = min(sides, key=lambda one: abs(between - number(sides[one])))
-    inner = abs(number(r1 - r2))
-    distances = f"{number(r1 + r2):.9g} m by the radii, or {inner:.9g} m for a gear in a ring"
     if abs(between - number(sides[side])) > FITTING * number(r1 + r2) or between == 0.0:
         raise DeclarationError(
-            f"{what}: its centres are {between:.9g} m apart; expected {distances}"
+            f"{fits.what}: its centres are {between:.9g} m apart; expected {number(r1 + r2):.9g} m"
+            f" by the radii, or {abs(number(r1 - r2)):.9g} m for a gear in a ring"
         )
     words = "its centres are {got} m apart; expected {meant} m by the radii"
-    fits = [Fit(words, distance, sides[side], r1 + r2)]
-    _refuse_beside(what, number, beside, r1 + r2)
-    words = "its gears are offset by {got} m along their axes; expected {meant} m"
-    fits.append(Fit(words, beside, 0.0, r1 + r2))
+    fits.same(words, distance, sides[side], r1 + r2)
+    words = "its gears are offset by {got} m along the axis; expected {meant} m"
+    fits.same(words, beside, 0.0, r1 + r2)
     # The pitch point is beyond the first centre where the second gear is a ring.
     e = along(away, distance if side != -1 else -distance)
     t = cross(u, e)
     force = minus(t, times(ca.tan(teeth.helix), u))
-    size = ca.tan(teeth.pressure) / ca.cos(teeth.helix)
     # Off the teeth: toward the axis of a gear, away from that of a ring.
-    apart = times(size if side == -2 else -size, e)
+    apart = times(teeth.pressing if side == -2 else -teeth.pressing, e)
     other = r2 * sense if side == 1 else -(r2 * sense)
     relative = plus(u, times(r1 / other, second.axis))
-    arm, reach = times(r1, e), minus(second.place, first.place)
-    return Pitch("parallel", arm, force, apart, reach, other, e, u, relative, tuple(fits))
+    return Pitch("parallel", times(r1, e), force, apart, reach, other, e, u, relative)
 
 
-def _bevel(what: str, number: Evaluator, first: Course, second: Course, teeth: Teeth) -> Pitch:
+def _bevel(fits: Fits, first: Course, second: Course, teeth: Teeth) -> Pitch:
     """Both cones have their apex where the axes meet; their mean circles, of the radii, touch."""
     u, v, (r1, r2) = first.axis, second.axis, teeth.radii
     # How far the centres are from where the axes meet: the feet of the common perpendicular are
@@ -118,55 +120,52 @@ def _bevel(what: str, number: Evaluator, first: Course, second: Course, teeth: T
     steep = 1 - slope * slope
     far1 = -(dot(away, u) - slope * dot(away, v)) / steep
     far2 = (dot(away, v) - slope * dot(away, u)) / steep
-    one, two = (_sign(number, far) for far in (far1, far2))
+    one, two = (_sign(fits.number, far) for far in (far1, far2))
     w1, w2, cosine = times(one, u), times(two, v), one * two * slope
     sine = ca.sqrt(1 - cosine * cosine)
     heights = (r2 + r1 * cosine) / sine, (r1 + r2 * cosine) / sine
-    fits = []
     for k, (far, height) in enumerate(zip((one * far1, two * far2), heights, strict=True), 1):
         words = (
             f"the centre of its gear {k} is {{got}} m from where the axes meet; expected"
             " {meant} m by the radii"
         )
-        fits.append(held(what, number, Fit(words, far, height, r1 + r2)))
+        fits.same(words, far, height, r1 + r2)
     words = "the axes of its gears are {got} m apart; expected {meant} m"
-    fits.append(Fit(words, dot(away, cross(u, v)) / sine, 0.0, r1 + r2))
+    fits.same(words, dot(away, cross(u, v)) / sine, 0.0, r1 + r2)
     e = along(minus(w2, times(cosine, w1)), sine)
     t = cross(u, e)
     slant = ca.sqrt(heights[0] * heights[0] + r1 * r1)
     generator = along(plus(times(heights[0], w1), times(r1, e)), slant)
     force = minus(t, times(ca.tan(teeth.helix) * one, generator))
-    size = ca.tan(teeth.pressure) / ca.cos(teeth.helix)
-    apart = times(size, along(minus(times(r1, w1), times(heights[0], e)), slant))
+    apart = times(teeth.pressing, along(minus(times(r1, w1), times(heights[0], e)), slant))
     other = one * two * r2
     relative = plus(u, times(r1 / other, v))
-    return Pitch("bevel", times(r1, e), force, apart, away, other, e, u, relative, tuple(fits))
+    return Pitch("bevel", times(r1, e), force, apart, away, other, e, u, relative)
 
 
-def _crossed(what: str, number: Evaluator, first: Course, second: Course, teeth: Teeth) -> Pitch:
+def _crossed(fits: Fits, first: Course, second: Course, teeth: Teeth) -> Pitch:
     """A worm and its wheel, or crossed helical gears: the teeth lie so that the ratio is that of
     their numbers.
     """
     u, v, (r1, r2) = first.axis, second.axis, teeth.radii
     away = minus(second.place, first.place)
     distance = norm(away)
-    fits = []
     for k, axis in ((1, u), (2, v)):
         words = (
             f"the centre of its gear {k} is {{got}} m along its axis from the common"
             " perpendicular of both axes; expected {meant} m"
         )
-        fits.append(held(what, number, Fit(words, dot(away, axis), 0.0, r1 + r2)))
+        fits.same(words, dot(away, axis), 0.0, r1 + r2)
     words = "its centres are {got} m apart; expected {meant} m as the sum of their radii"
-    fits.append(held(what, number, Fit(words, distance, r1 + r2, r1 + r2)))
+    fits.same(words, distance, r1 + r2, r1 + r2)
     e = along(away, distance)
     t = cross(u, e)
     cosine, sine = dot(u, v), dot(u, cross(v, e))
     leans = [(sign * teeth.ratio * r1 / r2 - cosine) / sine for sign in (1, -1)]
-    right = [number(lean) < 0.0 for lean in leans]
+    right = [fits.number(lean) < 0.0 for lean in leans]
     if right[0] == right[1]:
         raise DeclarationError(
-            f"{what}: radii and numbers of teeth do not fit the angle between its axes"
+            f"{fits.what}: radii and numbers of teeth do not fit the angle between its axes"
         )
     sign = 1 if right[0] == teeth.right else -1
     lean = leans[0] if sign == 1 else leans[1]
@@ -174,14 +173,14 @@ def _crossed(what: str, number: Evaluator, first: Course, second: Course, teeth:
     apart = times(-(ca.tan(teeth.pressure) * ca.sqrt(1 + lean * lean)), e)
     other = sign * teeth.ratio * r1
     sliding = minus(times(r1, t), times(r1 * r2 / other, cross(v, e)))
-    return Pitch("crossed", times(r1, e), force, apart, away, other, e, u, sliding, tuple(fits))
+    return Pitch("crossed", times(r1, e), force, apart, away, other, e, u, sliding)
 
 
-def _rack(what: str, number: Evaluator, first: Course, second: Course, teeth: Teeth) -> Pitch:
+def _rack(fits: Fits, first: Course, second: Course, teeth: Teeth) -> Pitch:
     u, d, (radius, *_) = first.axis, second.axis, teeth.radii
-    if abs(number(dot(u, d))) > FITTING:
+    if abs(fits.number(dot(u, d))) > FITTING:
         raise DeclarationError(
-            f"{what}: its rack must slide at right angles to the axis of its gear"
+            f"{fits.what}: its rack must slide at right angles to the axis of its gear"
         )
     away = minus(second.place, first.place)
     across = minus(away, times(dot(away, d), d))
@@ -192,34 +191,15 @@ def _rack(what: str, number: Evaluator, first: Course, second: Course, teeth: Te
         "the pitch line of its rack is {got} m from the axis of its gear; expected its radius,"
         " {meant} m"
     )
-    fit = held(what, number, Fit(words, distance, radius, radius))
-    _refuse_beside(what, number, beside, radius)
-    fits = (
-        fit,
-        Fit("its rack is offset by {got} m from its gear; expected {meant} m", beside, 0.0, radius),
-    )
+    fits.same(words, distance, radius, radius)
+    words = "its rack is offset by {got} m from its gear; expected {meant} m"
+    fits.same(words, beside, 0.0, radius)
     e = along(across, distance)
     t = cross(u, e)
     force = minus(t, times(ca.tan(teeth.helix), u))
-    apart = times(-(ca.tan(teeth.pressure) / ca.cos(teeth.helix)), e)
-    arm, other = times(radius, e), -_sign(number, dot(t, d))
-    return Pitch("rack", arm, force, apart, arm, other, e, u, u, fits)
-
-
-def held(what: str, number: Evaluator, fit: Fit) -> Fit:
-    """A fit that holds. Raises :class:`.DeclarationError` for one that does not."""
-    got, meant = number(fit.got), number(fit.meant)
-    if abs(got - meant) > FITTING * number(fit.size):
-        raise DeclarationError(f"{what}: {fit.refusal(got, meant)}")
-    return fit
-
-
-def _refuse_beside(what: str, number: Evaluator, beside: Expression, size: Expression) -> None:
-    if abs(number(beside)) > FITTING * number(size):
-        raise DeclarationError(
-            f"{what}: its parts are offset by {number(beside):.6g} m along the axis; expected"
-            " centres in one plane"
-        )
+    apart = times(-teeth.pressing, e)
+    arm, other = times(radius, e), -_sign(fits.number, dot(t, d))
+    return Pitch("rack", arm, force, apart, arm, other, e, u, u)
 
 
 def _sign(number: Evaluator, value: Expression) -> int:

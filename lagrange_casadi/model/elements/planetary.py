@@ -15,8 +15,8 @@ from ...errors import DeclarationError
 from ..declared_parts import Body, Expression, Link, Point
 from ..joints import Joint
 from ..mechanism import Mechanism
+from .fits import Fits
 from .gears import Gears, gears
-from .ranges import positive
 from .wheel import wheel
 
 
@@ -113,7 +113,7 @@ def planetary(
             f"{what}: {planets} planets of {of_planet} teeth do not fit around a sun of {of_sun}"
         )
     size = ownership.expression(f"{what}: module", module, "m")
-    positive(what, "module", size)
+    Fits(what, ownership.at_defaults).positive("module", size)
     middle, centres = ownership.point(what, carrier), size * (of_sun + of_planet) / 2
     made: dict[str, Any] = {"mass": mass, "width": width, "teeth": of_planet}
     found, pins = [], []

@@ -18,7 +18,7 @@ from ..declared_parts import Body, Expression, Point
 from ..loads import Spring
 from ..mechanism import Mechanism
 from ..strokes import Stroke
-from .ranges import positive
+from .fits import Fits
 
 
 def stroke(
@@ -39,7 +39,7 @@ def stroke(
         mechanism.ownership.expression(f"{what}: {word}", value, "m")
         for word, value in (("closed", closed), ("open", open))
     ]
-    positive(what, "closed", ends[0])
+    Fits(what, mechanism.ownership.at_defaults).positive("closed", ends[0])
     if not isinstance(ends[0], ca.SX) and not isinstance(ends[1], ca.SX) and ends[1] <= ends[0]:
         raise DeclarationError(
             f"{what}: open must be longer than closed, got {ends[1]:g} m and {ends[0]:g} m"
@@ -160,7 +160,7 @@ def gas_spring(
     slowed = checked(f"{what}: damping", damping, "N s/m")
     if end is not None:
         over = checked(f"{what}: end", end, "m")
-        positive(what, "end", over)
+        Fits(what, mechanism.ownership.at_defaults).positive("end", over)
         share = ca.fmin(ca.fmax((distance - made.open) / over + 1.0, 0.0), 1.0)
         slowed = slowed + checked(f"{what}: end_damping", end_damping, "N s/m") * share
     elif isinstance(end_damping, ca.SX) or end_damping:
