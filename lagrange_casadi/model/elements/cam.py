@@ -14,13 +14,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, cast
+from typing import cast
 
 import casadi as ca
 
 from ...base.arguments import Count, Elastic, public
 from ...base.brief import Brief
 from ...base.rotation import Rotation
+from ...base.scalars import column, graph
 from ...base.vectors import Vector, cross, dot, minus, norm, plus, times
 from ...errors import DeclarationError
 from ..constraints import Constraint
@@ -28,31 +29,56 @@ from ..declared_parts import Expression, Link, Outline, Point, Roller
 from ..joints import Joint
 from ..mechanism import Mechanism
 from .cam_profile import CamProfile, profile_of
-from .follower import STEEL, held_by, largest_pressure, positive, rise_of, stiffness_of
+from .follower import (
+    STEEL,
+    Touch,
+    contact,
+    held_by,
+    output_pressure,
+    positive,
+    rise_of,
+    stiffness_of,
+    unit,
+)
 
 _CORNERS = 240
 """Corners by which pictures show a profile."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Design(Brief):
-    """Position of the contact, by the symbol ``angle`` of the cam [rad], from the cam's centre in
-    ground axes.
+class Design(Touch):
+    """Position of the contact of a disc cam, from the cam's centre.
 
-    ``place`` is the follower's point, ``normal`` of length one from the cam to the follower,
-    ``moment`` the arm of the contact about that point, ``contact`` where it touches, ``travel`` the
-    direction in which the follower moves there. ``turned`` is the direction of the follower's own
-    axis, None where nothing depends on it; ``roller`` is the radius of its roller.
+    ``arm`` leads from the follower's point to where the cam touches it. ``turned`` is the direction
+    of the follower's own axis, None where nothing depends on it; ``roller`` is the radius of its
+    roller.
     """
 
-    angle: Any
-    place: Vector
-    normal: Vector
-    moment: Any
-    contact: Vector
-    travel: Vector
+    arm: Vector
     turned: Vector | None
     roller: Expression
+
+    @property
+    def contact(self) -> Vector:
+        """The place at which both touch."""
+        return plus(self.place, self.arm)
+
+    @property
+    def progress(self) -> Expression:
+        """Speed of the contact along the cam by its angle [m], counter-clockwise round it: undercut
+        if it is not negative.
+        """
+        (x, y, _), angle = self.contact, self.angle
+        moved = ca.jacobian(x, angle) + y, ca.jacobian(y, angle) - x, 0.0
+        return cross(self.normal, moved)[2]
+
+    @property
+    def curvature(self) -> Expression:
+        """The radius of curvature of the profile [m]: positive where it is convex; infinite where
+        it is straight.
+        """
+        lean = -ca.atan2(self.normal[0], self.normal[1]) - self.angle
+        return self.progress / ca.jacobian(lean, self.angle)
 
 
 @public
@@ -102,16 +128,12 @@ class Cam(Brief):
         rows = [
             *back.apply(design.contact)[:2],
             *back.apply(design.place)[:2],
-            pressure_angle(design),
-            curvature(design),
-            progress(design),
+            design.pressure_angle,
+            design.curvature,
+            design.progress,
         ]
-        function = ca.Function(
-            "profile",
-            [x, self.mechanism.symbols],
-            [ca.densify(ca.vertcat(*map(ca.SX, rows)))],
-            {"cse": True},
-        )
+        given = {"angle": x, "p": self.mechanism.symbols}
+        function = graph("profile", given, rows=column(rows))
         return profile_of(self.name, function, list(values.values()), count)
 
 
@@ -172,8 +194,7 @@ def disc_cam(
         For joints of other kinds, a lift that is no function, and a profile that is undercut with
         the default parameters.
     """
-    what, ownership = f"cam '{name}'", mechanism.ownership
-    ownership.free("constraint", name, mechanism.constraints)
+    what = f"cam '{name}'"
     stiffness = stiffness_of(what, elastic)
     layout = layout_of(what, mechanism, cam, follower, point, roller, flat, side)
     base = positive(mechanism, f"{what}: base_radius", base_radius)
@@ -186,17 +207,19 @@ def disc_cam(
     )
     design = make(base, x, rise, layout)
     touched = follower.child if flat and follower.kind == "revolute" else layout.held
-    constraint = _contact(mechanism, name, cam, touched, design, rise)
-    made = Cam(name, mechanism, constraint, design)
-    _outputs(made, cam, width, stiffness)
+    gap = _gap(mechanism, cam, touched, design)
+    made = Cam(name, mechanism, contact(mechanism, name, cam, design, gap, rise), design)
+    mechanism.one_way[f"{name}_force"] = f"cam '{name}': the follower lifts off"
+    radius = ca.substitute(design.curvature, x, mechanism.coordinate(cam))
+    mechanism.output(f"{name}_radius", radius, unit="m")
+    if width is not None:
+        force = ca.fmax(mechanism.results.multiplier(made.constraint), 0.0)
+        curved = 1.0 / radius if roller is None else 1.0 / radius + 1.0 / layout.roller
+        output_pressure(mechanism, name, force, curved, width, stiffness)
     mechanism.outlines.setdefault(cam.child.body.name, []).append(_outline(made, cam.child))
     if roller is not None:
         mechanism.rollers[name] = Roller(layout.held, layout.roller)
     profile = made.profile()
-    if not profile.closes:
-        raise DeclarationError(
-            f"{what}: its lift must be the same after a turn of the cam; expected a period of 2 pi"
-        )
     if profile.undercut.any():
         raise DeclarationError(
             f"{what}: {profile.undercut_summary}; expected a larger base radius, a smaller roller"
@@ -265,54 +288,44 @@ def layout_of(
     return Layout(cam, follower, held, radius, side)
 
 
-def _pitch_normal(x: Expression, place: Vector) -> Vector:
-    """The normal outward of the curve that a point makes on the cam."""
+def _rolling(x: Expression, place: Vector, travel: Vector, roller: Expression) -> Design:
+    """A design whose normal is that outward of the curve which the follower's point makes on the
+    cam.
+    """
     # At right angles to how the point moves on the cam.
-    outward = place[0] - ca.jacobian(place[1], x), place[1] + ca.jacobian(place[0], x), 0.0
-    size = norm(outward)
-    return outward[0] / size, outward[1] / size, 0.0
+    normal = unit((place[0] - ca.jacobian(place[1], x), place[1] + ca.jacobian(place[0], x), 0.0))
+    return Design(x, place, normal, travel, times(-roller, normal), None, roller)
 
 
 def _translating(base: Expression, x: Expression, rise: Expression, layout: Layout) -> Design:
-    (offset, aside, up), roller = layout.offset, layout.roller
-    height = ca.sqrt((base + roller) ** 2 - offset * offset) + rise
+    offset, aside, up = layout.offset
+    height = ca.sqrt((base + layout.roller) ** 2 - offset * offset) + rise
     place = plus(times(offset, aside), times(height, up))
-    normal = _pitch_normal(x, place)
-    return Design(x, place, normal, 0.0, plus(place, times(-roller, normal)), up, None, roller)
+    return _rolling(x, place, up, layout.roller)
 
 
 def _translating_flat(base: Expression, x: Expression, rise: Expression, layout: Layout) -> Design:
     offset, aside, up = layout.offset
-    height = times(base + rise, up)
-    place = plus(times(offset, aside), height)
+    place = plus(times(offset, aside), times(base + rise, up))
     # It touches beside the line through the cam's centre by the slope of the lift.
-    contact = plus(times(ca.jacobian(rise, x), aside), height)
-    moment = cross(minus(contact, place), up)[2]
-    turned = layout.follower.turned.x
-    return Design(x, place, up, moment, contact, up, turned, 0.0)
+    arm = times(ca.jacobian(rise, x) - offset, aside)
+    return Design(x, place, up, up, arm, layout.follower.turned.x, 0.0)
 
 
 def _swinging(base: Expression, x: Expression, rise: Expression, layout: Layout) -> Design:
-    away, arm, roller = layout.away, layout.arm, layout.roller
-    length = norm(arm)
-    distance = norm(away)
-    prime = base + roller
-    along, across = _swung(
-        layout, rise, (length**2 + distance**2 - prime**2) / (2.0 * length * distance), distance
-    )
-    place = plus(away, times(length, along))
-    normal = _pitch_normal(x, place)
-    return Design(x, place, normal, 0.0, plus(place, times(-roller, normal)), across, None, roller)
+    length, distance, prime = norm(layout.arm), norm(layout.away), base + layout.roller
+    cosine = (length**2 + distance**2 - prime**2) / (2.0 * length * distance)
+    along, across = _swung(layout, rise, cosine, distance)
+    return _rolling(x, plus(layout.away, times(length, along)), across, layout.roller)
 
 
 def _swinging_flat(base: Expression, x: Expression, rise: Expression, layout: Layout) -> Design:
-    away = layout.away
-    distance = norm(away)
+    away, distance = layout.away, norm(layout.away)
     sine = base / distance
     along, normal = _swung(layout, rise, ca.sqrt(1.0 - sine * sine), distance)
     # The normal passes through the point at which both turn alike.
     arm = times(-dot(away, along) / (1.0 - layout.side * ca.jacobian(rise, x)), along)
-    return Design(x, away, normal, cross(arm, normal)[2], plus(away, arm), normal, along, 0.0)
+    return Design(x, away, normal, normal, arm, along, 0.0)
 
 
 def _swung(
@@ -331,21 +344,15 @@ def _swung(
     return along, (-layout.side * along[1], layout.side * along[0], 0.0)
 
 
-def _contact(
-    mechanism: Mechanism, name: str, cam: Joint, touched: Point, design: Design, rise: Expression
-) -> Constraint:
+def _gap(mechanism: Mechanism, cam: Joint, touched: Point, design: Design) -> Expression:
     """The equation of the contact, in places, so that its force acts where it is."""
     (x, y), (x0, y0) = mechanism.place(cam.child), mechanism.place(touched)
-    turn = mechanism.coordinate(cam)
-    here = _at(design, turn)
-    gap = dot(here.normal, plus((x0 - x, y0 - y, 0.0), times(-1.0, here.place)))
-    if here.turned is not None:
+    gap = dot(design.normal, minus((x0 - x, y0 - y, 0.0), design.place))
+    if design.turned is not None:
         lean = mechanism.direction(cast(Link, touched.body))
-        gap = gap + here.moment * cross(here.turned, (ca.cos(lean), ca.sin(lean), 0.0))[2]
-    phi = mechanism.ownership.expression(f"cam '{name}'", gap, moving=True)
-    return mechanism.constraints.setdefault(
-        name, Constraint(name, phi, lift=ca.substitute(rise, design.angle, turn))
-    )
+        seen = cross(design.turned, (ca.cos(lean), ca.sin(lean), 0.0))[2]
+        gap = gap + cross(design.arm, design.normal)[2] * seen
+    return gap
 
 
 def _outline(made: Cam, shaft: Point) -> Outline:
@@ -354,62 +361,3 @@ def _outline(made: Cam, shaft: Point) -> Outline:
     x, y, _ = plus(shaft.place, Rotation.by(-design.angle).apply(design.contact))
     corner = ca.Function("corner", [design.angle, symbols], [ca.SX(x), ca.SX(y)])
     return [corner(ca.SX(math.tau * k / _CORNERS), symbols) for k in range(_CORNERS)]
-
-
-def _at(design: Design, angle: Expression) -> Design:
-    """A design at an expression of the cam's angle."""
-
-    def put(value: Expression) -> Expression:
-        return ca.substitute(value, design.angle, angle) if isinstance(value, ca.SX) else value
-
-    def each(vector: Vector) -> Vector:
-        x, y, z = map(put, vector)
-        return x, y, z
-
-    turned = None if design.turned is None else each(design.turned)
-    place, normal, contact, travel = map(
-        each, (design.place, design.normal, design.contact, design.travel)
-    )
-    return Design(angle, place, normal, put(design.moment), contact, travel, turned, design.roller)
-
-
-def pressure_angle(design: Design) -> Expression:
-    """The angle between the contact's force and the way of the follower [rad]."""
-    across = ca.fabs(cross(design.normal, design.travel)[2])
-    return ca.atan2(across, dot(design.normal, design.travel))
-
-
-def curvature(design: Design) -> Expression:
-    """The radius of curvature of the profile [m]: positive where it is convex; infinite where it is
-    straight.
-    """
-    x = design.angle
-    lean = -ca.atan2(design.normal[0], design.normal[1]) - x
-    return progress(design) / ca.jacobian(lean, x)
-
-
-def progress(design: Design) -> Expression:
-    """Speed of the contact along the cam by its angle [m], counter-clockwise round it: undercut if
-    it is not negative.
-    """
-    x, contact = design.angle, design.contact
-    moved = ca.jacobian(contact[0], x) + contact[1], ca.jacobian(contact[1], x) - contact[0], 0.0
-    return cross(design.normal, moved)[2]
-
-
-def _outputs(made: Cam, cam: Joint, width: Expression | None, stiffness: float) -> None:
-    mechanism, name = made.mechanism, made.name
-    force = mechanism.results.multiplier(made.constraint)
-    here, radius = _at(made.design, mechanism.coordinate(cam)), curvature(made.design)
-    radius = ca.substitute(radius, made.design.angle, mechanism.coordinate(cam))
-    mechanism.output(f"{name}_force", force, unit="N")
-    mechanism.one_way[f"{name}_force"] = f"cam '{name}': the follower lifts off"
-    mechanism.output(f"{name}_pressure_angle", pressure_angle(here), unit="rad")
-    mechanism.output(f"{name}_radius", radius, unit="m")
-    if width is not None:
-        roller = made.design.roller
-        rolled = 0.0 if isinstance(roller, float) and roller == 0.0 else 1.0 / roller
-        pressure = largest_pressure(
-            f"cam '{name}'", mechanism, ca.fmax(force, 0.0), 1.0 / radius + rolled, width, stiffness
-        )
-        mechanism.output(f"{name}_hertz", pressure, unit="Pa")

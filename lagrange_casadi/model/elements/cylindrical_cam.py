@@ -28,6 +28,7 @@ from ...base.arguments import Count, Elastic, Symbolic, public
 from ...base.arrays import Array
 from ...base.brief import Brief
 from ...base.rotation import Rotation, direction
+from ...base.scalars import column, graph
 from ...base.vectors import ZERO, Vector, cross, dot, minus, norm, plus, times
 from ...errors import DeclarationError
 from ..constraints import Constraint
@@ -35,30 +36,34 @@ from ..declared_parts import Expression, Link, Point, Track
 from ..joints import Joint
 from ..mechanism import Mechanism
 from .cam_profile import turn_in
-from .follower import STEEL, held_by, largest_pressure, rise_of, stiffness_of
+from .follower import (
+    ANGLES,
+    STEEL,
+    Touch,
+    contact,
+    held_by,
+    output_pressure,
+    positive,
+    rise_of,
+    sampled,
+    stiffness_of,
+    unit,
+)
 
 _SAME = 1e-9
 """A cosine, or a share of a size, that is smaller is zero."""
 
-_SAMPLED, _CORNERS = 721, 120
+_CORNERS = 120
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Groove(Brief):
-    """Position of the roller, by the symbol ``angle`` of the drum [rad], in ground axes.
+class Groove(Touch):
+    """Position of the roller, by its centre.
 
-    ``place`` is its centre, ``normal`` of length one along the contact's force, ``travel`` the
-    direction in which the follower moves the centre; ``axis`` is that of the drum through
-    ``centre``. ``bend`` is the curvature of its path on the drum, in the plane across the roller
-    [1/m], positive where it curves along the normal.
+    ``bend`` is the curvature of its path on the drum, in the plane across the roller [1/m],
+    positive where it curves along the normal.
     """
 
-    angle: Any
-    place: Vector
-    normal: Vector
-    travel: Vector
-    axis: Vector
-    centre: Vector
     bend: Any
 
 
@@ -162,61 +167,48 @@ def cylindrical_cam(
         and a lift that is not periodic by a turn.
     """
     what, ownership = f"cam '{name}'", mechanism.ownership
-    ownership.free("constraint", name, mechanism.constraints)
     stiffness = stiffness_of(what, elastic)
     held = held_by(what, mechanism, cam, follower, point, space=True)
     x = ca.SX.sym("angle")
     rise = rise_of(what, mechanism, lift, x)
-    design = _groove(
-        what,
-        mechanism,
-        x,
-        ownership.expression(f"{what}: start", start, "rad" if follower.kind == "revolute" else "m")
-        + rise,
-        cam,
-        follower,
-        held,
+    begin = ownership.expression(
+        f"{what}: start", start, "rad" if follower.kind == "revolute" else "m"
     )
-    _check(what, mechanism, design, rise, follower)
-    constraint = _contact(mechanism, name, cam, held, design, rise)
-    made = CylindricalCam(name, mechanism, constraint, design, cam)
+    design = _groove(what, mechanism, x, begin + rise, cam, follower, held)
+    _check(what, mechanism, design, cam, follower)
+    gap = _gap(mechanism, cam, held, design)
+    made = CylindricalCam(
+        name, mechanism, contact(mechanism, name, cam, design, gap, rise), design, cam
+    )
     size = 0.0 if roller is None else ownership.expression(f"{what}: roller", roller, "m")
     way, drawn = _way(mechanism, design, cam), np.linspace(0.0, math.tau, _CORNERS + 1)[:-1]
     corners = [ca.vertsplit(way(ca.SX(turn), mechanism.symbols)) for turn in drawn.tolist()]
     mechanism.tracks[name] = Track(
         cam.child.on_body,
-        _carried(cam, 0.0).resolve(design.axis),
+        cam.turned.resolve(cam.triad[0]),
         tuple((x, y, z) for x, y, z in corners),
         held.on_body,
         size,
     )
-    turn = mechanism.coordinate(cam)
-    beside = cross(design.normal, design.travel)
-    lean = dot(design.normal, design.travel), norm(beside)
-    cosine, across = (ca.substitute(ca.SX(value), x, turn) for value in lean)
-    mechanism.output(f"{name}_force", mechanism.results.multiplier(constraint), unit="N")
-    mechanism.output(f"{name}_pressure_angle", ca.atan2(across, cosine), unit="rad")
     if width is not None:
         if roller is None:
             raise DeclarationError(f"{what}: width needs roller, the roller's radius [m]")
-        round_ = _round(what, mechanism, design, size)
-        force = mechanism.results.multiplier(constraint)
+        round_ = positive(mechanism, f"{what}: roller", roller)
+        _refuse_undercut(what, mechanism, design, round_)
+        force = mechanism.results.multiplier(made.constraint)
         # The flank is as far beside the path as the roller's radius, on the side from which it
         # pushes.
-        bend = ca.sign(force) * ca.substitute(ca.SX(design.bend), x, turn)
-        curvature = 1.0 / (round_ * (1.0 + bend * round_))
-        pressure = largest_pressure(what, mechanism, ca.fabs(force), curvature, width, stiffness)
-        mechanism.output(f"{name}_hertz", pressure, unit="Pa")
+        bend = ca.substitute(ca.SX(design.bend), design.angle, mechanism.coordinate(cam))
+        curvature = 1.0 / (round_ * (1.0 + ca.sign(force) * bend * round_))
+        output_pressure(mechanism, name, ca.fabs(force), curvature, width, stiffness)
     return made
 
 
 def _way(mechanism: Mechanism, design: Groove, cam: Joint) -> ca.Function:
     """The place of the roller's centre in the drum's axes, by the angle and the parameters."""
     turned = _carried(cam, design.angle)
-    here = plus(turned.resolve(minus(design.place, design.centre)), cam.child.place)
-    x, y, z = map(ca.SX, here)
-    column = ca.densify(ca.vertcat(x, y, z))
-    return ca.Function("groove", [design.angle, mechanism.symbols], [column])
+    here = plus(turned.resolve(minus(design.place, cam.parent.place)), cam.child.place)
+    return graph("groove", {"angle": design.angle, "p": mechanism.symbols}, way=column(here))
 
 
 def _carried(joint: Joint, angle: Expression) -> Rotation:
@@ -240,114 +232,76 @@ def _groove(
     arm = _carried(follower, coordinate).apply(minus(held.place, follower.child.place))
     place = plus(plus(follower.parent.place, times(coordinate, line) if slides else ZERO), arm)
     seat = minus(place, centre)
-    direction = line if slides else _unit(cross(line, arm))
-    about = _unit(minus(seat, times(dot(seat, axis), axis))) if slides else line
-    moved = tuple(ca.jacobian(ca.SX(component), x) for component in place)
-    on_drum = minus((moved[0], moved[1], moved[2]), cross(axis, seat))
-    normal = _unit(cross(on_drum, about))
+    direction = line if slides else unit(cross(line, arm))
+    about = unit(_across(seat, axis)) if slides else line
     # Its way and its second derivative as the drum sees them, which turns.
-    again = tuple(ca.jacobian(ca.SX(component), x) for component in on_drum)
-    bent = minus((again[0], again[1], again[2]), cross(axis, on_drum))
-    beside = cross(on_drum, about)
-    bend = dot(bent, normal) / dot(beside, beside)
+    on_drum = minus(_slope(place, x), cross(axis, seat))
+    bent = minus(_slope(on_drum, x), cross(axis, on_drum))
     # Along the follower's coordinate, where the drum alone moves.
-    values = list(mechanism.values().values())
-    ahead = ca.Function(
-        "ahead", [x, mechanism.symbols], [ca.SX(dot(cross(about, cross(axis, seat)), direction))]
-    )
-    side = float(ahead(0.0, values))
+    ahead = ca.SX(dot(cross(about, cross(axis, seat)), direction))
+    side = mechanism.ownership.at_defaults(ca.substitute(ahead, x, 0.0))
     if not abs(side) > 0.0:
         raise DeclarationError(
             f"{what}: the drum's surface does not pass the roller; expected the roller off the"
             " axis, and a follower along the axis"
         )
-    normal, bend = (normal, bend) if side > 0.0 else (times(-1.0, normal), -bend)
-    return Groove(x, place, normal, direction, axis, centre, bend)
+    beside = times(1.0 if side > 0.0 else -1.0, cross(on_drum, about))
+    normal = unit(beside)
+    return Groove(x, place, normal, direction, dot(bent, normal) / dot(beside, beside))
 
 
-def _round(what: str, mechanism: Mechanism, design: Groove, roller: Expression) -> Expression:
-    """The radius of the roller, for which the groove's flanks must have room in its bends."""
-    angles = np.linspace(0.0, math.tau, _SAMPLED)
-    bend_functions = ca.Function(
-        "bends", [design.angle, mechanism.symbols], [ca.SX(design.bend), ca.SX(roller)]
-    )
-    values = list(mechanism.values().values())
-    bends, radius = (
-        np.broadcast_to(row.full().ravel(), angles.shape)
-        for row in bend_functions(angles[None], values)
-    )
-    if radius[0] <= 0.0:
-        raise DeclarationError(f"{what}: roller must be positive, got {radius[0]:g} m")
-    tight = int(np.argmax(np.abs(bends)))
-    if abs(bends[tight]) * radius[0] >= 1.0:
-        where = (
-            f"{math.degrees(angles[tight]):.4g} deg of the cam, where its path has a radius of"
-            f" {1.0 / abs(bends[tight]):.3g} m"
-        )
-        raise DeclarationError(
-            f"{what}: its groove is undercut at {where}; expected a smaller roller or a slower lift"
-        )
-    return roller
+def _across(vector: Vector, axis: Vector) -> Vector:
+    """The part of a vector at right angles to an axis of length 1."""
+    return minus(vector, times(dot(vector, axis), axis))
 
 
-def _check(
-    what: str, mechanism: Mechanism, design: Groove, rise: Expression, follower: Joint
-) -> None:
-    """Raise :class:`.DeclarationError` for axes that do not lie as they must, and for a lift that
-    is another after a turn.
+def _slope(vector: Vector, x: Expression) -> Vector:
+    a, b, c = (ca.jacobian(ca.SX(component), x) for component in vector)
+    return a, b, c
+
+
+def _refuse_undercut(what: str, mechanism: Mechanism, design: Groove, roller: Expression) -> None:
+    """Raise :class:`.DeclarationError` where the groove's flanks have no room for its roller in its
+    bends.
     """
-    x, p, values = design.angle, mechanism.symbols, list(mechanism.values().values())
-    cosine = dot(follower.triad[0], design.axis)
-    ends = [ca.substitute(rise, x, turn) for turn in (0.0, math.tau)]
-    seat = minus(design.place, design.centre)
-    radius = ca.norm_2(
-        ca.vertcat(*map(ca.SX, minus(seat, times(dot(seat, design.axis), design.axis))))
-    )
-    angles = np.linspace(0.0, math.tau, 181)
-    checks = ca.Function("checks", [x, p], [ca.SX(cosine), *ends, rise, radius])
-    lean, first, last, direction, reach = (
-        np.broadcast_to(row.full().ravel(), angles.shape) for row in checks(angles[None], values)
-    )
-    slides = follower.kind == "prismatic"
-    if abs(abs(lean[0]) - (1.0 if slides else 0.0)) > _SAME:
+    bends, radii = np.abs(sampled(mechanism, design.angle, design.bend, roller))
+    tight = int(np.argmax(bends))
+    if bends[tight] * radii[0] >= 1.0:
+        raise DeclarationError(
+            f"{what}: its groove is undercut at {math.degrees(ANGLES[tight]):.4g} deg of the cam,"
+            f" where its path has a radius of {1.0 / bends[tight]:.3g} m; expected a smaller roller"
+            " or a slower lift"
+        )
+
+
+def _check(what: str, mechanism: Mechanism, design: Groove, cam: Joint, follower: Joint) -> None:
+    """Raise :class:`.DeclarationError` for axes that do not lie as they must, and a roller on the
+    drum's axis.
+    """
+    axis, slides = cam.triad[0], follower.kind == "prismatic"
+    cosine = mechanism.ownership.at_defaults(dot(follower.triad[0], axis))
+    if abs(abs(cosine) - (1.0 if slides else 0.0)) > _SAME:
         place = "along the drum's axis" if slides else "at right angles to the drum's axis"
         raise DeclarationError(f"{what}: joint '{follower.name}' must be {place}")
-    if not np.isfinite(direction).all() or not reach.min() > _SAME * reach.max():
+    away = norm(_across(minus(design.place, cam.parent.place), axis))
+    (reach,) = sampled(mechanism, design.angle, away)
+    if not reach.min() > _SAME * reach.max():
         raise DeclarationError(f"{what}: the roller reaches the drum's axis; move it away")
-    if abs(last[0] - first[0]) > _SAME * (np.ptp(direction) or 1.0):
-        raise DeclarationError(
-            f"{what}: its lift must be the same after a turn of the cam; expected a period of 2 pi"
-        )
 
 
-def _contact(
-    mechanism: Mechanism, name: str, cam: Joint, held: Point, design: Groove, rise: Expression
-) -> Constraint:
+def _gap(mechanism: Mechanism, cam: Joint, held: Point, design: Groove) -> Expression:
     """The equation of the contact, in places, so that its force acts where it is."""
-    drum, turn = cam.child.body, mechanism.coordinate(cam)
+    drum, axis, centre = cam.child.body, cam.triad[0], cam.parent.place
     assert isinstance(drum, Link)
-    moment = cross(minus(design.place, design.centre), design.normal)
     # At the distance of a metre; of the moment about the axis nothing is left in it.
-    far = cross(moment, design.axis)
-    near = minus(design.normal, far)
-    along = plus(cam.child.place, _carried(cam, 0.0).resolve(design.axis))
-    ends = drum.at(*along)
+    far = cross(cross(minus(design.place, centre), design.normal), axis)
+    ends = drum.at(*plus(cam.child.place, cam.turned.resolve(axis)))
     gap: Any = 0.0
     for point, arm, there in (
         (held, design.normal, design.place),
-        (cam.child, times(-1.0, near), design.centre),
-        (ends, times(-1.0, far), plus(design.centre, design.axis)),
+        (cam.child, minus(far, design.normal), centre),
+        (ends, times(-1.0, far), plus(centre, axis)),
     ):
-        position = mechanism.place(point)
-        off = minus((position[0], position[1], position[2]), there)
-        gap = gap + dot(arm, off)
-    phi = mechanism.ownership.expression(
-        f"cam '{name}'", ca.substitute(gap, design.angle, turn), moving=True
-    )
-    return mechanism.constraints.setdefault(
-        name, Constraint(name, phi, lift=ca.substitute(rise, design.angle, turn))
-    )
-
-
-def _unit(vector: Vector) -> Vector:
-    return times(1.0 / norm(vector), vector)
+        x, y, z = mechanism.place(point)
+        gap = gap + dot(arm, minus((x, y, z), there))
+    return gap

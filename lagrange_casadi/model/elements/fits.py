@@ -22,8 +22,8 @@ _DEGREES = 180.0 / math.pi
 
 @dataclass(frozen=True, eq=False)
 class Fits:
-    """What was ``found`` to hold of a part ``what`` with the defaults of parameters, whose values
-    are ``number`` of expressions.
+    """Conditions of a part ``what``, ``found`` to hold where the ``number`` of an expression is its
+    value with the defaults of parameters.
 
     Methods raise :class:`.DeclarationError` for what does not hold.
     """

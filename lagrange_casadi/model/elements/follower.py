@@ -1,5 +1,5 @@
-"""The follower of a cam: its lift, a law of the cam's angle, and the pressure of Hertz where both
-touch along a line.
+"""The follower of a cam: its lift, a law of the cam's angle, the contact of both, and the pressure
+of Hertz where they touch along a line.
 
 Source: K. L. Johnson, *Contact Mechanics*, 1985, equation 4.45.
 """
@@ -8,17 +8,57 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
 
 import casadi as ca
 import numpy as np
 
+from ...base.arrays import Array
+from ...base.brief import Brief
+from ...base.scalars import column, graph
+from ...base.vectors import Vector, cross, dot, norm, times
 from ...errors import DeclarationError
+from ..constraints import Constraint
 from ..declared_parts import Expression, Ground, Point
 from ..expressions import expressed, sound
 from ..joints import Joint
 from ..mechanism import Mechanism
+from .contact import touching
 
-_SAMPLED = 37
+ANGLES = np.linspace(0.0, math.tau, 721)
+"""Angles of a turn at which expressions are looked at."""
+
+_SAME = 1e-9
+"""Share of a lift that is rounding."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Touch(Brief):
+    """Position of a contact, by the symbol ``angle`` of the cam [rad], in ground axes.
+
+    ``place`` is the follower's point, ``normal`` of length one along the force on the follower,
+    ``travel`` the direction in which the follower moves its point.
+    """
+
+    angle: Any
+    place: Vector
+    normal: Vector
+    travel: Vector
+
+    @property
+    def pressure_angle(self) -> Expression:
+        """The angle between the contact's force and the way of the follower's point [rad]."""
+        return ca.atan2(norm(cross(self.normal, self.travel)), dot(self.normal, self.travel))
+
+
+def sampled(mechanism: Mechanism, angle: ca.SX, *rows: Expression) -> Array:
+    """Values (rows, n) of expressions of the cam's angle at :data:`ANGLES`, with the defaults of
+    parameters.
+    """
+    defaults = [parameter.default for parameter in mechanism.parameters.values()]
+    function = graph("rows", {"angle": angle, "p": mechanism.symbols}, rows=column(rows))
+    return np.asarray(function(ANGLES[None], defaults).full())
 
 
 def rise_of(
@@ -26,24 +66,40 @@ def rise_of(
 ) -> ca.SX:
     """The lift as an expression of the symbol ``angle``.
 
-    Raises :class:`.DeclarationError` for what is no function of expressions, and where it is no
-    finite number.
+    Raises :class:`.DeclarationError` for what is no function of expressions, where it is no finite
+    number, and where it is another after a turn.
     """
     rise: ca.SX = expressed(f"{what}: lift", lambda x: ca.SX(lift(x)), [angle], "the cam's angle")
-    defaults = [parameter.default for parameter in mechanism.parameters.values()]
-    angles = np.linspace(0.0, math.tau, _SAMPLED)
-    values = (
-        ca.Function("lift", [angle, mechanism.symbols], [ca.densify(rise)])(angles[None], defaults)
-        .full()
-        .ravel()
-    )
+    (values,) = sampled(mechanism, angle, rise)
     if not np.isfinite(values).all():
-        first = math.degrees(angles[np.argmin(np.isfinite(values))])
+        first = math.degrees(ANGLES[np.argmin(np.isfinite(values))])
         raise DeclarationError(
             f"{what}: lift is no finite number at {first:.4g} deg of the cam; expected a function"
             " of CasADi's expressions, with casadi.sin in place of math.sin"
         )
+    if abs(values[-1] - values[0]) > _SAME * (np.ptp(values) or 1.0):
+        raise DeclarationError(
+            f"{what}: its lift must be the same after a turn of the cam; expected a period of 2 pi"
+        )
     return rise
+
+
+def contact(
+    mechanism: Mechanism, name: str, cam: Joint, touch: Touch, gap: Expression, rise: Expression
+) -> Constraint:
+    """Declare that a ``gap`` along the contact's normal is zero, and the outputs NAME_force and
+    NAME_pressure_angle.
+
+    Raises :class:`.DeclarationError` for a name that is taken.
+    """
+    phi, lift, lean = (
+        ca.substitute(ca.SX(one), touch.angle, mechanism.coordinate(cam))
+        for one in (gap, rise, touch.pressure_angle)
+    )
+    made = touching(mechanism, name, phi, lift=lift)
+    mechanism.output(f"{name}_force", mechanism.results.multiplier(made), unit="N")
+    mechanism.output(f"{name}_pressure_angle", lean, unit="rad")
+    return made
 
 
 def held_by(
@@ -94,31 +150,35 @@ def stiffness_of(what: str, elastic: tuple[float, float]) -> float:
     return elastic[0] / (2.0 * (1.0 - elastic[1] ** 2))
 
 
-def largest_pressure(
-    what: str,
+def output_pressure(
     mechanism: Mechanism,
+    name: str,
     force: ca.SX,
     curvature: ca.SX,
     width: Expression,
     stiffness: float,
-) -> Expression:
-    """The largest pressure [Pa] of two bodies, by force [N], width [m], the sum of their curvatures
-    [1/m], and stiffness [Pa].
+) -> None:
+    """Declare the output NAME_hertz: the largest pressure [Pa] of two bodies, by force [N], width
+    [m], the sum of their curvatures [1/m], and stiffness [Pa].
 
     Raises :class:`.DeclarationError` for a width that is not positive.
     """
-    wide = positive(mechanism, f"{what}: width", width)
-    return ca.sqrt(force * ca.fmax(curvature, 0.0) * stiffness / (math.pi * wide))
+    wide = positive(mechanism, f"cam '{name}': width", width)
+    pressure = ca.sqrt(force * ca.fmax(curvature, 0.0) * stiffness / (math.pi * wide))
+    mechanism.output(f"{name}_hertz", pressure, unit="Pa")
 
 
 def positive(mechanism: Mechanism, what: str, size: Expression) -> Expression:
     """A length [m], which is not a number where parameters make it zero or less.
 
-    Raises :class:`.DeclarationError` for a number that is not positive.
+    Raises :class:`.DeclarationError` where it is not positive with the defaults of parameters.
     """
     found = mechanism.ownership.expression(what, size, "m")
-    if isinstance(found, ca.SX):
-        return found * sound(found > 0.0)
-    if not found > 0.0:
-        raise DeclarationError(f"{what} must be positive, got {found:g} m")
-    return found
+    if not (number := mechanism.ownership.at_defaults(found)) > 0.0:
+        raise DeclarationError(f"{what} must be positive, got {number:g} m")
+    return found * sound(found > 0.0) if isinstance(found, ca.SX) else found
+
+
+def unit(vector: Vector) -> Vector:
+    """A direction of length 1."""
+    return times(1.0 / norm(vector), vector)

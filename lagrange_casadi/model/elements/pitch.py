@@ -39,7 +39,7 @@ class Teeth:
 
     @property
     def pressing(self) -> Expression:
-        """What presses the gears apart for a unit of the force along the pitch circle."""
+        """Force that presses the gears apart, for a unit of that along the pitch circle."""
         return ca.tan(self.pressure) / ca.cos(self.helix)
 
 
