@@ -9,7 +9,7 @@ from pathlib import Path
 from ...base.arguments import public
 from ...base.csv_table import Table
 from ...errors import DeclarationError
-from .shape import Shape, dimensions_of
+from .shape import DIMENSIONS, Shape
 
 _TABLES = Path(__file__).parent / "tables"
 STANDARD = tuple(sorted(path.stem for path in _TABLES.glob("*.csv")))
@@ -46,8 +46,8 @@ class Profile:
         DeclarationError
             If the kind has other dimensions.
         """
-        names = dimensions_of(kind)
-        if names is None or set(names) != set(self.dimensions):
+        names = DIMENSIONS.get(kind, ())
+        if set(names) != set(self.dimensions):
             valid = ", ".join(names or ("none by name",))
             raise DeclarationError(
                 f"profile '{self.name}': a {kind} has the dimensions {valid}, got"

@@ -10,6 +10,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import pi
 from typing import Any
 
 from ...base.arguments import Symbolic, public
@@ -33,7 +34,7 @@ class Shape:
     dimensions: Mapping[str, Any]
 
     def __post_init__(self) -> None:
-        known = dimensions_of(self.kind)
+        known = DIMENSIONS.get(self.kind)
         if self.kind not in _FORMS or (known is not None and tuple(self.dimensions) != known):
             raise DeclarationError(f"{self.kind!r} is no cross-section with these dimensions")
         if any(isinstance(value, str) for value in self.dimensions.values()):
@@ -351,9 +352,8 @@ def hollow_section(
     DeclarationError
         For a text that is no length.
     """
-    names = _NAMES["hollow_section"]
     values = (height, width, wall, outer_radius, inner_radius)
-    return Shape("hollow_section", dict(zip(names, values, strict=True)))
+    return Shape("hollow_section", dict(zip(DIMENSIONS["hollow_section"], values, strict=True)))
 
 
 @public
@@ -489,8 +489,7 @@ def along(ratios: Sequence[float], shapes: Sequence[Shape]) -> Course:
             "along: ratios must rise from 0 to 1, got"
             f" {', '.join(f'{ratio:g}' for ratio in ratios)}"
         )
-    each, breaks, ends = {id(shape): shape for shape in shapes}, [0.0], []
-    number = {key: k for k, key in enumerate(each)}
+    each, breaks, ends = [*dict.fromkeys(shapes)], [0.0], []
     for (a, first), (b, last) in itertools.pairwise(zip(ratios, shapes, strict=True)):
         if a == b:
             continue
@@ -500,10 +499,8 @@ def along(ratios: Sequence[float], shapes: Sequence[Shape]) -> Course:
                 " put a step"
             )
         breaks.append(b)
-        ends.append((number[id(first)], number[id(last)]))
-    return Course(
-        tuple(breaks), tuple({id(shape): shape for shape in shapes}.values()), tuple(ends)
-    )
+        ends.append((each.index(first), each.index(last)))
+    return Course(tuple(breaks), tuple(each), tuple(ends))
 
 
 @public
@@ -572,11 +569,6 @@ def between(first: Shape, last: Shape, share: Operand) -> Shape:
     return Shape(first.kind, dimensions)
 
 
-def dimensions_of(kind: str) -> tuple[str, ...] | None:
-    """The names of the dimensions of a kind; None where they vary."""
-    return _NAMES.get(kind)
-
-
 _GIVEN = dict.fromkeys(("iz", "iy", "iyz", "torsion"), "m^4") | {
     "torsion_modulus": "m^3",
     "shear_y": "m^2",
@@ -586,7 +578,7 @@ _GIVEN = dict.fromkeys(("iz", "iy", "iyz", "torsion"), "m^4") | {
 
 _ROUND = ("round_bar", "tube")
 _THIN = ("height", "width", "web", "flange")
-_NAMES = {
+DIMENSIONS = {
     "rectangle": ("height", "width"),
     "round_bar": ("diameter",),
     "tube": ("diameter", "wall"),
@@ -597,6 +589,7 @@ _NAMES = {
     "box": _THIN,
     "hollow_section": ("height", "width", "wall", "outer_radius", "inner_radius"),
 }
+"""Names of the dimensions by kind, of those whose dimensions do not vary."""
 
 
 def _corners(d: Mapping[str, Operand]) -> list[tuple[Operand, Operand]]:
@@ -636,12 +629,13 @@ _FORMS: dict[str, Callable[[dict[str, Any], bool], Properties]] = {
     "given": _given,
 }
 
-_QUARTER_PI = 0.7853981633974483
+
+# Properties have the areas too, but as expressions take milliseconds of CasADi.
 _AREAS: dict[str, Callable[[dict[str, Any]], Any]] = {
     "rectangle": lambda d: d["height"] * d["width"],
-    "round_bar": lambda d: _QUARTER_PI * d["diameter"] ** 2,
-    "tube": lambda d: 4 * _QUARTER_PI * d["wall"] * (d["diameter"] - d["wall"]),
-    "ellipse": lambda d: _QUARTER_PI * d["height"] * d["width"],
+    "round_bar": lambda d: pi / 4 * d["diameter"] ** 2,
+    "tube": lambda d: pi * d["wall"] * (d["diameter"] - d["wall"]),
+    "ellipse": lambda d: pi / 4 * d["height"] * d["width"],
     "i_section": lambda d: (
         2 * d["width"] * d["flange"] + (d["height"] - 2 * d["flange"]) * d["web"]
     ),

@@ -84,9 +84,14 @@ def ellipse(height: Operand, width: Operand, *, space: bool) -> Properties:
         fibres.append(_edge(angle, a * y, c * z, y, z, 4 / 3 / area, c / a, torsion))
     constant = pi * a**3 * c**3 / (a * a + c * c)
     iy, iz = pi * a * c**3 / 4, pi * c * a**3 / 4
-    stiff = (_elliptic(a / c) * area, _elliptic(c / a) * area)
     return Properties(
-        area, iy, iz, tuple(fibres), torsion=constant, shear_y=stiff[0], shear_z=stiff[1]
+        area,
+        iy,
+        iz,
+        tuple(fibres),
+        torsion=constant,
+        shear_y=_elliptic(a / c) * area,
+        shear_z=_elliptic(c / a) * area,
     )
 
 
@@ -98,8 +103,7 @@ def _elliptic(n: Operand) -> Operand:
 def tube(diameter: Operand, wall: Operand, *, space: bool) -> Properties:
     """A round tube by its outer diameter and its wall, whatever its thickness."""
     outer, inner = diameter / 2, diameter / 2 - wall
-    square, polar = outer**2 + inner**2, pi * wall * (outer + inner)
-    area = polar
+    square, area = outer**2 + inner**2, pi * wall * (outer + inner)
     moment = area * square / 4
     most = 4 / 3 * (outer**2 + outer * inner + inner**2) / square / area
     fibres = []

@@ -29,7 +29,10 @@ def i_section(height: Operand, width: Operand, web: Operand, flange: Operand) ->
     torsion = 2 * rectangle_torsion(b, flange) + rectangle_torsion(hw, web)
     at_flange = b * flange * (h - flange) / 2
     in_middle = at_flange + web * hw**2 / 8
-    fibres = _corners(h / 2, b / 2)
+    fibres = [
+        Fibre(f"corner {_side(i, 'y')} {_side(j, 'z')}", i * h / 2, j * b / 2)
+        for i, j in itertools.product(_SIGNS, repeat=2)
+    ]
     for i, j in itertools.product(_SIGNS, repeat=2):
         up, side = _side(i, "y"), _side(j, "z")
         along = (i * j * b * (h - flange) / (4 * iz), b**2 / (8 * iy), i * flange / torsion)
@@ -40,9 +43,14 @@ def i_section(height: Operand, width: Operand, web: Operand, flange: Operand) ->
     for j in _SIGNS:
         down = (in_middle / (iz * web), 0.0, -j * web / torsion)
         fibres.append(Fibre(f"middle of the web {_side(j, 'z')}", 0.0, j * web / 2, down))
-    shear = (h - flange) * web, 5 / 3 * b * flange
     return Properties(
-        area, iy, iz, tuple(fibres), torsion=torsion, shear_y=shear[0], shear_z=shear[1]
+        area,
+        iy,
+        iz,
+        tuple(fibres),
+        torsion=torsion,
+        shear_y=(h - flange) * web,
+        shear_z=5 / 3 * b * flange,
     )
 
 
@@ -73,9 +81,16 @@ def t_section(height: Operand, width: Operand, web: Operand, flange: Operand) ->
         down = (at_flange / (iz * web), 0.0, twist)
         fibres.append(Fibre(f"web at the flange {side}", hw - low, j * web / 2, down))
         fibres.append(Fibre(f"web {side}", neutral, j * web / 2, (inside / (iz * web), 0.0, twist)))
-    shear = height * web, 5 / 6 * b * flange
-    stiff = {"torsion": torsion, "shear_y": shear[0], "shear_z": shear[1]}
-    return Properties(area, iy, iz, tuple(fibres), **stiff, centre_y=middle)
+    return Properties(
+        area,
+        iy,
+        iz,
+        tuple(fibres),
+        torsion=torsion,
+        shear_y=height * web,
+        shear_z=5 / 6 * b * flange,
+        centre_y=middle,
+    )
 
 
 def c_section(height: Operand, width: Operand, web: Operand, flange: Operand) -> Properties:
@@ -113,9 +128,16 @@ def c_section(height: Operand, width: Operand, web: Operand, flange: Operand) ->
         fibres.append(
             Fibre(f"{face} of the web, middle", 0.0, z, (in_middle / (iz * web), 0.0, twist))
         )
-    shear = high * web, 5 / 3 * b * flange
-    stiff = {"torsion": torsion, "shear_y": shear[0], "shear_z": shear[1]}
-    return Properties(area, iy, iz, tuple(fibres), **stiff, centre_z=centre)
+    return Properties(
+        area,
+        iy,
+        iz,
+        tuple(fibres),
+        torsion=torsion,
+        shear_y=high * web,
+        shear_z=5 / 3 * b * flange,
+        centre_z=centre,
+    )
 
 
 def box(height: Operand, width: Operand, web: Operand, flange: Operand) -> Properties:
@@ -147,9 +169,14 @@ def box(height: Operand, width: Operand, web: Operand, flange: Operand) -> Prope
         deep = (web_first + flange * bi**2 / 4) / (2 * iy * flange)
         along = (0.0, deep, s / (2 * inside * flange))
         fibres.append(Fibre(f"flange {_side(s, 'y')}", s * h / 2, 0.0, along_z=along))
-    shear = 2 * high * web, 2 * wide * flange
     return Properties(
-        area, iy, iz, tuple(fibres), torsion=torsion, shear_y=shear[0], shear_z=shear[1]
+        area,
+        iy,
+        iz,
+        tuple(fibres),
+        torsion=torsion,
+        shear_y=2 * high * web,
+        shear_z=2 * wide * flange,
     )
 
 
@@ -168,7 +195,7 @@ def hollow_section(
     h, b, t, middle = height, width, wall, (outer_radius + inner_radius) / 2
     outlines = [(h, b, outer_radius, 1), (h - 2 * t, b - 2 * t, inner_radius, -1)]
     area, iz, iy, half_y, half_z = (
-        sum(sign * rounded(x, y, r)[k] for x, y, r, sign in outlines) for k in range(5)
+        sum(sign * _rounded(x, y, r)[k] for x, y, r, sign in outlines) for k in range(5)
     )
     high, wide, lost = h - t, b - t, (4 - pi) * middle
     length, inside = 2 * (high + wide) - 2 * lost, high * wide - lost * middle
@@ -205,11 +232,11 @@ def hollow_area(
     height: Operand, width: Operand, wall: Operand, outer_radius: Operand, inner_radius: Operand
 ) -> Operand:
     """Area of a rectangular hollow section."""
-    inner = rounded(height - 2 * wall, width - 2 * wall, inner_radius)
-    return rounded(height, width, outer_radius)[0] - inner[0]
+    inner = _rounded(height - 2 * wall, width - 2 * wall, inner_radius)
+    return _rounded(height, width, outer_radius)[0] - inner[0]
 
 
-def rounded(height: Operand, width: Operand, radius: Operand) -> tuple[Operand, ...]:
+def _rounded(height: Operand, width: Operand, radius: Operand) -> tuple[Operand, ...]:
     """A rectangle with rounded corners: its area, second moments about z and about y, and first
     moments of its halves about z and about y.
     """
@@ -235,13 +262,6 @@ def _around_corner(
     """
     side, centre = wide / 2 - radius, high / 2 - radius
     return wall * (side * high / 2 + radius * (centre * (angle * pi / 180) + radius * s))
-
-
-def _corners(y: Operand, z: Operand) -> list[Fibre]:
-    return [
-        Fibre(f"corner {_side(i, 'y')} {_side(j, 'z')}", i * y, j * z)
-        for i, j in itertools.product(_SIGNS, repeat=2)
-    ]
 
 
 def _side(sign: int, axis: str) -> str:
