@@ -104,22 +104,21 @@ def bent_bar(
     places = corners_of(mechanism, what, corners)
     if (mass is None) == (per_length is None):
         raise DeclarationError(f"{what}: expected mass= or per_length=")
-    mass = None if mass is None else mechanism.ownership.expression(f"{what}: mass", mass, "kg")
-    per_length = (
-        None
-        if per_length is None
-        else mechanism.ownership.expression(f"{what}: per_length", per_length, "kg/m")
-    )
     directions = [minus(b, a) for a, b in itertools.pairwise(places)]
     lengths = [norm(direction) for direction in directions]
     for k, length in enumerate(lengths):
         if isinstance(length, float) and not length > 0.0:
             raise DeclarationError(f"{what}: corners {k} and {k + 1} coincide")
-    whole = sum(lengths[1:], lengths[0])
-    pieces = []
-    for k, length in enumerate(lengths):
-        piece_mass = per_length * length if mass is None else mass * (length / whole)
-        pieces.append(mechanism.link(f"{name}_{k + 1}", length=length, mass=piece_mass))
+    checked = mechanism.ownership.expression
+    density = (
+        checked(f"{what}: per_length", per_length, "kg/m")
+        if mass is None
+        else checked(f"{what}: mass", mass, "kg") / sum(lengths)
+    )
+    pieces = [
+        mechanism.link(f"{name}_{k}", length=length, mass=density * length)
+        for k, length in enumerate(lengths, 1)
+    ]
     joined = zip(itertools.pairwise(pieces), itertools.pairwise(directions), strict=True)
     for k, (pair, ways) in enumerate(joined, 1):
         _weld(mechanism, f"{name}_bend_{k}", *pair, *ways)

@@ -131,40 +131,32 @@ def _courses(mechanism: Mechanism, point: Point) -> list[Course]:
 
 def _through(mechanism: Mechanism, course: Course, joint: Joint, other: Body) -> Course | None:
     """A course seen from beyond a joint of its carrier; None where it does not stay on one axis."""
-    outward, zero = joint.child.body is other, joint.turned
-    number = mechanism.ownership.at_defaults
-    if joint.kind != "weld" and (
-        not joint.axes or course.slides or (joint.kind == "prismatic" and course.rotations)
-    ):
-        return None
-
-    def seen(place: Vector) -> Vector:
-        if outward:
-            return plus(joint.child.place, zero.resolve(minus(place, joint.parent.place)))
-        return plus(joint.parent.place, zero.apply(minus(place, joint.child.place)))
-
-    turn = zero.resolve if outward else zero.apply
-    whole = (zero.inverse if outward else zero).then(course.seen)
-    axis, place, shifted = course.axis, course.place, course.shifted
-    if joint.kind == "weld":
-        joints, moved = (*course.joints, joint), (course.rotations, course.slides)
-        return Course(other, seen(place), turn(axis), *moved, joints, shifted, whole)
-    # The joint's axis is in its parent's axes, and the same in its child's, turned.
-    direction = joint.axes[0].direction
-    here = direction if outward else zero.resolve(direction)
-    sign = -1 if outward else 1
-    if not course.rotations:
-        axis = here
-    elif size(cross(axis, here), number) > FITTING:
-        return None
-    elif number(dot(axis, here)) < 0.0:
-        sign = -sign
-    if joint.kind == "revolute":
-        off = cross(minus(place, (joint.parent if outward else joint.child).place), here)
-        if size(off, number) > FITTING * max(1.0, size(place, number)):
+    outward, number = joint.child.body is other, mechanism.ownership.at_defaults
+    near, far = joint.on(course.carrier), joint.on(other)
+    axis, rotations, slides = course.axis, course.rotations, course.slides
+    shifted = course.shifted
+    if joint.kind != "weld":
+        if not joint.axes or slides or (joint.kind == "prismatic" and rotations):
             return None
-        shifted = (*shifted, *off)
-    rotations, joints = (*course.rotations, (sign, joint)), (*course.joints, joint)
-    return Course(
-        other, seen(place), turn(axis), rotations, joint.kind == "prismatic", joints, shifted, whole
-    )
+        # The joint's axis is in its parent's axes, and the same in its child's, turned.
+        direction = joint.axes[0].direction
+        here = direction if outward else joint.turned.resolve(direction)
+        sign = -1 if outward else 1
+        if not rotations:
+            axis = here
+        elif size(cross(axis, here), number) > FITTING:
+            return None
+        elif number(dot(axis, here)) < 0.0:
+            sign = -sign
+        if joint.kind == "revolute":
+            off = cross(minus(course.place, near.place), here)
+            if size(off, number) > FITTING * max(1.0, size(course.place, number)):
+                return None
+            shifted = (*shifted, *off)
+        rotations, slides = (*rotations, (sign, joint)), joint.kind == "prismatic"
+    # From the carrier's axes to those of the other body.
+    turn = joint.turned.inverse if outward else joint.turned
+    place = plus(far.place, turn.apply(minus(course.place, near.place)))
+    joints = (*course.joints, joint)
+    seen = turn.then(course.seen)
+    return Course(other, place, turn.apply(axis), rotations, slides, joints, shifted, seen)

@@ -12,6 +12,8 @@ import casadi as ca
 
 from ...base.arguments import public
 from ...base.brief import Brief
+from ...base.scalars import column
+from ...base.vectors import norm
 from ...errors import DeclarationError
 from ..beams.solid import polygon_area, polygon_moments
 from ..declared_parts import Expression, Link, Point
@@ -119,9 +121,7 @@ def plate(
         whole = checked(what, mass, "kg")
     else:
         whole = ca.fabs(ca.SX(area)) * checked(what, per_area, "kg/m^2")
-    farthest = ca.SX(0)
-    for corner in places:
-        farthest = ca.fmax(farthest, ca.sqrt(ca.SX(corner[0]) ** 2 + ca.SX(corner[1]) ** 2))
+    farthest = ca.mmax(column(norm((x, y, 0.0)) for x, y in places))
     link = mechanism.link(
         name,
         length=plain(farthest),
@@ -148,7 +148,8 @@ def _refuse_crossing(what: str, places: Sequence[Expression]) -> None:
 
 
 def _cross(a: Expression, b: Expression, c: Expression, d: Expression) -> bool:
-    def side(p: Expression, q: Expression, r: Expression) -> float:
-        return float((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]))
-
-    return side(a, b, c) * side(a, b, d) < 0.0 and side(c, d, a) * side(c, d, b) < 0.0
+    beside, along = (
+        polygon_area((*one, other[0])) * polygon_area((*one, other[1]))
+        for one, other in (((a, b), (c, d)), ((c, d), (a, b)))
+    )
+    return bool(beside < 0.0 and along < 0.0)

@@ -127,11 +127,7 @@ def profile_lift(
     what, slides = "profile", mechanism.ownership.joint(follower).kind == "prismatic"
     smoothing = quantity(f"{what}: smoothing", smoothing, "m" if slides else "rad")
     layout = layout_of(what, mechanism, cam, follower, point, roller, flat, side)
-    values = mechanism.values()
-
-    def number(expression: Expression) -> float:
-        return float(mechanism.number(expression, values))
-
+    number = mechanism.ownership.at_defaults
     away, arm = (np.array([number(x) for x in pair[:2]]) for pair in (layout.away, layout.arm))
     if isinstance(points, (str, os.PathLike)):
         points = read_profile(points)
@@ -182,13 +178,8 @@ def _normals(what: str, points: Array) -> tuple[Array, Array]:
         for row in closed.T
     ]
     along = np.array(slopes).T
-    if (
-        np.sum(
-            np.unwrap(np.arctan2(points[:, 1], points[:, 0])[[*range(len(points)), 0]])[[0, -1]]
-            * [-1, 1]
-        )
-        < math.pi
-    ):
+    turned = np.unwrap(_direction(closed))
+    if turned[-1] - turned[0] < math.pi:
         raise DeclarationError(
             f"{what}: its points do not enclose the cam's shaft, which is at (0, 0)"
         )

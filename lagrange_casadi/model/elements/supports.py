@@ -20,6 +20,7 @@ from ...base.vectors import AXES, cross, minus, norm, plus, times
 from ...errors import DeclarationError
 from ..declared_parts import Body, Expression, Point, Vector
 from ..directions import in_plane, triad_of
+from ..expressions import plain
 from ..joints import Joint, Triad
 from ..mechanism import Mechanism
 from ..spatial import SpatialMechanism
@@ -180,16 +181,17 @@ def two_bushes(
     if turns and not mechanism.space:
         raise DeclarationError(f"{what}: turns= is for space only; a rod in a plane cannot turn")
     between = minus(far.place, near.place)
-    length = ca.SX(norm(between))
-    if length.is_constant() and float(length) == 0.0:
+    length = plain(norm(between))
+    if isinstance(length, float) and length == 0.0:
         raise DeclarationError(f"{what}: both are at one place of '{near.body.name}'")
     u, v, _ = _triad(mechanism, what, axis)
     # A shoe without mass slides on the rod, and is pinned to the first bush: so the bush bears no
     # moment across the axis, and no effort of the slide.
-    size = float(length) if length.is_constant() else length
     centre: Any = (0.0,) * (3 if mechanism.space else 2)
     inertia = (0.0, 0.0, 0.0) if mechanism.space else 0.0
-    shoe = mechanism.link(f"{name}_shoe", length=size / 4, mass=0.0, centre=centre, inertia=inertia)
+    shoe = mechanism.link(
+        f"{name}_shoe", length=length / 4, mass=0.0, centre=centre, inertia=inertia
+    )
     names, pivot = (f"{name}_first", f"{name}_second"), f"{name}_pivot"
     if isinstance(mechanism, SpatialMechanism):
         kind = mechanism.cylindrical if turns else mechanism.prismatic

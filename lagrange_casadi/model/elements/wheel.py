@@ -68,11 +68,12 @@ def wheel(
             f"{what}: its bore must be smaller than its radius, got {inner:g} m in {outer:g} m"
         )
     thick = 0.0 if width is None else ownership.expression(f"{what}: width", width, "m")
-    weight = ownership.expression(f"{what}: mass", mass, "kg") if mass is not None else None
     density = ownership.expression(f"{what}: density", density, "kg/m^3")
     turned = number(turned, "rad")
     whole = (
-        density * math.pi * (outer * outer - inner * inner) * thick if weight is None else weight
+        density * math.pi * (outer * outer - inner * inner) * thick
+        if mass is None
+        else ownership.expression(f"{what}: mass", mass, "kg")
     )
     polar = whole * (outer * outer + inner * inner) / 2
     if isinstance(mechanism, SpatialMechanism):
