@@ -9,12 +9,14 @@ normal.
 
 from __future__ import annotations
 
+import cmath
 import math
 import os
 from dataclasses import dataclass, replace
-from typing import Annotated
+from typing import Annotated, TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 
 from ...base.arguments import Measured, Numeric, public
 from ...base.arrays import Array, Expression
@@ -23,12 +25,15 @@ from ...base.csv_table import Table
 from ...base.units import quantity
 from ...errors import DeclarationError, one_line
 from ..curves import Curve, curve
-from ..declared_parts import Point
+from ..declared_parts import Point, Vector
 from ..joints import Joint
 from ..mechanism import Mechanism
 from .cam import layout_of
 
 _LEAST = 16
+
+Places: TypeAlias = npt.NDArray[np.complex128]
+"""Places and directions in a plane, x + i y."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,105 +129,103 @@ def profile_lift(
     PathError
         For a file that cannot be read.
     """
-    what, slides = "profile", mechanism.ownership.joint(follower).kind == "prismatic"
-    smoothing = quantity(f"{what}: smoothing", smoothing, "m" if slides else "rad")
-    layout = layout_of(what, mechanism, cam, follower, point, roller, flat, side)
+    slides = mechanism.ownership.joint(follower).kind == "prismatic"
     number = mechanism.ownership.at_defaults
-    away, arm = (np.array([number(x) for x in pair[:2]]) for pair in (layout.away, layout.arm))
+    smoothing = quantity("profile: smoothing", smoothing, "m" if slides else "rad")
+    layout = layout_of("profile", mechanism, cam, follower, point, roller, flat, side)
+
+    def plane(vector: Vector) -> complex:
+        return complex(number(vector[0]), number(vector[1]))
+
     if isinstance(points, (str, os.PathLike)):
         points = read_profile(points)
-    at, normal = _normals(what, np.asarray(points, float))
+    at, normal = _normals(np.asarray(points, float))
     radius = number(layout.roller)
     if slides:
-        up = np.array([number(x) for x in follower.triad[0][:2]])
-        turned = np.array([number(x) for x in follower.turned.apply((*arm, 0.0))[:2]])
-        offset = float((away + turned) @ np.array([up[1], -up[0]]))
-        found = _law(what, *_sliding(at, normal, up, offset, radius, flat), smoothing)
+        offset = number(layout.offset[0])
+        up = plane(layout.offset[2])
+        found = _law(*_sliding(at, normal, up, offset, radius, flat), smoothing)
         least = _least(found)
         base = least if flat else math.hypot(least, offset) - radius
     else:
-        reach, length = math.hypot(*away), math.hypot(*arm)
-        found = _law(what, *_swinging(at, normal, away, length, radius, side, flat), smoothing)
+        away, length = plane(layout.away), abs(plane(layout.arm))
+        found = _law(*_swinging(at, normal, away, length, radius, side, flat), smoothing)
         least = _least(found)
         base = (
-            reach * math.sin(least)
+            abs(away) * math.sin(least)
             if flat
-            else math.sqrt(length**2 + reach**2 - 2 * length * reach * math.cos(least)) - radius
+            else abs(length - abs(away) * cmath.rect(1.0, least)) - radius
         )
     cells = tuple((cell[0] - least, *cell[1:]) for cell in found.cells)
     return ProfileLift(replace(found, cells=cells), base)
 
 
-def _normals(what: str, points: Array) -> tuple[Array, Array]:
-    """Points in counter-clockwise sequence and the normals outward there, each (n, 2)."""
+def _normals(points: Array) -> tuple[Places, Places]:
+    """Points in counter-clockwise sequence and the normals outward there, each (n,)."""
     if points.ndim != 2 or points.shape[1] != 2 or not np.isfinite(points).all():
         raise DeclarationError(
-            f"{what}: expected points (x, y), finite numbers, got an array of shape {points.shape}"
+            f"profile: expected points (x, y), finite numbers, got an array of shape {points.shape}"
         )
-    size = float(np.abs(points).max(initial=0.0))
-    if points.shape[0] > 1 and np.abs(points[-1] - points[0]).max() <= 1e-9 * size:
-        points = points[:-1]
-    if len(points) < _LEAST:
-        raise DeclarationError(f"{what}: expected at least {_LEAST} points, got {len(points)}")
-    x, y = points.T
-    area = float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)) / 2.0
-    if area < 0.0:
-        points = points[::-1]
-    closed = np.vstack([points, points[:1]])
-    steps = np.hypot(*np.diff(closed, axis=0).T)
+    found = points[:, 0] + 1j * points[:, 1]
+    size = float(np.abs(found).max(initial=0.0))
+    if found.size > 1 and abs(found[-1] - found[0]) <= 1e-9 * size:
+        found = found[:-1]
+    if found.size < _LEAST:
+        raise DeclarationError(f"profile: expected at least {_LEAST} points, got {found.size}")
+    if np.sum((found.conj() * np.roll(found, -1)).imag) < 0.0:
+        found = found[::-1]
+    closed = np.append(found, found[0])
+    steps = np.abs(np.diff(closed))
     if not steps.min() > 1e-9 * size:
-        raise DeclarationError(f"{what}: points {int(np.argmin(steps)) + 1} and the next coincide")
-    arc_length = np.concatenate([[0.0], np.cumsum(steps)])
-    slopes = [
-        [cell[1] for cell in curve(arc_length.tolist(), row.tolist(), periodic=True).cells]
-        for row in closed.T
-    ]
-    along = np.array(slopes).T
-    turned = np.unwrap(_direction(closed))
+        raise DeclarationError(f"profile: points {int(np.argmin(steps)) + 1} and the next coincide")
+    arc_length = [0.0, *np.cumsum(steps).tolist()]
+    x, y = (
+        np.array([cell[1] for cell in curve(arc_length, row.tolist(), periodic=True).cells])
+        for row in (closed.real, closed.imag)
+    )
+    turned = np.unwrap(np.angle(closed))
     if turned[-1] - turned[0] < math.pi:
         raise DeclarationError(
-            f"{what}: its points do not enclose the cam's shaft, which is at (0, 0)"
+            "profile: its points do not enclose the cam's shaft, which is at (0, 0)"
         )
-    return points, np.column_stack([along[:, 1], -along[:, 0]]) / np.hypot(*along.T)[:, None]
+    return found, (y - 1j * x) / np.hypot(x, y)
 
 
 def _sliding(
-    at: Array, normal: Array, up: Array, offset: float, radius: float, flat: bool
+    at: Places, normal: Places, up: complex, offset: float, radius: float, flat: bool
 ) -> tuple[Array, Array]:
     """The cam's angle and the follower's place along its line while each point is touched."""
     if flat:
-        return math.atan2(up[1], up[0]) - _direction(normal), np.sum(at * normal, axis=1)
+        return np.angle(up) - np.angle(normal), (at * normal.conj()).real
     pitch = at + radius * normal
-    reach = np.hypot(*pitch.T)
+    reach = np.abs(pitch)
     if reach.min() < abs(offset):
         raise DeclarationError(
             f"profile: the follower's line is {abs(offset):.6g} m from the cam's shaft, too far to"
             f" touch the whole profile; expected less than {reach.min():.6g} m"
         )
     height = np.sqrt(reach**2 - offset**2)
-    place = offset * np.array([up[1], -up[0]]) + height[:, None] * up
-    return _direction(place) - _direction(pitch), height
+    return np.angle((height - 1j * offset) * up) - np.angle(pitch), height
 
 
 def _swinging(
-    at: Array, normal: Array, away: Array, arm: float, radius: float, side: int, flat: bool
+    at: Places, normal: Places, away: complex, arm: float, radius: float, side: int, flat: bool
 ) -> tuple[Array, Array]:
     """The cam's angle, and the follower's angle from the line to the cam's shaft, while each point
     is touched.
     """
-    reach = math.hypot(*away)
-    line = math.atan2(-away[1], -away[0])
+    reach, line = abs(away), np.angle(-away)
     if flat:
-        sine = np.sum(at * normal, axis=1) / reach
+        sine = (at * normal.conj()).real / reach
         if np.abs(sine).max() >= 1.0:
             raise DeclarationError(
                 f"profile: the follower's pivot is {reach:.6g} m from the cam's shaft, but the"
                 f" profile reaches {reach * np.abs(sine).max():.6g} m; move the pivot farther away"
             )
         angle = np.arcsin(sine)
-        return line + side * (angle + math.pi / 2) - _direction(normal), angle
+        return line + side * (angle + math.pi / 2) - np.angle(normal), angle
     pitch = at + radius * normal
-    far = np.hypot(*pitch.T)
+    far = np.abs(pitch)
     cosine = (arm**2 + reach**2 - far**2) / (2.0 * arm * reach)
     if np.abs(cosine).max() >= 1.0:
         raise DeclarationError(
@@ -231,32 +234,29 @@ def _swinging(
             f" {far.min():.6g} to {far.max():.6g} m; expected another length or pivot"
         )
     angle = np.arccos(cosine)
-    turned = line + side * angle
-    place = away + arm * np.column_stack([np.cos(turned), np.sin(turned)])
-    return _direction(place) - _direction(pitch), angle
+    place = away + arm * np.exp(1j * (line + side * angle))
+    return np.angle(place) - np.angle(pitch), angle
 
 
-def _law(what: str, angle: Array, height: Array, smoothing: float) -> Curve:
+def _law(angle: Array, height: Array, smoothing: float) -> Curve:
     """The curve through the follower's places at angles that fall while the
     profile is gone round.
     """
-    turned = np.unwrap(np.concatenate([angle, angle[:1]]))
+    turned = np.unwrap(np.append(angle, angle[0]))
     steps = -np.diff(turned)
     if not (steps > 0.0).all() or abs(steps.sum() - math.tau) > 1e-6:
         bad = int(np.argmin(steps)) + 1
         raise DeclarationError(
-            f"{what}: the follower cannot touch it near its point {bad}, counted counter-clockwise:"
-            " the profile is hollow there, or its points are too rough"
+            f"profile: the follower cannot touch it near its point {bad}, counted"
+            " counter-clockwise: the profile is hollow there, or its points are too rough"
         )
-    order = slice(None, None, -1)
-    x, y = turned[order], np.concatenate([height, height[:1]])[order]
     # From a whole turn, so that a period is one to the last digit.
-    start = float(x[0])
-    at = [start, *(x[1:-1].tolist()), start + math.tau]
+    start, *within, _ = turned[::-1].tolist()
+    places = np.append(height, height[0])[::-1].tolist()
     try:
-        return curve(at, y.tolist(), periodic=True, smoothing=smoothing)
+        return curve([start, *within, start + math.tau], places, periodic=True, smoothing=smoothing)
     except DeclarationError as error:
-        raise DeclarationError(f"{what}: {one_line(error)}") from None
+        raise DeclarationError(f"profile: {one_line(error)}") from None
 
 
 def _least(found: Curve) -> float:
@@ -264,7 +264,3 @@ def _least(found: Curve) -> float:
     widths = np.diff([*found.starts, found.starts[0] + found.high - found.low])
     pieces = of_powers(np.array(found.cells).T, np.array([np.zeros(widths.size), widths]))
     return float(value(pieces, np.pad(zeros(slope(pieces)).places, [(0, 1), (0, 0)])).min())
-
-
-def _direction(vectors: Array) -> Array:
-    return np.arctan2(vectors[:, 1], vectors[:, 0])
