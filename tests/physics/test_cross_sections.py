@@ -306,7 +306,7 @@ def test_impossible_cross_sections_are_one_line(why):
             "Notch: bending: expected a number of at least 1, got 0.5"),
         (lambda: beams.Notch(0.2, sensitivity=2),
             "Notch: sensitivity: expected a number from 0 to 1, got 2"),
-        (lambda: beams.Material("x", -1.0), "material 'x': density must be a positive number"),
+        (lambda: beams.Material("x", -1.0), "Material 'x': density: expected a positive number"),
         (lambda: beams.Material("x", 1.0, yield_strength=2.0, ultimate=1.0),
             "yield_strength 2 Pa is above ultimate 1 Pa"),
         (lambda: beams.Material("x", 1.0, ultimate=1.0, endurance=0.95),
@@ -523,7 +523,7 @@ def test_the_narrow_side_of_a_step_has_the_stress():
         ),
         (
             lambda: beams.shoulder(0.5, 0.03, 0.02, -1.0),
-            "shoulder: radius must be positive, got -1 m",
+            r"shoulder: radius: expected a positive number \[m\], or a text such as .*, got -1",
         ),
         (
             lambda: beams.shoulder(0.5, 0.03, 0.02, 0.0001, flat=True),

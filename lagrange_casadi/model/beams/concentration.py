@@ -15,8 +15,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from ...base.arguments import Stress, public
-from ...base.units import quantity
+from ...base.arguments import Length, Stress, public
 from ...errors import DeclarationError
 from .beam import Notch
 
@@ -138,9 +137,9 @@ for which it holds.
 @public
 def shoulder(
     at: float,
-    wide: float | str,
-    narrow: float | str,
-    radius: float | str,
+    wide: Length,
+    narrow: Length,
+    radius: Length,
     *,
     flat: bool = False,
     shear: float | None = None,
@@ -174,7 +173,6 @@ def shoulder(
         If there is no step, and outside the range of the fits: the depth of the step over the
         radius must be 0.1 to 20, for torsion 0.25 to 4.
     """
-    wide, narrow, radius = _lengths("shoulder", wide=wide, narrow=narrow, radius=radius)
     if not wide > narrow:
         raise DeclarationError(
             f"shoulder: wide must be more than narrow, got {wide:g} and {narrow:g} m"
@@ -189,8 +187,8 @@ def shoulder(
 @public
 def hole(
     at: float,
-    height: float | str,
-    diameter: float | str,
+    height: Length,
+    diameter: Length,
     *,
     shear: float = 1.0,
     sensitivity: float = 1.0,
@@ -220,7 +218,6 @@ def hole(
     DeclarationError
         For a hole that does not fit.
     """
-    height, diameter = _lengths("hole", height=height, diameter=diameter)
     share = diameter / height
     if not share < 1.0:
         raise DeclarationError(
@@ -252,7 +249,7 @@ def keyway(at: float, *, sensitivity: float = 1.0) -> Notch:
 
 
 @public
-def sensitivity(radius: float | str, ultimate: Stress) -> float:
+def sensitivity(radius: Length, ultimate: Stress) -> float:
     """Return the notch sensitivity of steel, by Neuber's constant.
 
     Parameters
@@ -272,7 +269,6 @@ def sensitivity(radius: float | str, ultimate: Stress) -> float:
     DeclarationError
         For a strength for which it is not known.
     """
-    (radius,) = _lengths("sensitivity", radius=radius)
     strength: float = ultimate / _KSI
     if not _KNOWN[0] <= strength <= _KNOWN[1]:
         ends = " to ".join(f"{end * _KSI / 1e6:.0f}" for end in _KNOWN)
@@ -299,13 +295,3 @@ def _fitted(load: str, fit: _Fit, wide: float, narrow: float, radius: float) -> 
         1.0,
         sum((a + b * math.sqrt(ratio) + c * ratio) * share**k for k, (a, b, c) in enumerate(rows)),
     )
-
-
-def _lengths(what: str, **lengths: float | str) -> list[float]:
-    """Positive lengths [m]. Raises :class:`.DeclarationError` for what is none."""
-    found = []
-    for name, value in lengths.items():
-        found.append(quantity(f"{what}: {name}", value, "m"))
-        if not found[-1] > 0.0:
-            raise DeclarationError(f"{what}: {name} must be positive, got {found[-1]:g} m")
-    return found

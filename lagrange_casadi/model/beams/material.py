@@ -4,16 +4,16 @@ with the printed standards.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
-from typing import Any
+from dataclasses import dataclass
+from typing import Annotated, Any, TypeAlias
 
-from ...base.arguments import Measured, public
+from ...base.arguments import Positive, Stress, public
 from ...base.brief import Brief
-from ...base.units import quantity
+from ...base.units import Within
 from ...errors import DeclarationError, UnknownNameError
 
-_STRESSES = ("elasticity", "shear_modulus", "yield_strength", "ultimate", "endurance")
-_UNITS = dict.fromkeys((*_STRESSES, "fatigue_strength"), "Pa") | {"density": "kg/m^3"}
+MassDensity: TypeAlias = Annotated[Any, Within(0.0, above=True, unit="kg/m^3")]
+Cycles: TypeAlias = Annotated[float, Within(1e3, above=True)]
 
 
 @public
@@ -34,32 +34,18 @@ class Material(Brief):
     """
 
     name: str
-    density: Measured
-    elasticity: Measured | None = None
-    shear_modulus: Measured | None = None
-    yield_strength: Measured | None = None
-    ultimate: Measured | None = None
-    endurance: Measured | None = None
-    endurance_cycles: float = 1e6
+    density: MassDensity
+    elasticity: Stress | None = None
+    shear_modulus: Stress | None = None
+    yield_strength: Stress | None = None
+    ultimate: Stress | None = None
+    endurance: Stress | None = None
+    endurance_cycles: Cycles = 1e6
     endless: bool = True
-    fatigue_share: float = 0.9
-    fatigue_strength: Measured | None = None
+    fatigue_share: Positive = 0.9
+    fatigue_strength: Stress | None = None
 
     def __post_init__(self) -> None:
-        for entry in fields(self):
-            value = getattr(self, entry.name)
-            if entry.name in ("name", "endless") or value is None:
-                continue
-            what = f"material '{self.name}': {entry.name}"
-            found = quantity(what, value, _UNITS.get(entry.name, "1"))
-            if not found > 0.0:
-                raise DeclarationError(f"{what} must be a positive number, got {value!r}")
-            object.__setattr__(self, entry.name, found)
-        if not self.endurance_cycles > 1e3:
-            raise DeclarationError(
-                f"material '{self.name}': endurance_cycles must be above 1000, got"
-                f" {self.endurance_cycles:g}"
-            )
         for low, high in (("yield_strength", "ultimate"), ("endurance", "ultimate")):
             a, b = getattr(self, low), getattr(self, high)
             if a is not None and b is not None and a > b:
@@ -128,7 +114,8 @@ class Material(Brief):
         DeclarationError
             If they do not fit each other.
         """
-        return replace(self, **numbers)
+        found = vars(self) | numbers
+        return Material(found.pop("name"), **found)
 
 
 @public
