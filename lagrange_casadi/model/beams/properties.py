@@ -4,6 +4,7 @@ and the fibres at which stress is computed.
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,6 +13,9 @@ import numpy as np
 
 from ...base.arrays import Operand
 from ...base.brief import Brief
+
+ALONG_Y, ALONG_Z = ((1, "+y"), (-1, "-y")), ((1, "+z"), (-1, "-z"))
+"""Both sides of a cross-section along an axis: a sign, and its name in the names of fibres."""
 
 POISSON = 0.3
 """Poisson's ratio in the coefficients of shear: from 0 to 0.5 they change by a twentieth."""
@@ -117,9 +121,5 @@ def exponential(x: Operand) -> Operand:
     return ca.exp(x) if symbolic(x) else np.exp(x)
 
 
-def _farthest(places: list[float]) -> Operand:
-    sizes = [larger(place, -place) for place in places]
-    found = sizes[0]
-    for size in sizes[1:]:
-        found = larger(found, size)
-    return found
+def _farthest(places: list[Operand]) -> Operand:
+    return functools.reduce(larger, map(abs, places))

@@ -37,14 +37,13 @@ class Shape:
         known = DIMENSIONS.get(self.kind)
         if self.kind not in _FORMS or (known is not None and tuple(self.dimensions) != known):
             raise DeclarationError(f"{self.kind!r} is no cross-section with these dimensions")
-        if any(isinstance(value, str) for value in self.dimensions.values()):
-            read = {
-                name: quantity(f"{self.kind}: {name}", value, _GIVEN.get(name, "m"))
-                if isinstance(value, str)
-                else value
-                for name, value in self.dimensions.items()
-            }
-            object.__setattr__(self, "dimensions", read)
+        read = {
+            name: quantity(f"{self.kind}: {name}", value, _GIVEN.get(name, "m"))
+            if isinstance(value, str)
+            else value
+            for name, value in self.dimensions.items()
+        }
+        object.__setattr__(self, "dimensions", read)
 
     def properties(self, *, space: bool = True) -> Properties:
         """Return the properties of the shape.
@@ -59,7 +58,7 @@ class Shape:
         Properties
             Area, second moments and fibres, about the centroid.
         """
-        return _FORMS[self.kind](dict(self.dimensions), space)
+        return _FORMS[self.kind](self.dimensions, space)
 
     @property
     def round(self) -> bool:
@@ -69,11 +68,11 @@ class Shape:
     @property
     def area(self) -> Operand:
         """Area [m^2]."""
-        return _AREAS[self.kind](dict(self.dimensions))
+        return _AREAS[self.kind](self.dimensions)
 
     def parameter_constraints(self) -> Iterator[Demand]:
         """Conditions on the dimensions."""
-        return _demands(self.kind, dict(self.dimensions))
+        return _demands(self.kind, self.dimensions)
 
     def mapped(self, change: Callable[[str, Operand], Operand]) -> Shape:
         """Return the shape with other dimensions.
@@ -615,7 +614,7 @@ def _given(d: Mapping[str, float], _space: bool) -> Properties:
     return Properties(*numbers, shear_y=stiff, shear_z=stiff)
 
 
-_FORMS: dict[str, Callable[[dict[str, Any], bool], Properties]] = {
+_FORMS: dict[str, Callable[[Mapping[str, Any], bool], Properties]] = {
     "rectangle": lambda d, _: solid.rectangle(**d),
     "round_bar": lambda d, space: solid.ellipse(d["diameter"], d["diameter"], space=space),
     "tube": lambda d, space: solid.tube(**d, space=space),
@@ -631,7 +630,7 @@ _FORMS: dict[str, Callable[[dict[str, Any], bool], Properties]] = {
 
 
 # Properties have the areas too, but as expressions take milliseconds of CasADi.
-_AREAS: dict[str, Callable[[dict[str, Any]], Any]] = {
+_AREAS: dict[str, Callable[[Mapping[str, Any]], Any]] = {
     "rectangle": lambda d: d["height"] * d["width"],
     "round_bar": lambda d: pi / 4 * d["diameter"] ** 2,
     "tube": lambda d: pi * d["wall"] * (d["diameter"] - d["wall"]),
@@ -650,7 +649,7 @@ _AREAS: dict[str, Callable[[dict[str, Any]], Any]] = {
 }
 
 
-def _demands(kind: str, d: dict[str, Expression]) -> Iterator[Demand]:
+def _demands(kind: str, d: Mapping[str, Expression]) -> Iterator[Demand]:
     if kind == "polygon":
         yield solid.polygon_area(_corners(d)), "area, of corners counter-clockwise,"
         return

@@ -15,7 +15,17 @@ from math import cos, pi, sin
 from typing import Any
 
 from ...base.arrays import Operand
-from .properties import POISSON, Fibre, Properties, chosen, exponential, larger, smaller
+from .properties import (
+    ALONG_Y,
+    ALONG_Z,
+    POISSON,
+    Fibre,
+    Properties,
+    chosen,
+    exponential,
+    larger,
+    smaller,
+)
 
 _APART = 1e-300
 """Below this two corners have one place across."""
@@ -37,12 +47,16 @@ def rectangle(height: float, width: float) -> Properties:
     beside, above = chosen(height, width, long, short), chosen(height, width, short, long)
     shear = 1.5 / area
     fibres = [
-        Fibre(_at(i, j), i * height / 2, j * width / 2)
-        for i, j in itertools.product((1, -1), repeat=2)
+        Fibre(f"corner {up} {aside}", i * height / 2, j * width / 2)
+        for (i, up), (j, aside) in itertools.product(ALONG_Y, ALONG_Z)
     ]
-    fibres += [Fibre(_at(0, j), 0.0, j * width / 2, (shear, 0.0, -j * beside)) for j in (1, -1)]
     fibres += [
-        Fibre(_at(i, 0), i * height / 2, 0.0, along_z=(0.0, shear, i * above)) for i in (1, -1)
+        Fibre(f"side {aside}", 0.0, j * width / 2, (shear, 0.0, -j * beside))
+        for j, aside in ALONG_Z
+    ]
+    fibres += [
+        Fibre(f"side {up}", i * height / 2, 0.0, along_z=(0.0, shear, i * above))
+        for i, up in ALONG_Y
     ]
     fibres.append(Fibre("centre", 0.0, 0.0, (shear, 0.0, 0.0), (0.0, shear, 0.0)))
     stiff = 10 * (1 + POISSON) / (12 + 11 * POISSON) * area
@@ -210,22 +224,16 @@ def _shear_at_centroid(places: Sequence[tuple[Operand, Operand]], moment: Operan
     first: Any = 0.0
     width: Any = 0.0
     for (x1, w1), (x2, w2) in zip(places, [*places[1:], places[0]], strict=True):
-        apart = chosen(larger(x2 - x1, x1 - x2), _APART, x2 - x1, 1.0)
+        apart = chosen(abs(x2 - x1), _APART, x2 - x1, 1.0)
         crossing = w1 + (w2 - w1) * (0.0 - x1) / apart
         width = width + _beyond(x2, _beyond(x1, 0.0, crossing), _beyond(x1, -crossing, 0.0))
         # The first moment of the part with x > 0, by the integral of x^2/2 along its sides.
         a, b = larger(x1, 0.0), larger(x2, 0.0)
         start, stop = _beyond(x1, w1, crossing), _beyond(x2, w2, crossing)
-        part = (stop - start) * (a * a + a * b + b * b) / 6
-        first = first + _beyond(x1, part, _beyond(x2, part, 0.0))
-    return larger(first, -first) / (moment * larger(width, -width))
+        first = first + (stop - start) * (a * a + a * b + b * b) / 6
+    return abs(first) / (moment * abs(width))
 
 
 def _beyond(x: Operand, there: Operand, here: Operand) -> Operand:
     """``there`` where x is positive, else ``here``."""
     return chosen(-x, 0.0, here, there)
-
-
-def _at(i: int, j: int) -> str:
-    words = [{1: "+", -1: "-"}[s] + axis for s, axis in ((i, "y"), (j, "z")) if s]
-    return ("corner " if i and j else "side ") + " ".join(words)

@@ -14,10 +14,8 @@ import itertools
 from math import cos, pi, sin
 
 from ...base.arrays import Operand
-from .properties import Fibre, Properties, smaller
+from .properties import ALONG_Y, ALONG_Z, Fibre, Properties, smaller
 from .solid import rectangle_torsion
-
-_SIGNS = (1, -1)
 
 
 def i_section(height: Operand, width: Operand, web: Operand, flange: Operand) -> Properties:
@@ -30,19 +28,18 @@ def i_section(height: Operand, width: Operand, web: Operand, flange: Operand) ->
     at_flange = b * flange * (h - flange) / 2
     in_middle = at_flange + web * hw**2 / 8
     fibres = [
-        Fibre(f"corner {_side(i, 'y')} {_side(j, 'z')}", i * h / 2, j * b / 2)
-        for i, j in itertools.product(_SIGNS, repeat=2)
+        Fibre(f"corner {up} {aside}", i * h / 2, j * b / 2)
+        for (i, up), (j, aside) in itertools.product(ALONG_Y, ALONG_Z)
     ]
-    for i, j in itertools.product(_SIGNS, repeat=2):
-        up, side = _side(i, "y"), _side(j, "z")
+    for (i, up), (j, aside) in itertools.product(ALONG_Y, ALONG_Z):
         along = (i * j * b * (h - flange) / (4 * iz), b**2 / (8 * iy), i * flange / torsion)
-        name = f"flange {up} at the web {side}"
+        name = f"flange {up} at the web {aside}"
         fibres.append(Fibre(name, i * h / 2, j * web / 2, along_z=along))
         down = (at_flange / (iz * web), 0.0, -j * web / torsion)
-        fibres.append(Fibre(f"web {up} {side}", i * hw / 2, j * web / 2, down))
-    for j in _SIGNS:
+        fibres.append(Fibre(f"web {up} {aside}", i * hw / 2, j * web / 2, down))
+    for j, aside in ALONG_Z:
         down = (in_middle / (iz * web), 0.0, -j * web / torsion)
-        fibres.append(Fibre(f"middle of the web {_side(j, 'z')}", 0.0, j * web / 2, down))
+        fibres.append(Fibre(f"middle of the web {aside}", 0.0, j * web / 2, down))
     return Properties(
         area,
         iy,
@@ -71,8 +68,7 @@ def t_section(height: Operand, width: Operand, web: Operand, flange: Operand) ->
     at_flange, neutral = b * flange * middle, smaller(0.0, hw - low)
     inside = web * (low + neutral) * (low - neutral) / 2
     fibres = []
-    for j in _SIGNS:
-        side = _side(j, "z")
+    for j, side in ALONG_Z:
         fibres.append(Fibre(f"corner +y {side}", top, j * b / 2))
         fibres.append(Fibre(f"foot of the web {side}", -low, j * web / 2))
         along = (j * b * middle / (2 * iz), b**2 / (8 * iy), flange / torsion)
@@ -113,18 +109,18 @@ def c_section(height: Operand, width: Operand, web: Operand, flange: Operand) ->
     at_flange = b * flange * high / 2
     in_middle = at_flange + web * hw**2 / 8
     fibres = []
-    for i in _SIGNS:
-        side, twist = _side(i, "y"), i * flange / torsion
+    for i, side in ALONG_Y:
+        twist = i * flange / torsion
         fibres.append(Fibre(f"tip of the flange {side}", i * h / 2, tip))
         along = (i * wide * high / (2 * iz), tip**2 / (2 * iy), twist)
         fibres.append(Fibre(f"back {side}", i * h / 2, -back, along_z=along))
         along = (i * tip * high / (2 * iz), tip**2 / (2 * iy), twist)
         fibres.append(Fibre(f"flange {side}", i * h / 2, 0.0, along_z=along))
-    for j, z in ((1, web - back), (-1, -back)):
-        face, twist = "inside" if j > 0 else "back", -j * web / torsion
-        for i in _SIGNS:
+    for j, z, face in ((1, web - back, "inside"), (-1, -back, "back")):
+        twist = -j * web / torsion
+        for i, side in ALONG_Y:
             flow = (at_flange / (iz * web), 0.0, twist)
-            fibres.append(Fibre(f"{face} of the web {_side(i, 'y')}", i * hw / 2, z, flow))
+            fibres.append(Fibre(f"{face} of the web {side}", i * hw / 2, z, flow))
         fibres.append(
             Fibre(f"{face} of the web, middle", 0.0, z, (in_middle / (iz * web), 0.0, twist))
         )
@@ -151,8 +147,8 @@ def box(height: Operand, width: Operand, web: Operand, flange: Operand) -> Prope
     torsion = 4 * inside**2 / (2 * wide / flange + 2 * high / web)
     flange_first, web_first = b * flange * high / 2, h * web * wide / 2
     fibres = []
-    for i, j in itertools.product(_SIGNS, repeat=2):
-        where, twist = f"{_side(i, 'y')} {_side(j, 'z')}", 1 / (2 * inside)
+    for (i, up), (j, aside) in itertools.product(ALONG_Y, ALONG_Z):
+        where, twist = f"{up} {aside}", 1 / (2 * inside)
         in_web = (flange_first / (2 * iz * web), -i * j * h * wide / (4 * iy), -j * twist / web)
         in_flange = (
             -i * j * b * high / (4 * iz),
@@ -161,14 +157,13 @@ def box(height: Operand, width: Operand, web: Operand, flange: Operand) -> Prope
         )
         fibres.append(Fibre(f"corner {where}, web", i * h / 2, j * b / 2, in_web))
         fibres.append(Fibre(f"corner {where}, flange", i * h / 2, j * b / 2, along_z=in_flange))
-    for s in _SIGNS:
+    for (s, up), (_, aside) in zip(ALONG_Y, ALONG_Z, strict=True):
         deep = (flange_first + web * hi**2 / 4) / (2 * iz * web)
-        fibres.append(
-            Fibre(f"web {_side(s, 'z')}", 0.0, s * b / 2, (deep, 0.0, -s / (2 * inside * web)))
-        )
+        down = (deep, 0.0, -s / (2 * inside * web))
+        fibres.append(Fibre(f"web {aside}", 0.0, s * b / 2, down))
         deep = (web_first + flange * bi**2 / 4) / (2 * iy * flange)
         along = (0.0, deep, s / (2 * inside * flange))
-        fibres.append(Fibre(f"flange {_side(s, 'y')}", s * h / 2, 0.0, along_z=along))
+        fibres.append(Fibre(f"flange {up}", s * h / 2, 0.0, along_z=along))
     return Properties(
         area,
         iy,
@@ -203,26 +198,24 @@ def hollow_section(
     torsion = t**3 * length / 3 + 2 * ring * inside
     twist = (t + ring / t) / torsion
     fibres = []
-    for i, j in itertools.product(_SIGNS, repeat=2):
+    for (i, up), (j, aside) in itertools.product(ALONG_Y, ALONG_Z):
         for angle in (0.0, 22.5, 45.0, 67.5, 90.0) if space else (0.0, 90.0):
             c, s = (round(f(angle * pi / 180), 15) for f in (cos, sin))
             by_y = _around_corner(high, wide, t, middle, s, angle) / (iz * t)
             by_z = _around_corner(wide, high, t, middle, c, 90.0 - angle) / (iy * t)
             fibres.append(
                 Fibre(
-                    f"corner {_side(i, 'y')} {_side(j, 'z')}, {angle:g} deg",
+                    f"corner {up} {aside}, {angle:g} deg",
                     i * (h / 2 - outer_radius * (1 - c)),
                     j * (b / 2 - outer_radius * (1 - s)),
                     (s * by_y, -i * j * s * by_z, -j * s * twist),
                     (-i * j * c * by_y, c * by_z, i * c * twist),
                 )
             )
-    for s in _SIGNS:
+    for (s, up), (_, aside) in zip(ALONG_Y, ALONG_Z, strict=True):
         in_web, in_flange = half_y / (2 * iz * t), half_z / (2 * iy * t)
-        fibres.append(Fibre(f"side {_side(s, 'z')}", 0.0, s * b / 2, (in_web, 0.0, -s * twist)))
-        fibres.append(
-            Fibre(f"side {_side(s, 'y')}", s * h / 2, 0.0, along_z=(0.0, in_flange, s * twist))
-        )
+        fibres.append(Fibre(f"side {aside}", 0.0, s * b / 2, (in_web, 0.0, -s * twist)))
+        fibres.append(Fibre(f"side {up}", s * h / 2, 0.0, along_z=(0.0, in_flange, s * twist)))
     return Properties(
         area, iy, iz, tuple(fibres), torsion=torsion, shear_y=2 * high * t, shear_z=2 * wide * t
     )
@@ -262,7 +255,3 @@ def _around_corner(
     """
     side, centre = wide / 2 - radius, high / 2 - radius
     return wall * (side * high / 2 + radius * (centre * (angle * pi / 180) + radius * s))
-
-
-def _side(sign: int, axis: str) -> str:
-    return ("+" if sign > 0 else "-") + axis
