@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -102,8 +103,8 @@ class Beam(Brief):
         Dimensions are linear there, so areas are of degree two at most.
         """
         course, found = self.course, []
-        for a, b, (first, last) in zip(
-            course.breaks, course.breaks[1:], course.cells, strict=False
+        for (a, b), (first, last) in zip(
+            itertools.pairwise(course.breaks), course.cells, strict=True
         ):
             if first is last:
                 found.append([self.material.density * first.area])

@@ -32,7 +32,7 @@ from ..declared_parts import Body, Expression, PitchCircles, Point
 from ..mechanism import Mechanism
 from ..meshes import FITTING, Loss, Mesh, Transmission, Wrench
 from .contact import output_loss, touching
-from .courses import along, courses_on, keep_on_axis, size
+from .courses import along, courses_on, keep_on_axis
 from .fits import Fits
 
 
@@ -113,7 +113,7 @@ def belt(
     fits.at_least("preload [N] must not be negative", tension, 0.0, tension)
     u, v, away = one.axis, two.axis, minus(two.place, one.place)
     beside, scale = dot(away, u), r1 + r2
-    if size(cross(u, v), number) > FITTING:
+    if number(norm(cross(u, v))) > FITTING:
         raise DeclarationError(
             f"{what}: expected pulleys in one plane, which turn about parallel axes"
         )

@@ -197,7 +197,7 @@ def disc_cam(
     what = f"cam '{name}'"
     stiffness = stiffness_of(what, elastic)
     layout = layout_of(what, mechanism, cam, follower, point, roller, flat, side)
-    base = positive(mechanism, f"{what}: base_radius", base_radius)
+    base = positive(mechanism, what, "base_radius", base_radius)
     x = ca.SX.sym("angle")
     rise = rise_of(what, mechanism, lift, x)
     make = (
@@ -284,7 +284,7 @@ def layout_of(
         raise DeclarationError(f"{what}: side must be 1 or -1, got {side!r}")
     radius: Expression = 0.0
     if roller is not None:
-        radius = positive(mechanism, f"{what}: roller", roller)
+        radius = positive(mechanism, what, "roller", roller)
     return Layout(cam, follower, held, radius, side)
 
 

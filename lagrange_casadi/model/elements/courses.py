@@ -4,19 +4,17 @@ joints.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import casadi as ca
 
 from ...base.rotation import Rotation
-from ...base.vectors import ZERO, cross, dot, minus, plus
+from ...base.vectors import ZERO, cross, dot, minus, norm, plus
 from ...errors import DeclarationError
 from ..declared_parts import Body, Expression, Point, Vector
 from ..joints import Joint
 from ..mechanism import Mechanism
 from ..meshes import FITTING, Fit
-from ..validity import Evaluator
 from .fits import Fits
 
 _KINDS = ("revolute", "prismatic", "weld")
@@ -47,11 +45,6 @@ class Course:
     def displacement(self, mechanism: Mechanism) -> ca.SX:
         """The angle about its axis, or the way along it, as an expression of coordinates."""
         return sum((sign * mechanism.coordinate(joint) for sign, joint in self.rotations), ca.SX(0))
-
-
-def size(vector: Vector, number: Evaluator) -> float:
-    """The length of a vector as a number."""
-    return math.hypot(*map(number, vector))
 
 
 def along(vector: Vector, by: Expression) -> Vector:
@@ -144,13 +137,13 @@ def _through(mechanism: Mechanism, course: Course, joint: Joint, other: Body) ->
         sign = -1 if outward else 1
         if not rotations:
             axis = here
-        elif size(cross(axis, here), number) > FITTING:
+        elif number(norm(cross(axis, here))) > FITTING:
             return None
         elif number(dot(axis, here)) < 0.0:
             sign = -sign
         if joint.kind == "revolute":
             off = cross(minus(course.place, near.place), here)
-            if size(off, number) > FITTING * max(1.0, size(course.place, number)):
+            if number(norm(off)) > FITTING * max(1.0, number(norm(course.place))):
                 return None
             shifted = (*shifted, *off)
         rotations, slides = (*rotations, (sign, joint)), joint.kind == "prismatic"

@@ -193,7 +193,7 @@ def cylindrical_cam(
     if width is not None:
         if roller is None:
             raise DeclarationError(f"{what}: width needs roller, the roller's radius [m]")
-        round_ = positive(mechanism, f"{what}: roller", roller)
+        round_ = positive(mechanism, what, "roller", roller)
         _refuse_undercut(what, mechanism, design, round_)
         force = mechanism.results.multiplier(made.constraint)
         # The flank is as far beside the path as the roller's radius, on the side from which it

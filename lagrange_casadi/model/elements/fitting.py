@@ -11,6 +11,11 @@ from ..joints import Joint
 from ..mechanism import Mechanism
 
 _UNITS = dict.fromkeys(("diameter", "eye", "cheek", "gap", "bore", "width"), "m") | {"speed": "m/s"}
+_TAKES: dict[str, tuple[str, ...]] = {
+    **dict.fromkeys(("revolute", "cylindrical"), ("pin", "plain", "rolling")),
+    **dict.fromkeys(("prismatic", "slot"), ("plain",)),
+}
+"""Kinds of parts that a kind of joint takes."""
 
 
 @public
@@ -44,13 +49,11 @@ def fit(mechanism: Mechanism, joint: Joint, *parts: Fitted) -> None:
             f"{what}: its shaft lies in the plane, so it does not turn here; use a"
             " SpatialMechanism for its bearings"
         )
-    pinned = joint.kind in ("revolute", "cylindrical")
-    slides = joint.kind in ("prismatic", "slot")
-    takes = ("plain", "rolling") if turning else ("plain",) if slides else ()
+    takes = ("plain", "rolling") if turning else _TAKES.get(joint.kind, ())
     found = mechanism.fitted.get(joint.name, Fittings())
     for part in parts:
         kind = type(part).__name__.lower()
-        if not pinned and kind not in takes:
+        if kind not in takes:
             also = f"; it takes a {' or a '.join(takes)} bearing" if takes else ""
             raise DeclarationError(
                 f"{what}: expected a revolute or cylindrical joint for a pin or a bearing, got a"

@@ -17,7 +17,7 @@ import numpy as np
 from ...base.arrays import Array
 from ...base.brief import Brief
 from ...base.scalars import column, graph
-from ...base.vectors import Vector, cross, dot, norm, times
+from ...base.vectors import Vector, cross, dot, norm
 from ...errors import DeclarationError
 from ..constraints import Constraint
 from ..declared_parts import Expression, Ground, Point
@@ -25,6 +25,8 @@ from ..expressions import expressed, sound
 from ..joints import Joint
 from ..mechanism import Mechanism
 from .contact import touching
+from .courses import along
+from .fits import Fits
 
 ANGLES = np.linspace(0.0, math.tau, 721)
 """Angles of a turn at which expressions are looked at."""
@@ -163,22 +165,21 @@ def output_pressure(
 
     Raises :class:`.DeclarationError` for a width that is not positive.
     """
-    wide = positive(mechanism, f"cam '{name}': width", width)
+    wide = positive(mechanism, f"cam '{name}'", "width", width)
     pressure = ca.sqrt(force * ca.fmax(curvature, 0.0) * stiffness / (math.pi * wide))
     mechanism.output(f"{name}_hertz", pressure, unit="Pa")
 
 
-def positive(mechanism: Mechanism, what: str, size: Expression) -> Expression:
+def positive(mechanism: Mechanism, what: str, name: str, size: Expression) -> Expression:
     """A length [m], which is not a number where parameters make it zero or less.
 
     Raises :class:`.DeclarationError` where it is not positive with the defaults of parameters.
     """
-    found = mechanism.ownership.expression(what, size, "m")
-    if not (number := mechanism.ownership.at_defaults(found)) > 0.0:
-        raise DeclarationError(f"{what} must be positive, got {number:g} m")
+    found = mechanism.ownership.expression(f"{what}: {name}", size, "m")
+    Fits(what, mechanism.ownership.at_defaults).positive(name, found)
     return found * sound(found > 0.0) if isinstance(found, ca.SX) else found
 
 
 def unit(vector: Vector) -> Vector:
     """A direction of length 1."""
-    return times(1.0 / norm(vector), vector)
+    return along(vector, norm(vector))

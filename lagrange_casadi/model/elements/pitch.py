@@ -12,6 +12,7 @@ helical, bevel and worm gears); G. Niemann, H. Winter, *Maschinenelemente* II, c
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import casadi as ca
@@ -20,8 +21,7 @@ from ...base.vectors import cross, dot, minus, norm, plus, times
 from ...errors import DeclarationError
 from ..declared_parts import Expression, Vector
 from ..meshes import FITTING
-from ..validity import Evaluator
-from .courses import Course, along, size
+from .courses import Course, along
 from .fits import Fits
 
 
@@ -36,11 +36,6 @@ class Teeth:
     pressure: Expression
     helix: Expression
     right: bool
-
-    @property
-    def pressing(self) -> Expression:
-        """Force that presses the gears apart, for a unit of that along the pitch circle."""
-        return ca.tan(self.pressure) / ca.cos(self.helix)
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,10 +68,11 @@ def pitch_of(fits: Fits, first: Course, second: Course, teeth: Teeth) -> Pitch:
         return _rack(fits, first, second, teeth)
     number = fits.number
     across = cross(first.axis, second.axis)
-    if size(across, number) < FITTING:
+    sine = number(norm(across))
+    if sine < FITTING:
         return _parallel(fits, first, second, teeth)
     apart = dot(minus(second.place, first.place), across)
-    scale = size(across, number) * (number(teeth.radii[0]) + number(teeth.radii[1]))
+    scale = sine * (number(teeth.radii[0]) + number(teeth.radii[1]))
     if abs(number(apart)) < FITTING * scale:
         return _bevel(fits, first, second, teeth)
     return _crossed(fits, first, second, teeth)
@@ -84,9 +80,9 @@ def pitch_of(fits: Fits, first: Course, second: Course, teeth: Teeth) -> Pitch:
 
 def _parallel(fits: Fits, first: Course, second: Course, teeth: Teeth) -> Pitch:
     u, (r1, r2), number = first.axis, teeth.radii, fits.number
-    reach = minus(second.place, first.place)
-    beside, sense = dot(reach, u), _sign(number, dot(u, second.axis))
-    away = minus(reach, times(beside, u))
+    away = minus(second.place, first.place)
+    beside, sense = dot(away, u), math.copysign(1.0, number(dot(u, second.axis)))
+    away = minus(away, times(beside, u))
     distance = norm(away)
     between = number(distance)
     sides = {1: r1 + r2, -1: r2 - r1, -2: r1 - r2}
@@ -102,13 +98,12 @@ def _parallel(fits: Fits, first: Course, second: Course, teeth: Teeth) -> Pitch:
     fits.same(words, beside, 0.0, r1 + r2)
     # The pitch point is beyond the first centre where the second gear is a ring.
     e = along(away, distance if side != -1 else -distance)
-    t = cross(u, e)
-    force = minus(t, times(ca.tan(teeth.helix), u))
     # Off the teeth: toward the axis of a gear, away from that of a ring.
-    apart = times(teeth.pressing if side == -2 else -teeth.pressing, e)
+    off = times(1 if side == -2 else -1, e)
     other = r2 * sense if side == 1 else -(r2 * sense)
     relative = plus(u, times(r1 / other, second.axis))
-    return Pitch("parallel", times(r1, e), force, apart, reach, other, e, u, relative)
+    lean = times(-ca.tan(teeth.helix), u)
+    return _pitch("parallel", first, second, teeth, e, lean, off, other, relative)
 
 
 def _bevel(fits: Fits, first: Course, second: Course, teeth: Teeth) -> Pitch:
@@ -120,7 +115,7 @@ def _bevel(fits: Fits, first: Course, second: Course, teeth: Teeth) -> Pitch:
     steep = 1 - slope * slope
     far1 = -(dot(away, u) - slope * dot(away, v)) / steep
     far2 = (dot(away, v) - slope * dot(away, u)) / steep
-    one, two = (_sign(fits.number, far) for far in (far1, far2))
+    one, two = (math.copysign(1.0, fits.number(far)) for far in (far1, far2))
     w1, w2, cosine = times(one, u), times(two, v), one * two * slope
     sine = ca.sqrt(1 - cosine * cosine)
     heights = (r2 + r1 * cosine) / sine, (r1 + r2 * cosine) / sine
@@ -133,14 +128,13 @@ def _bevel(fits: Fits, first: Course, second: Course, teeth: Teeth) -> Pitch:
     words = "the axes of its gears are {got} m apart; expected {meant} m"
     fits.same(words, dot(away, cross(u, v)) / sine, 0.0, r1 + r2)
     e = along(minus(w2, times(cosine, w1)), sine)
-    t = cross(u, e)
     slant = ca.sqrt(heights[0] * heights[0] + r1 * r1)
     generator = along(plus(times(heights[0], w1), times(r1, e)), slant)
-    force = minus(t, times(ca.tan(teeth.helix) * one, generator))
-    apart = times(teeth.pressing, along(minus(times(r1, w1), times(heights[0], e)), slant))
+    off = along(minus(times(r1, w1), times(heights[0], e)), slant)
+    lean = times(-ca.tan(teeth.helix) * one, generator)
     other = one * two * r2
     relative = plus(u, times(r1 / other, v))
-    return Pitch("bevel", times(r1, e), force, apart, away, other, e, u, relative)
+    return _pitch("bevel", first, second, teeth, e, lean, off, other, relative)
 
 
 def _crossed(fits: Fits, first: Course, second: Course, teeth: Teeth) -> Pitch:
@@ -159,7 +153,6 @@ def _crossed(fits: Fits, first: Course, second: Course, teeth: Teeth) -> Pitch:
     words = "its centres are {got} m apart; expected {meant} m as the sum of their radii"
     fits.same(words, distance, r1 + r2, r1 + r2)
     e = along(away, distance)
-    t = cross(u, e)
     cosine, sine = dot(u, v), dot(u, cross(v, e))
     leans = [(sign * teeth.ratio * r1 / r2 - cosine) / sine for sign in (1, -1)]
     right = [fits.number(lean) < 0.0 for lean in leans]
@@ -168,12 +161,10 @@ def _crossed(fits: Fits, first: Course, second: Course, teeth: Teeth) -> Pitch:
             f"{fits.what}: radii and numbers of teeth do not fit the angle between its axes"
         )
     sign = 1 if right[0] == teeth.right else -1
-    lean = leans[0] if sign == 1 else leans[1]
-    force = plus(t, times(lean, u))
-    apart = times(-(ca.tan(teeth.pressure) * ca.sqrt(1 + lean * lean)), e)
+    lean = times(leans[0] if sign == 1 else leans[1], u)
     other = sign * teeth.ratio * r1
-    sliding = minus(times(r1, t), times(r1 * r2 / other, cross(v, e)))
-    return Pitch("crossed", times(r1, e), force, apart, away, other, e, u, sliding)
+    sliding = minus(times(r1, cross(u, e)), times(r1 * r2 / other, cross(v, e)))
+    return _pitch("crossed", first, second, teeth, e, lean, times(-1, e), other, sliding)
 
 
 def _rack(fits: Fits, first: Course, second: Course, teeth: Teeth) -> Pitch:
@@ -195,12 +186,27 @@ def _rack(fits: Fits, first: Course, second: Course, teeth: Teeth) -> Pitch:
     words = "its rack is offset by {got} m from its gear; expected {meant} m"
     fits.same(words, beside, 0.0, radius)
     e = along(across, distance)
-    t = cross(u, e)
-    force = minus(t, times(ca.tan(teeth.helix), u))
-    apart = times(-teeth.pressing, e)
-    arm, other = times(radius, e), -_sign(fits.number, dot(t, d))
-    return Pitch("rack", arm, force, apart, arm, other, e, u, u)
+    lean = times(-ca.tan(teeth.helix), u)
+    other = math.copysign(1.0, -fits.number(dot(cross(u, e), d)))
+    return _pitch("rack", first, second, teeth, e, lean, times(-1, e), other, u)
 
 
-def _sign(number: Evaluator, value: Expression) -> int:
-    return 1 if number(value) > 0.0 else -1
+def _pitch(
+    kind: str,
+    first: Course,
+    second: Course,
+    teeth: Teeth,
+    outward: Vector,
+    lean: Vector,
+    off: Vector,
+    other: Expression,
+    relative: Vector,
+) -> Pitch:
+    """A pitch point at which teeth ``lean`` along the pitch surface, of which ``off`` leads at
+    right angles off the second gear.
+    """
+    arm = times(teeth.radii[0], outward)
+    force = plus(cross(first.axis, outward), lean)
+    apart = times(ca.tan(teeth.pressure) * ca.sqrt(1 + dot(lean, lean)), off)
+    reach = arm if second.slides else minus(second.place, first.place)
+    return Pitch(kind, arm, force, apart, reach, other, outward, first.axis, relative)

@@ -9,7 +9,7 @@ import math
 from ...base.arguments import public
 from ...base.units import count, number
 from ...errors import DeclarationError
-from ..declared_parts import Expression, Link
+from ..declared_parts import Expression, Link, Outline
 from ..mechanism import Mechanism
 from ..spatial import SpatialMechanism
 
@@ -93,16 +93,13 @@ def wheel(
     return link
 
 
-_Corners = list[tuple[Expression, Expression]]
-
-
-def _edge(radius: Expression, teeth: int | None, turned: float, *, inward: bool) -> _Corners:
+def _edge(radius: Expression, teeth: int | None, turned: float, *, inward: bool) -> Outline:
     """A circle, or a circle with teeth on both its sides; nothing for no radius."""
     if isinstance(radius, float) and radius == 0.0:
         return []
     if teeth is None:
         return [_corner(radius, math.tau * k / _CORNERS) for k in range(_CORNERS)]
-    found: _Corners = []
+    found: Outline = []
     for k in range(teeth):
         # The teeth of a straight profile: a tip, a foot, and half of the pitch on the pitch circle.
         for part, height in ((-0.36, -2.0), (-0.14, 2.0), (0.14, 2.0), (0.36, -2.0)):
