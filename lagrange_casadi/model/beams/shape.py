@@ -435,26 +435,23 @@ def given(
     DeclarationError
         If only one of the two numbers of torsion is given.
     """
-    words = {
-        "area": area,
+    if (torsion is None) != (torsion_modulus is None):
+        raise DeclarationError("given: torsion and torsion_modulus go together")
+    whole = quantity("given: area", area, "m^2") if isinstance(area, str) else area
+    numbers = {
+        "area": whole,
         "iz": iz,
         "iy": iy,
         "iyz": iyz,
         "top": top,
         "bottom": top if bottom is None else bottom,
         "side": side,
+        "torsion": torsion,
+        "torsion_modulus": torsion_modulus,
+        "shear_y": 2 / 3 * whole if shear_y is None else shear_y,
+        "shear_z": 2 / 3 * whole if shear_z is None else shear_z,
     }
-    if isinstance(area, str):
-        words["area"] = area = quantity("given: area", area, "m^2")
-    if (torsion is None) != (torsion_modulus is None):
-        raise DeclarationError("given: torsion and torsion_modulus go together")
-    if torsion is not None:
-        words |= {"torsion": torsion, "torsion_modulus": torsion_modulus}
-    shears = {"shear_y": shear_y, "shear_z": shear_z}
-    return Shape(
-        "given",
-        words | {name: 2 / 3 * area if value is None else value for name, value in shears.items()},
-    )
+    return Shape("given", {name: x for name, x in numbers.items() if x is not None})
 
 
 @public

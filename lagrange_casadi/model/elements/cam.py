@@ -282,9 +282,7 @@ def layout_of(
         raise DeclarationError(f"{what}: a flat face has neither a roller nor a point")
     if side not in (1, -1):
         raise DeclarationError(f"{what}: side must be 1 or -1, got {side!r}")
-    radius: Expression = 0.0
-    if roller is not None:
-        radius = positive(mechanism, what, "roller", roller)
+    radius = 0.0 if roller is None else positive(mechanism, what, "roller", roller)
     return Layout(cam, follower, held, radius, side)
 
 

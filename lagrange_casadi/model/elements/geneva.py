@@ -18,7 +18,6 @@ Source: J. H. Bickford, *Mechanisms for Intermittent Motion*, 1972, chapter 9.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 import casadi as ca
@@ -30,7 +29,7 @@ from ...base.units import count
 from ...base.vectors import AXES, ZERO, cross, dot, minus, norm, plus, times
 from ...errors import DeclarationError
 from ..constraints import Constraint
-from ..declared_parts import Expression, Link, Outline, Point, Roller, Vector
+from ..declared_parts import Expression, Link, Point, Roller, Vector
 from ..joints import Joint
 from ..mechanism import Mechanism
 from ..meshes import Mesh, Transmission, Wrench
@@ -192,8 +191,10 @@ def geneva(
         (wheel.child, times(-1.0 / apart, reach), [corners]),
         (crank.child, times(1.0 / radius, arm), [disc, bar]),
     ):
-        drawn = [_outline(axle.place, along, one) for one in outlines]
-        mechanism.outlines.setdefault(axle.body.name, []).extend(drawn)
+        turned = Rotation.of(along, cross(AXES[2], along))
+        mechanism.outlines.setdefault(axle.body.name, []).extend(
+            [plus(axle.place, turned.apply(corner))[:2] for corner in one] for one in outlines
+        )
     mechanism.rollers[name] = Roller(centre, thick)
     return Geneva(made, 2.0 * half, math.tau - 2.0 * half, mouth, depth)
 
@@ -234,12 +235,6 @@ def _arc(
     """Places on a circle about a place on the x axis, from one angle to another."""
     angles = [start + (stop - start) * (k / (count - 1)) for k in range(count)]
     return [(middle + radius * ca.cos(at), radius * ca.sin(at), 0.0) for at in angles]
-
-
-def _outline(middle: Vector, along: Vector, corners: Iterable[Vector]) -> Outline:
-    """Corners about a ``middle``, whose x axis has a direction of length 1."""
-    turned = Rotation(along, (-along[1], along[0], 0.0), None)
-    return [plus(middle, turned.apply(corner))[:2] for corner in corners]
 
 
 def _either(condition: ca.SX, first: Vector, second: Vector) -> Vector:

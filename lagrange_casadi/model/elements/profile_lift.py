@@ -13,7 +13,7 @@ import cmath
 import math
 import os
 from dataclasses import dataclass, replace
-from typing import Annotated, TypeAlias
+from typing import Annotated, Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -32,7 +32,7 @@ from .cam import layout_of
 
 _LEAST = 16
 
-Places: TypeAlias = npt.NDArray[np.complex128]
+Places: TypeAlias = npt.NDArray[np.complexfloating[Any, Any]]
 """Places and directions in a plane, x + i y."""
 
 
@@ -141,15 +141,18 @@ def profile_lift(
         points = read_profile(points)
     at, normal = _normals(np.asarray(points, float))
     radius = number(layout.roller)
+    # On a flat face the normal turns with the cam, otherwise the follower's point goes round it.
+    seen = normal if flat else at + radius * normal
+    far = (at * normal.conj()).real if flat else np.abs(seen)
     if slides:
         offset = number(layout.offset[0])
         up = plane(layout.offset[2])
-        found = _law(*_sliding(at, normal, up, offset, radius, flat), smoothing)
+        found = _law(seen, *_sliding(far, up, offset, flat), smoothing)
         least = _least(found)
         base = least if flat else math.hypot(least, offset) - radius
     else:
         away, length = plane(layout.away), abs(plane(layout.arm))
-        found = _law(*_swinging(at, normal, away, length, radius, side, flat), smoothing)
+        found = _law(seen, *_swinging(far, away, length, side, flat), smoothing)
         least = _least(found)
         base = (
             abs(away) * math.sin(least)
@@ -191,41 +194,36 @@ def _normals(points: Array) -> tuple[Places, Places]:
     return found, (y - 1j * x) / np.hypot(x, y)
 
 
-def _sliding(
-    at: Places, normal: Places, up: complex, offset: float, radius: float, flat: bool
-) -> tuple[Array, Array]:
-    """The cam's angle and the follower's place along its line while each point is touched."""
+def _sliding(far: Array, up: complex, offset: float, flat: bool) -> tuple[complex | Places, Array]:
+    """The follower's point, or the normal of its face, and its place along its line, where the
+    point or the face is ``far`` from the cam's shaft.
+    """
     if flat:
-        return np.angle(up) - np.angle(normal), (at * normal.conj()).real
-    pitch = at + radius * normal
-    reach = np.abs(pitch)
-    if reach.min() < abs(offset):
+        return up, far
+    if far.min() < abs(offset):
         raise DeclarationError(
             f"profile: the follower's line is {abs(offset):.6g} m from the cam's shaft, too far to"
-            f" touch the whole profile; expected less than {reach.min():.6g} m"
+            f" touch the whole profile; expected less than {far.min():.6g} m"
         )
-    height = np.sqrt(reach**2 - offset**2)
-    return np.angle((height - 1j * offset) * up) - np.angle(pitch), height
+    height = np.sqrt(far**2 - offset**2)
+    return (height - 1j * offset) * up, height
 
 
 def _swinging(
-    at: Places, normal: Places, away: complex, arm: float, radius: float, side: int, flat: bool
-) -> tuple[Array, Array]:
-    """The cam's angle, and the follower's angle from the line to the cam's shaft, while each point
-    is touched.
+    far: Array, away: complex, arm: float, side: int, flat: bool
+) -> tuple[complex | Places, Array]:
+    """The follower's point, or the normal of its face, and its angle from the line to the cam's
+    shaft, where the point or the face is ``far`` from the shaft.
     """
     reach, line = abs(away), np.angle(-away)
     if flat:
-        sine = (at * normal.conj()).real / reach
-        if np.abs(sine).max() >= 1.0:
+        if np.abs(far).max() >= reach:
             raise DeclarationError(
                 f"profile: the follower's pivot is {reach:.6g} m from the cam's shaft, but the"
-                f" profile reaches {reach * np.abs(sine).max():.6g} m; move the pivot farther away"
+                f" profile reaches {np.abs(far).max():.6g} m; move the pivot farther away"
             )
-        angle = np.arcsin(sine)
-        return line + side * (angle + math.pi / 2) - np.angle(normal), angle
-    pitch = at + radius * normal
-    far = np.abs(pitch)
+        angle = np.arcsin(far / reach)
+        return np.exp(1j * (line + side * (angle + math.pi / 2))), angle
     cosine = (arm**2 + reach**2 - far**2) / (2.0 * arm * reach)
     if np.abs(cosine).max() >= 1.0:
         raise DeclarationError(
@@ -234,14 +232,14 @@ def _swinging(
             f" {far.min():.6g} to {far.max():.6g} m; expected another length or pivot"
         )
     angle = np.arccos(cosine)
-    place = away + arm * np.exp(1j * (line + side * angle))
-    return np.angle(place) - np.angle(pitch), angle
+    return away + arm * np.exp(1j * (line + side * angle)), angle
 
 
-def _law(angle: Array, height: Array, smoothing: float) -> Curve:
-    """The curve through the follower's places at angles that fall while the
-    profile is gone round.
+def _law(seen: Places, there: complex | Places, height: Array, smoothing: float) -> Curve:
+    """The curve through the follower's places at the angles by which the cam turns what is ``seen``
+    on it to where it is ``there``, which fall while the profile is gone round.
     """
+    angle = np.angle(there) - np.angle(seen)
     turned = np.unwrap(np.append(angle, angle[0]))
     steps = -np.diff(turned)
     if not (steps > 0.0).all() or abs(steps.sum() - math.tau) > 1e-6:
