@@ -50,13 +50,11 @@ class Design(Touch):
     """Position of the contact of a disc cam, from the cam's centre.
 
     ``arm`` leads from the follower's point to where the cam touches it. ``turned`` is the direction
-    of the follower's own axis, None where nothing depends on it; ``roller`` is the radius of its
-    roller.
+    of the follower's own axis, None where nothing depends on it.
     """
 
     arm: Vector
     turned: Vector | None
-    roller: Expression
 
     @property
     def contact(self) -> Vector:
@@ -206,8 +204,7 @@ def disc_cam(
         else (_swinging_flat if flat else _swinging)
     )
     design = make(base, x, rise, layout)
-    touched = follower.child if flat and follower.kind == "revolute" else layout.held
-    gap = _gap(mechanism, cam, touched, design)
+    gap = _gap(mechanism, cam, layout.held, design)
     made = Cam(name, mechanism, contact(mechanism, name, cam, design, gap, rise), design)
     mechanism.one_way[f"{name}_force"] = f"cam '{name}': the follower lifts off"
     radius = ca.substitute(design.curvature, x, mechanism.coordinate(cam))
@@ -292,7 +289,7 @@ def _rolling(x: Expression, place: Vector, travel: Vector, roller: Expression) -
     """
     # At right angles to how the point moves on the cam.
     normal = unit((place[0] - ca.jacobian(place[1], x), place[1] + ca.jacobian(place[0], x), 0.0))
-    return Design(x, place, normal, travel, times(-roller, normal), None, roller)
+    return Design(x, place, normal, travel, times(-roller, normal), None)
 
 
 def _translating(base: Expression, x: Expression, rise: Expression, layout: Layout) -> Design:
@@ -307,7 +304,7 @@ def _translating_flat(base: Expression, x: Expression, rise: Expression, layout:
     place = plus(times(offset, aside), times(base + rise, up))
     # It touches beside the line through the cam's centre by the slope of the lift.
     arm = times(ca.jacobian(rise, x) - offset, aside)
-    return Design(x, place, up, up, arm, layout.follower.turned.x, 0.0)
+    return Design(x, place, up, up, arm, layout.follower.turned.x)
 
 
 def _swinging(base: Expression, x: Expression, rise: Expression, layout: Layout) -> Design:
@@ -323,7 +320,7 @@ def _swinging_flat(base: Expression, x: Expression, rise: Expression, layout: La
     along, normal = _swung(layout, rise, ca.sqrt(1.0 - sine * sine), distance)
     # The normal passes through the point at which both turn alike.
     arm = times(-dot(away, along) / (1.0 - layout.side * ca.jacobian(rise, x)), along)
-    return Design(x, away, normal, normal, arm, along, 0.0)
+    return Design(x, away, normal, normal, arm, along)
 
 
 def _swung(

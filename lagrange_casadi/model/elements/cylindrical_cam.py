@@ -264,7 +264,7 @@ def _refuse_undercut(what: str, mechanism: Mechanism, design: Groove, roller: Ex
     """Raise :class:`.DeclarationError` where the groove's flanks have no room for its roller in its
     bends.
     """
-    bends, radii = np.abs(sampled(mechanism, design.angle, design.bend, roller))
+    bends, radii = np.abs(sampled(mechanism, design.angle, ANGLES, design.bend, roller))
     tight = int(np.argmax(bends))
     if bends[tight] * radii[0] >= 1.0:
         raise DeclarationError(
@@ -284,7 +284,7 @@ def _check(what: str, mechanism: Mechanism, design: Groove, cam: Joint, follower
         place = "along the drum's axis" if slides else "at right angles to the drum's axis"
         raise DeclarationError(f"{what}: joint '{follower.name}' must be {place}")
     away = norm(_across(minus(design.place, cam.parent.place), axis))
-    (reach,) = sampled(mechanism, design.angle, away)
+    (reach,) = sampled(mechanism, design.angle, ANGLES, away)
     if not reach.min() > _SAME * reach.max():
         raise DeclarationError(f"{what}: the roller reaches the drum's axis; move it away")
 

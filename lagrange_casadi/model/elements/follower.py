@@ -54,13 +54,13 @@ class Touch(Brief):
         return ca.atan2(norm(cross(self.normal, self.travel)), dot(self.normal, self.travel))
 
 
-def sampled(mechanism: Mechanism, angle: ca.SX, *rows: Expression) -> Array:
-    """Values (rows, n) of expressions of the cam's angle at :data:`ANGLES`, with the defaults of
+def sampled(mechanism: Mechanism, angle: ca.SX, at: Array, *rows: Expression) -> Array:
+    """Values (rows, n) of expressions of the cam's ``angle`` ``at`` some, with the defaults of
     parameters.
     """
     defaults = [parameter.default for parameter in mechanism.parameters.values()]
     function = graph("rows", {"angle": angle, "p": mechanism.symbols}, rows=column(rows))
-    return np.asarray(function(ANGLES[None], defaults).full())
+    return np.asarray(function(at[None], defaults).full())
 
 
 def rise_of(
@@ -72,9 +72,10 @@ def rise_of(
     number, and where it is another after a turn.
     """
     rise: ca.SX = expressed(f"{what}: lift", lambda x: ca.SX(lift(x)), [angle], "the cam's angle")
-    (values,) = sampled(mechanism, angle, rise)
+    few = ANGLES[::20]
+    (values,) = sampled(mechanism, angle, few, rise)
     if not np.isfinite(values).all():
-        first = math.degrees(ANGLES[np.argmin(np.isfinite(values))])
+        first = math.degrees(few[np.argmin(np.isfinite(values))])
         raise DeclarationError(
             f"{what}: lift is no finite number at {first:.4g} deg of the cam; expected a function"
             " of CasADi's expressions, with casadi.sin in place of math.sin"

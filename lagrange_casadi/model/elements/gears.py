@@ -185,11 +185,8 @@ def _teeth(
 
     if (module is None) == (radii is None) or (radii is None and teeth is None):
         raise DeclarationError(f"{what}: expected module= and teeth=, or radii=")
-    names = ("pressure_angle", "helix_angle")
-    pressure, helix = (
-        ownership.expression(f"{what}: {one}", angle, "rad")
-        for one, angle in zip(names, angles, strict=True)
-    )
+    pressure = ownership.expression(f"{what}: pressure_angle", angles[0], "rad")
+    helix = ownership.expression(f"{what}: helix_angle", angles[1], "rad")
     fits.within("pressure_angle", pressure, 0.0, 45.0)
     fits.within("helix_angle", helix, -75.0, 75.0)
     if not mechanism.space and not (isinstance(helix, float) and helix == 0.0):

@@ -19,13 +19,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 import casadi as ca
 
 from ...base.arguments import public
 from ...base.brief import Brief
 from ...base.rotation import Rotation
-from ...base.units import count
+from ...base.units import Within
 from ...base.vectors import AXES, ZERO, cross, dot, minus, norm, plus, times
 from ...errors import DeclarationError
 from ..constraints import Constraint
@@ -67,7 +68,7 @@ def geneva(
     crank: Joint,
     wheel: Joint,
     *,
-    slots: int,
+    slots: Annotated[int, Within(3, 12)],
     pin: Point | None = None,
     internal: bool = False,
     lock: Expression | None = None,
@@ -103,7 +104,6 @@ def geneva(
         In space, for joints of other kinds, another number of slots, and sizes that do not fit.
     """
     what, ownership = f"geneva '{name}'", mechanism.ownership
-    slots = count(f"{what}: slots", slots, 3, 12)
     for joint in (crank, wheel):
         kind, carrier = ownership.joint(joint).kind, joint.parent.body
         if mechanism.space or kind != "revolute" or carrier is not crank.parent.body:

@@ -6,8 +6,8 @@ from __future__ import annotations
 
 import math
 
-from ...base.arguments import public
-from ...base.units import count, number
+from ...base.arguments import Count, public
+from ...base.units import number
 from ...errors import DeclarationError
 from ..declared_parts import Expression, Link, Outline
 from ..mechanism import Mechanism
@@ -26,7 +26,7 @@ def wheel(
     width: Expression | None = None,
     mass: Expression | None = None,
     density: Expression = 7850.0,
-    teeth: int | None = None,
+    teeth: Count | None = None,
     internal: bool = False,
     turned: float | str = 0.0,
 ) -> Link:
@@ -82,7 +82,6 @@ def wheel(
             name, length=outer, mass=whole, centre=(0.0, 0.0, 0.0), inertia=(polar, across, across)
         )
     link = mechanism.link(name, length=outer, mass=whole, centre=(0.0, 0.0), inertia=polar)
-    teeth = None if teeth is None else count(f"{what}: teeth", teeth)
     outside, hole = (
         _edge(size, teeth if inward == internal else None, turned, inward=inward)
         for size, inward in ((outer, False), (inner, True))
