@@ -10,7 +10,6 @@ import shutil
 import signal
 import sys
 import zlib
-from collections import Counter
 from contextlib import suppress
 from pathlib import Path
 
@@ -215,7 +214,8 @@ def pytest_collection(session):
     before, kept = (sys.dont_write_bytecode, sys.pycache_prefix), bytecode(session.config)
     if kept is not None:
         sys.dont_write_bytecode, sys.pycache_prefix = False, str(kept)
-    if session.config.args == session.config.getini("testpaths"):
+    asked = session.config.option.markexpr or session.config.args
+    if asked == session.config.getini("testpaths"):
         import_share()
     yield
     sys.dont_write_bytecode, sys.pycache_prefix = before
@@ -233,30 +233,44 @@ def import_share():
             importlib.import_module(path.stem)
 
 
-def pytest_collection_modifyitems(config, items):
-    """Leave out long tests, and parameters of those that are sampled, unless they are asked for,
-    all or by name. What is early begins the order.
+def pytest_ignore_collect(collection_path, config):
+    """Read no module without a quick test where these alone are asked for; of others nothing is
+    said.
     """
-    if any("::" in argument for argument in config.args):
+    if config.option.markexpr == "quick" and collection_path.name.startswith("test_"):
+        return "mark.quick" not in collection_path.read_text() or None
+    return None
+
+
+def is_whole(config):
+    """Whether all that takes long, and all parameters, are asked for, or tests by name."""
+    return config.getoption("--long") or any("::" in argument for argument in config.args)
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_generate_tests(metafunc):
+    """Make no parameters that take long, and one in so many of a test that is sampled."""
+    yield
+    if is_whole(metafunc.config):
         return
+    name, sampled = metafunc.definition.nodeid, metafunc.definition.get_closest_marker("sampled")
+    # Which one it begins with is another for every test, so that all cases are among them; of each
+    # test there is one at least.
+    step = min(sampled.args[0], max(len(metafunc._calls), 1)) if sampled else 1
+    metafunc._calls = [
+        call
+        for seen, call in enumerate(metafunc._calls, zlib.crc32(name.encode()))
+        if seen % step == 0 and "long" not in [mark.name for mark in call.marks]
+    ]
+
+
+def pytest_collection_modifyitems(config, items):
+    """Leave out long tests, unless they are asked for. What is early begins the order."""
     items.sort(key=lambda item: item.get_closest_marker("early") is None)
-    if config.getoption("--long"):
-        return
-    counts = Counter(item.nodeid.partition("[")[0] for item in items)
-    seen, left = Counter(), []
-    for item in items:
-        sampled = item.get_closest_marker("sampled")
-        of = item.nodeid.partition("[")[0]
-        # Which one it begins with is another for every test, so that all cases are among them; of
-        # each test there is one at least.
-        step = min(sampled.args[0], counts[of]) if sampled else 1
-        if item.get_closest_marker("long") or (seen[of] + zlib.crc32(of.encode())) % step:
-            left.append(item)
-        seen[of] += 1
+    left = [] if is_whole(config) else [item for item in items if item.get_closest_marker("long")]
     if left:
         config.hook.pytest_deselected(items=left)
-        out = set(left)
-        items[:] = [item for item in items if item not in out]
+        items[:] = [item for item in items if item not in left]
 
 
 @pytest.fixture
