@@ -111,7 +111,7 @@ def interpreted(name):
     return scene, solution, size
 
 
-@pytest.mark.sampled(13)
+@pytest.mark.sampled(19)
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("name", SCENES)
 def test_every_way_gives_the_same_within_its_errors(name, way, tmp_path):
@@ -137,7 +137,7 @@ def test_every_way_gives_the_same_within_its_errors(name, way, tmp_path):
         assert gap <= claimed + 1e-13 * size[solution.unit(quantity)], quantity
 
 
-@pytest.mark.sampled(7)
+@pytest.mark.sampled(11)
 @pytest.mark.parametrize("name", DECLARED)
 def test_designs_have_the_peaks_of_the_api(name):
     scene = SCENES[name]()
@@ -150,7 +150,7 @@ def test_designs_have_the_peaks_of_the_api(name):
         assert_refined(scene, designs, outcome, row, p[row])
 
 
-@pytest.mark.sampled(13)
+@pytest.mark.sampled(19)
 @pytest.mark.parametrize("precision", ["double", "single"])
 @pytest.mark.parametrize("name", SCENES)
 def test_exported_c_has_the_numbers_of_the_api(name, precision, tmp_path):

@@ -56,7 +56,7 @@ def symbols(folder, prefix):
     return [line.split()[-2:] for line in listed.splitlines()]
 
 
-@pytest.mark.sampled(19)
+@pytest.mark.sampled(31)
 @pytest.mark.parametrize(("name", "way"), EXPORTED)
 def test_it_is_clean_and_passes_its_own_test(name, way, tmp_path):
     """By every compiler, and under sanitizers; only prefixed symbols are seen, nothing is kept

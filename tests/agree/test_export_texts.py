@@ -74,7 +74,7 @@ def test_a_name_and_a_unit_are_only_ever_shown(tmp_path, wicked):
     shown(wicked, tmp_path)
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=3, deadline=None)
 @given(line=LINES)
 def test_any_line_is_only_ever_shown(line, tmp_path_factory):
     shown(line, tmp_path_factory.mktemp("lines"))

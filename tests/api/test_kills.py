@@ -119,7 +119,7 @@ def saved(folder, later):
 
 def swept(folder, later):
     if later:
-        grid = {"l": (0.15, 0.4, 5), "r": [0.05, 0.1]}
+        grid = {"l": (0.15, 0.4, 2), "r": [0.05, 0.1]}
         words = {"out": folder / "x.h5", "resume": True, "workers": 1, "t": (0, 0.08, 7)}
         sweep(sweeps.scene(), grid, **words)
 

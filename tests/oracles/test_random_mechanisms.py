@@ -23,7 +23,7 @@ from lagrange_casadi.peaks import forces
 COUNT, LONG, QUICK = 10, 100, 3
 """Mechanisms of each kind by default, with ``--long``, and for whoever is editing."""
 
-ANY, LONG_ANY, AT_ONCE = [*range(60), 700042], range(60, 1000), 10
+ANY, LONG_ANY, AT_ONCE = [*range(20), 700042], range(20, 1000), 10
 """Seeds of mechanisms of any kind, of which the first are for whoever is editing; of the last one
 gears rest while drives move.
 """
@@ -56,10 +56,10 @@ def cases():
 
 @functools.lru_cache(maxsize=4)
 def verdict(seed, kind=""):
-    """With peaks where these take little time."""
+    """With peaks of every other one, where these take little time."""
     drawn = draw(seed, kind)
     few = kind != "one_way" and len(drawn.draft.bodies) <= SMALL
-    return judge(drawn, backend="vm", peaks=few)
+    return judge(drawn, backend="vm", peaks=few and seed % 2 == 0)
 
 
 @pytest.mark.parametrize(("kind", "seed"), cases())

@@ -89,7 +89,7 @@ def assert_the_same(scene, units, keywords=None, rescaled=None):
             assert there.errors[output] / size == pytest.approx(error, rel=1e-6), output
 
 
-@pytest.mark.sampled(17)
+@pytest.mark.sampled(29)
 @pytest.mark.parametrize("units", OTHER, ids=str)
 @pytest.mark.parametrize("name", sorted(path.parent.name for path in CASES.glob("*/case.py")))
 def test_cases_do_not_depend_on_units(name, units):
@@ -109,7 +109,7 @@ def assert_drawn_the_same(seed):
     assert_the_same(scene, units, drawn.keywords | times, again)
 
 
-@pytest.mark.sampled(101)
+@pytest.mark.sampled(151)
 @pytest.mark.parametrize("seed", range(1200))
 def test_random_mechanisms_do_not_depend_on_units(seed):
     assert_drawn_the_same(seed)
@@ -124,7 +124,7 @@ def test_nor_do_these_that_did(seed):
     assert_drawn_the_same(seed)
 
 
-@pytest.mark.sampled(151)
+@pytest.mark.sampled(307)
 @pytest.mark.parametrize("seed", range(1200))
 def test_random_mechanisms_in_space_do_not_depend_on_units(seed):
     draw = SPATIAL[seed % len(SPATIAL)]
