@@ -36,7 +36,7 @@ SCENES = {
 EXPORTED = [(name, way) for name in SCENES for way in ("double", "single")]
 EXPORTED += [("press", "table"), ("press", "single table"), ("press", "slopes")]
 EXPORTED += [("iterated", "newton"), ("truss_platform", "newton"), ("truss_platform", "slopes")]
-EXPORTED += [("v_twin", "slopes"), ("excavator", "slopes"), ("laws", "slopes")]
+EXPORTED += [("laws", "slopes")]
 SANITIZED = ["-O1", "-g", "-ffp-contract=off", "-fsanitize=address,undefined"]
 SANITIZED += ["-fno-sanitize-recover=all"]
 
@@ -56,8 +56,8 @@ def symbols(folder, prefix):
     return [line.split()[-2:] for line in listed.splitlines()]
 
 
-@pytest.mark.sampled(31)
-@pytest.mark.parametrize(("name", "way"), EXPORTED)
+@pytest.mark.sampled(23)
+@pytest.mark.parametrize(("name", "way"), sorted(EXPORTED, key=lambda pair: pair[1]))
 def test_it_is_clean_and_passes_its_own_test(name, way, tmp_path):
     """By every compiler, and under sanitizers; only prefixed symbols are seen, nothing is kept
     between calls, and of libraries only functions of the precision are asked for.
