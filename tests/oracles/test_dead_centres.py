@@ -202,7 +202,7 @@ def check(name, backend, many, seed, compared):
 
 @pytest.mark.parametrize("name", SCENES)
 def test_what_passes_a_dead_centre_is_refused_and_nothing_else(name):
-    check(name, "lanes", 75, 1, 20)
+    check(name, "lanes", 50, 1, 8)
 
 
 @pytest.mark.long

@@ -209,7 +209,7 @@ def drawn(seed):
     return draw
 
 
-@pytest.mark.sampled(25)
+@pytest.mark.sampled(41)
 @pytest.mark.parametrize("seed", range(400))
 def test_efforts_are_those_of_mujoco_or_a_note_says_why_not(seed, tmp_path):
     draw, path = drawn(seed), tmp_path / "model.xml"
