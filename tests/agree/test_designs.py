@@ -2,12 +2,9 @@
 the neighbours.
 """
 
-import math
-
 import numpy as np
 import pytest
-from conftest import CASES, PLANAR
-from design_rows import alone, around, assert_refined
+from design_rows import around
 from internals import (
     DesignEngine,
     EvaluationMethod,
@@ -18,43 +15,10 @@ from mechanisms import four_bar, slider_crank
 from stepped import iterated
 
 from lagrange_casadi import Mechanism, Scene, evaluate, load_case, motion, prepare
-from lagrange_casadi.errors import AssemblyError, DeclarationError
+from lagrange_casadi.errors import DeclarationError
 
 INSTANTS = 128
 FIELDS = ("status", "value", "t", "xi", "mean", "rms")
-
-
-PARAMETRIC = [name for name in PLANAR if ".parameter(" in (CASES / name / "case.py").read_text()]
-
-
-@pytest.mark.sampled(10)
-@pytest.mark.parametrize("name", PARAMETRIC)
-def test_designs_are_their_own_evaluations(name):
-    """A design whose loops do not close has no result in either way."""
-    scene = load_case(name).scene
-    designs = DesignEngine.of(scene, t=(*scene.t[:2], INSTANTS), method=EvaluationMethod("c"))
-    p = around(scene, 3)
-    outcome = designs.evaluate(p)
-    assert outcome.status[0] == Status.OK
-    for row in range(3):
-        if outcome.status[row] == Status.OUT_OF_REACH:
-            with pytest.raises(AssemblyError, match="its links do not reach"):
-                alone(scene, p[row], (*scene.t[:2], INSTANTS))
-            continue
-        assert outcome.status[row] == Status.OK
-        assert_refined(scene, designs, outcome, row, p[row])
-        solution = alone(scene, p[row], (*scene.t[:2], INSTANTS))
-        for k, effort in enumerate(designs.efforts):
-            series = solution.array(effort)
-            weights = np.ones(series.size)
-            weights[[0, -1]] = 0.5
-            size = 1e-13 * np.abs(series).max()
-            assert outcome.mean[row, k] == pytest.approx(
-                np.average(series, weights=weights), abs=size
-            )
-            assert outcome.rms[row, k] == pytest.approx(
-                math.sqrt(np.average(series**2, weights=weights)), rel=1e-13
-            )
 
 
 @pytest.mark.sampled(11)

@@ -8,9 +8,9 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
-from design_rows import DENSITIES, alone, assert_refined, loaded, peaks_of
+from design_rows import peaks_of
 from internals import Status
-from mechanisms import crank_and_rod, crank_slider, four_bar, pendulum
+from mechanisms import crank_slider, four_bar, pendulum
 
 from lagrange_casadi import Scene, evaluate, prepare, refine
 from lagrange_casadi.motion import polynomial
@@ -167,30 +167,6 @@ def test_what_grows_without_an_end_too_slowly_is_not_told():
     """A logarithm has no bound, and no number of times shows that."""
     law = lambda x: ca.log(ca.fabs(x - 1.0137))  # noqa: E731
     assert all(math.isnan(value) for _, value in searched(signal(law)))
-
-
-@pytest.mark.sampled(9)
-@pytest.mark.parametrize("matter", DENSITIES)
-def test_any_density_and_any_station(matter):
-    """Along the link exact: nothing on a fine grid is larger, and the peaks are those of the
-    section law; packs find the same.
-    """
-    scene = crank_and_rod(DENSITIES[matter](), loads=loaded)
-    grid, wanted = (0.3, 2.3, 61), ["section:b", "reaction:A"]
-    p = np.array([[0.2], [0.1], [0.35], [0.0], [0.31], [0.36]])
-    designs, packs = (
-        prepare(scene, wanted=wanted, t=grid, backend=backend) for backend in ("c", "lanes")
-    )
-    outcome, other = designs.designs(p), packs.designs(p)
-    assert outcome.status.tolist() == other.status.tolist() == [0] * 5 + [Status.IMPOSSIBLE]
-    np.testing.assert_allclose(other.value, outcome.value, rtol=1e-11, atol=1e-11)
-    for row in range(5):
-        assert_refined(scene, designs, outcome, row, p[row])
-        found = peaks_of(designs, outcome, row)
-        for name in ("section:b:axial", "section:b:shear", "section:b:bending"):
-            value, t, _ = found[name]
-            there = alone(scene, p[row], (t, t, 1), xi=(0, 1, 4001))
-            assert abs(value) >= np.abs(there.array(name)).max() * (1 - 1e-13)
 
 
 def turned(scene, start, count):

@@ -75,9 +75,9 @@ def whole(slider_crank, tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def two_workers(tmp_path_factory):
+def cluster(tmp_path_factory):
     """A scheduler needs nothing but Dask."""
-    with started(tmp_path_factory.mktemp("cluster"), [PLAIN] * 2) as (address, *_):
+    with started(tmp_path_factory.mktemp("cluster"), [PLAIN]) as (address, *_):
         yield address
 
 
@@ -119,11 +119,11 @@ def test_searches_for_a_design_give_the_same_bytes(slider_crank, processes, tmp_
     assert there.read_bytes() == here.read_bytes()
 
 
-def test_the_command_line_connects_to_a_scheduler(two_workers, tmp_path, monkeypatch, capsys):
+def test_the_command_line_connects_to_a_scheduler(cluster, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     words = ["sweep", "slider_crank", "--grid", "l=0.2:0.4:9", "--want", "effort", "--quiet"]
     assert main([*words, "--out", "here.h5"]) == 0
-    assert main([*words, "--out", "there.h5", "--dask", two_workers]) == 0
+    assert main([*words, "--out", "there.h5", "--dask", cluster]) == 0
     assert (tmp_path / "there.h5").read_bytes() == (tmp_path / "here.h5").read_bytes()
     assert capsys.readouterr().err == ""
 

@@ -110,22 +110,6 @@ def test_in_gimbal_lock_and_beside_it_all_is_as_the_oracle_has_it(name):
         )
 
 
-@pytest.mark.parametrize(
-    ("options", "rounding"),
-    [
-        ({"backend": "c"}, 1e-12),
-        pytest.param({"backend": "lanes"}, 1e-12, marks=pytest.mark.long),
-        pytest.param({"backend": "vm", "newton": 4}, 1e-9, marks=pytest.mark.long),
-        pytest.param({"precision": "single"}, 2e-4, marks=pytest.mark.long),
-    ],
-)
-def test_every_way_to_evaluate_passes_gimbal_lock(options, rounding):
-    drawn, scene, true = made("on a leg")
-    wanted = None if "precision" not in options else ["effort", "reaction", "motion"]
-    solution = evaluate(scene, wanted=wanted, **options)
-    compare(drawn, solution, true, rounding)
-
-
 def hung(pin, block):
     """A plate that hangs on a block which slides, its tip on a rail, a point of it at a height."""
     m = SpatialMechanism("hung")

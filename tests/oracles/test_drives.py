@@ -1,70 +1,18 @@
 """Drives at other joints than those whose motion is given."""
 
-import itertools
 import math
 from dataclasses import replace
 
 import casadi as ca
 import numpy as np
 import pytest
-from balance import assert_balanced
 from five_bars import five_bar
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from mechanisms import slider_crank
 
 from lagrange_casadi import Mechanism, Scene, evaluate, motion
 from lagrange_casadi.errors import AssemblyError, DeclarationError, UnknownNameError
 
 pytestmark = pytest.mark.usefixtures("interpreted")
-
-PAIRS = list(itertools.combinations("OCADP", 2))
-
-
-@pytest.mark.sampled(7)
-@pytest.mark.parametrize("pair", PAIRS, ids=map("".join, PAIRS))
-def test_any_two_joints_of_a_five_bar_can_drive_it(pair):
-    """Pins of the tree and pins that close its loop, at bodies that bear sections: all forces are
-    those of free bodies, and the power is the motion's and the loads', whoever does it.
-    """
-    loads = [lambda place: [(("c", 0.5, 0), -20.0, 5.0, 0.0)]]
-    assert_balanced(five_bar(pair), t=0.3, loads=loads)
-    usual, solution = evaluate(five_bar()), evaluate(five_bar(pair))
-    assert solution.certified
-    assert {"balance", "power", "ends"} <= set(solution.certificate)
-    assert {q.part for q in solution.outputs if q.group == "effort"} == set(pair)
-    power = [
-        sum(s.effort(j) * s.motion(j).rate for j in joints)
-        for s, joints in ((usual, "OC"), (solution, pair))
-    ]
-    assert np.abs(power[1] - power[0]).max() < 1e-12 * np.abs(power[0]).max()
-
-
-@settings(max_examples=3, deadline=None)
-@given(st.lists(st.floats(0.01, 100.0), min_size=3, max_size=5))
-def test_of_more_drives_the_efforts_are_the_least(weights):
-    """Efforts times weights are a combination of what the motions do at the drives (Lagrange's
-    condition of the least).
-    """
-    drives = dict(zip("OCADP", weights, strict=False))
-    found = evaluate(five_bar(drives, t=(0.2, 0.8, 3)))
-    assert found.certified
-    for i, t in enumerate(found.t):
-        rates = []
-        for turning in "OC":
-            m = five_bar(t=(t, t, 1))
-            laws = {
-                j: motion.polynomial(float(found.motion(j).value[i]), float(j == turning))
-                for j in "OC"
-            }
-            posture = {b: float(found.pose(b).angle[i]) for b in "abcd"}
-            one = evaluate(
-                Scene(m.mechanism, laws, ["motion"], t=(0, 0, 1), posture=posture), backend="vm"
-            )
-            rates.append([one.motion(j).rate[0] for j in drives])
-        pull = np.array([w * found.effort(j)[i] for j, w in drives.items()])
-        left = pull - np.array(rates).T @ np.linalg.lstsq(np.array(rates).T, pull, rcond=None)[0]
-        assert np.abs(left).max() < 1e-10 * np.abs(pull).max()
 
 
 def test_weights_may_be_parameters():

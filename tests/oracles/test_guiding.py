@@ -29,42 +29,6 @@ def guided(drives=("O", "C"), laws=CIRCLE, **keywords):
     )
 
 
-def platform(**keywords):
-    """3-RRR: a plate on three legs of two links."""
-    m = Mechanism("platform")
-    plate = m.link("plate", length=0.2, mass=2.0, centre=(0.1, 0.05), inertia=0.02)
-    for i, (x, y, px, py) in enumerate(
-        ((-0.4, -0.3, 0, 0), (0.6, -0.3, 0.2, 0), (0.1, 0.6, 0.1, 0.17))
-    ):
-        upper, lower = m.link(f"u{i}", length=0.35, mass=0.5), m.link(f"l{i}", length=0.4, mass=0.4)
-        m.revolute(f"M{i}", m.ground.at(x, y), upper)
-        m.revolute(f"K{i}", upper.tip, lower)
-        m.revolute(f"E{i}", lower.tip, plate.at(px, py))
-    posture = {"u0": 1.5, "u1": 2.5, "u2": -2.0}
-    return Scene(
-        m,
-        {"plate": POSE},
-        **({"t": (0, 1, 41), "posture": posture, "drives": ["M0", "M1", "M2"]} | keywords),
-    )
-
-
-def test_the_point_is_where_its_laws_say():
-    """And the pose of a plate, both in closed form."""
-    assert derive(guided()).newton is None
-    assert derive(platform()).newton is None
-    found = evaluate(guided())
-    x, y = 0.05 + 0.1 * np.sin(2 * np.pi * found.t), 0.6 + 0.05 * np.sin(2 * np.pi * found.t + 1.0)
-    assert np.abs(found.output("tool_x") - x).max() < 1e-15
-    assert np.abs(found.output("tool_y") - y).max() < 1e-15
-    assert np.abs(found.output("tool_vx") - 0.2 * np.pi * np.cos(2 * np.pi * found.t)).max() < 1e-13
-    assert (
-        np.abs(found.output("tool_ay") + 0.2 * np.pi**2 * np.sin(2 * np.pi * found.t + 1.0)).max()
-        < 1e-12
-    )
-    pose = evaluate(platform()).pose("plate")
-    assert np.abs(pose.angle - 0.1 - 0.1 * np.sin(2 * np.pi * np.linspace(0, 1, 41))).max() < 1e-15
-
-
 def test_a_point_mass_may_be_guided():
     m = Mechanism("carried")
     arm = m.link("arm", length=1.0, mass=2.0)

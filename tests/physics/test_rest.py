@@ -253,32 +253,6 @@ def test_no_friction_within_its_limits_asks_for_more(seed, kind):
     assert within.max() - within.min() > 0.3 * (corners.max() - corners.min())
 
 
-def test_a_slide_on_a_table_that_goes_on():
-    """Its weight of 19.62 N, and mu times what its two edges bear of 40 N and of the moments; the
-    table feels none of it.
-    """
-    m = Mechanism("two")
-    table = m.link("table", length=0.2, mass=3.0, centre=(0.0, 0.0), inertia=0.01)
-    slide = m.link("slide", length=0.2, mass=2.0, centre=(0.05, 0.0), inertia=0.01)
-    m.friction("ways", m.prismatic("X", m.ground, table, axis=(1, 0)), mu=0.1, length=0.3)
-    m.friction("gib", m.prismatic("Y", table, slide, axis=(0, 1)), mu=0.2, length=0.1)
-    m.force("cut", slide, x=40.0)
-    laws = {"X": polynomial(0.0, 0.3), "Y": moves([move(0.1, time=0.2), dwell(0.2)])}
-    scene = Scene(m, laws, ["effort", "motion", "friction"], t=(0.25, 0.35, 3))
-    solution = evaluate(scene)
-    ranges = holding(scene, solution)
-    assert (
-        ranges["X"].least.tolist()
-        == ranges["X"].largest.tolist()
-        == pytest.approx(solution.effort("X"), nan_ok=True)
-    )
-    tilt = 2 * 9.81 * 0.05 / 0.1
-    share = 0.2 * (abs(40 / 2 + tilt) + abs(40 / 2 - tilt))
-    assert ranges["Y"].least == pytest.approx(19.62 - share, rel=1e-12)
-    assert ranges["Y"].largest == pytest.approx(19.62 + share, rel=1e-12)
-    assert ranges["Y"].worst == pytest.approx(19.62 + share, rel=1e-12)
-
-
 def in_space(kind):
     """A rod in a bush that slides and turns, or a bar on a ball: both at rest."""
     m = SpatialMechanism(kind)

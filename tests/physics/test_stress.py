@@ -136,28 +136,6 @@ def test_shear_stresses_carry_the_shear_force(kind):
         assert fibre.along_y[0] == pytest.approx(stress[k - 2 : k + 2].max(), rel=5e-3), fibre.name
 
 
-@pytest.fixture(scope="module")
-def robots():
-    shapes = {
-        "box": beams.box(0.05, 0.03, 0.003, 0.004),
-        "round": beams.round_bar(0.03),
-        "c": beams.c_section(0.05, 0.03, 0.004, 0.005),
-    }
-    return {
-        name: evaluate(strong.robot(shape), certificate=False) for name, shape in shapes.items()
-    }
-
-
-@pytest.mark.parametrize("name", ["box", "round", "c"])
-def test_in_space_the_largest_is_that_of_a_fine_grid(robots, name):
-    stress = robots[name].stress("upper")
-    grid = stress.grid("von_mises", np.linspace(0.0, 1.0, 401)).max(axis=1)
-    found = stress.largest("von_mises").value
-    assert (found - grid).min() >= -1e-11 * found.max()
-    assert (found - grid).max() <= 1e-3 * found.max()
-    assert found.max() == pytest.approx(stress.peak("von_mises").value, rel=1e-13)
-
-
 def test_notches_take_their_factors():
     solution = evaluate(
         strong.press(I, [beams.Notch(0.25, axial=2.0, bending=3.0, shear=1.5)]), certificate=False
