@@ -1,4 +1,4 @@
-"""Peaks between instants, on signals and mechanisms of every kind, of one solution and of designs,
+"""Peaks between instants, on signals of every kind, of one solution and of designs,
 by both backends and in both precisions: none is short of many more instants, and those that cannot
 be told are not told.
 """
@@ -8,11 +8,10 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
-from design_rows import peaks_of
 from internals import Status
-from mechanisms import crank_slider, four_bar, pendulum
+from mechanisms import pendulum
 
-from lagrange_casadi import Scene, evaluate, prepare, refine
+from lagrange_casadi import evaluate, prepare, refine
 from lagrange_casadi.motion import polynomial
 
 STEP = 0.04
@@ -167,77 +166,3 @@ def test_what_grows_without_an_end_too_slowly_is_not_told():
     """A logarithm has no bound, and no number of times shows that."""
     law = lambda x: ca.log(ca.fabs(x - 1.0137))  # noqa: E731
     assert all(math.isnan(value) for _, value in searched(signal(law)))
-
-
-def turned(scene, start, count):
-    """A scene over one turn of its drive, from an angle on."""
-    law = {"O": polynomial(start, 8.0)}
-    posture = {"b": 0.3, **scene.posture}
-    return Scene(scene.mechanism, law, posture=posture, t=(0, math.tau / 8, count))
-
-
-def stretched(ratio):
-    """A slider-crank whose crank is so long beside its rod, from beside a dead centre on."""
-    m = crank_slider(lengths=(0.3 * ratio, 0.3))
-    law, span = {"O": polynomial(0.3, 10.0)}, math.tau / 10
-    return lambda count: Scene(m, law, posture={"rod": -0.1}, t=(0, span, count))
-
-
-def folding(shortage, start):
-    """A crank-rocker that all but folds: its ground is shorter by so much than that at which it
-    would.
-    """
-    frame = ((0.3 + 0.25 - 0.1) * (1 - shortage), 0.0)
-    return lambda count: turned(four_bar((0.1, 0.3, 0.25), frame=frame, rocker=2.5), start, count)
-
-
-MACHINES = {
-    "begins near folding": folding(1e-2, math.pi),
-    "begins beside folding": folding(1e-3, math.pi - 0.03),
-    "all but folds": folding(1e-4, 0.0),
-    "a rod all but as long as the crank": stretched(0.9999),
-    "one yet shorter": stretched(0.99997),
-}
-
-
-def drawn(seed):
-    """A crank-rocker that may all but fold."""
-    random = np.random.default_rng(seed)
-    others = np.sort(random.uniform(0.3, 0.5, 3))
-    reach = (others[0] + others[1] - others[2]) * (1 - 10 ** random.uniform(-4, -1))
-    lengths = (min(random.uniform(0.1, 0.3), reach), *random.permutation(others))
-    start, frame = random.uniform(0, math.tau), (lengths[3], 0.0)
-    return lambda count: turned(four_bar(lengths[:3], frame=frame, rocker=2.5), start, count)
-
-
-MACHINES |= {f"drawn {seed}": drawn(seed) for seed in range(4)}
-
-
-@pytest.mark.sampled(9)
-@pytest.mark.parametrize("name", MACHINES)
-def test_no_peak_is_short_where_instants_say_little(name):
-    """Against 100 001 instants; of conditions near a dead centre `refine` and C sum in other
-    orders.
-    """
-    dense = evaluate(MACHINES[name](100_001), certificate=False)
-    for count in (51, 101):
-        scene = MACHINES[name](count)
-        wanted = ["effort", "reaction", "section"]
-        solution = evaluate(scene, wanted=wanted, certificate=False)
-        names = [each for each in solution.names() if each.startswith(tuple(wanted))]
-        scale = {}
-        for each in names:
-            size, unit = abs(dense.peak(each).value), dense.unit(each)
-            scale[unit] = max(scale.get(unit, 0.0), size)
-        found = {peak.name: abs(peak.value) for peak in refine(scene, solution, names)}
-        designs = prepare(scene, wanted=wanted)
-        outcome = designs.designs([[]])
-        assert outcome.status.tolist() == [0]
-        by_designs = peaks_of(designs, outcome, 0)
-        for each in names:
-            least, size = abs(dense.peak(each).value), scale[dense.unit(each)]
-            least -= 1e-11 * (least + size)
-            value = abs(by_designs[each][0])
-            assert found[each] >= least, each
-            assert value >= least, each
-            assert abs(value - found[each]) <= 1e-9 * size, each

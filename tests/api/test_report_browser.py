@@ -345,13 +345,19 @@ def put(one, name, value):
 
 
 @pytest.fixture(scope="module")
-def crank(chromium, tmp_path_factory):
-    """The page that the command line writes, as it is."""
+def live(tmp_path_factory):
+    """A live page as the command line writes it."""
     path = tmp_path_factory.mktemp("live") / "crank.html"
     assert command("report CASE --live --t 0:0.08:41 --out", path) == 0
+    return path
+
+
+@pytest.fixture(scope="module")
+def crank(chromium, live):
+    """The page as it is."""
 
     def opened():
-        chromium.open(path)
+        chromium.open(live)
         chromium.run(
             "navigator.clipboard.writeText = (text) => { window.copied = text; return"
             " Promise.resolve(); }"
@@ -445,14 +451,11 @@ VALUE = "page.contents.parameters.find((one) => one.name === '{}').value"
 
 
 @pytest.fixture(scope="module")
-def held_crank(chromium, tmp_path_factory):
+def held_crank(chromium, live):
     """A live page of which inner parts can be read, at an instant; and where a joint is on it."""
-    folder = tmp_path_factory.mktemp("dragged")
-    assert command("report CASE --live --t 0:0.08:41 --out", folder / "crank.html") == 0
 
     def opened(instant):
-        text = (folder / "crank.html").read_text()
-        alive.opened(chromium, folder / "opened.html", text)
+        alive.opened(chromium, live.with_name("opened.html"), live.read_text())
         chromium.run(
             f"page.player.seek({instant}); navigator.clipboard.writeText = (text) =>"
             " { window.copied = text; return Promise.resolve(); }"

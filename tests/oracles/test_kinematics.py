@@ -253,19 +253,3 @@ def test_a_dead_centre_is_passed_in_no_silence_however_often_a_guide_is_declared
     scene = Scene(m, {"O": polynomial(1.0, 1.0)}, posture={"bar": 2.14, "X0": 0.2}, t=(0, 1, 101))
     with pytest.raises(AssemblyError, match=r"passes a dead centre after t = 0\.57 s"):
         evaluate(scene, backend="vm")
-
-
-@pytest.mark.parametrize(
-    "given",
-    [{"ratio": -2, "offset": 7.0}, {"ratio": -2, "start": 20.0}, {"ratio": 10, "count": 11}],
-)
-def test_a_gear_counts_turns_however_coarse_the_instants(given):
-    m = Mechanism("gear")
-    a, b = m.link("a", length=0.1, mass=1), m.link("b", length=0.2, mass=1)
-    first, second = m.revolute("A", m.ground, a), m.revolute("B", m.ground.at(1, 0), b)
-    m.gear("mesh", first, second, ratio=given["ratio"], offset=given.get("offset", 0.0))
-    law = polynomial(given.get("start", 0.0), 30.0)
-    solution = evaluate(Scene(m, {"A": law}, t=(0, 1, given.get("count", 101))))
-    expected = given["ratio"] * solution.motion("A").value + given.get("offset", 0.0)
-    np.testing.assert_allclose(solution.motion("B").value, expected, rtol=1e-14)
-    np.testing.assert_allclose(solution.pose("b").angle, expected, rtol=1e-14)

@@ -7,15 +7,13 @@ reactions, section forces, peaks between instants, certificates and stated error
 """
 
 import functools
-from dataclasses import replace
 
 import numpy as np
 import pytest
-from internals import Output
 from random_comparison import CONDEMNED, WITHHELD
 from random_exported import by_exported_c
 from random_mechanisms import KINDS, draw
-from random_verdict import compare, is_regular, judge, peaks_off
+from random_verdict import compare, judge, peaks_off
 
 from lagrange_casadi import evaluate
 from lagrange_casadi.peaks import forces
@@ -35,7 +33,6 @@ DENSE = 2001
 REFUSED = 0.02
 """How many of the regular mechanisms may be refused."""
 
-REGULAR = [3, 4, 6, 7]
 SMALL = 6
 """Bodies of a mechanism whose peaks are looked at."""
 
@@ -125,51 +122,10 @@ def test_a_seed_is_a_mechanism():
 
 
 def test_what_is_printed_runs():
-    drawn = draw(REGULAR[0])
+    drawn = draw(3)
     space = {}
     exec(drawn.describe(), space)
     solution = evaluate(drawn.scene(), **drawn.keywords)
     assert set(solution.series) == set(space["solution"].series)
     for name, values in solution.series.items():
         np.testing.assert_array_equal(space["solution"].series[name], values, name)
-
-
-@pytest.fixture(scope="module")
-def right():
-    whole = (
-        d
-        for d in map(draw, REGULAR)
-        if d.draft.limited and "wanted" not in d.keywords and is_regular(d)
-    )
-    drawn = min(whole, key=lambda d: len(d.draft.bodies))
-    solution = evaluate(drawn.scene(), **drawn.keywords, backend="vm", certificate=False)
-    assert compare(drawn, solution).kind == "right"
-    return drawn, solution
-
-
-@pytest.mark.sampled(2)
-def test_a_small_fault_in_any_quantity_is_found(right):
-    """A millionth of what is largest of its kind, in every third quantity."""
-    drawn, solution = right
-    seen = 0
-    for name, values in list(solution.series.items())[::3]:
-        kinds = {
-            n: np.max(np.abs(v))
-            for n, v in solution.series.items()
-            if n.split(":")[0] == name.split(":")[0]
-        }
-        if name.startswith("load:") or name.endswith(":station") or not max(kinds.values()):
-            continue
-        if (
-            name.startswith("section:")
-            and name[-1] in "12"
-            and drawn.draft.bodies[name.split(":")[1]].mass < 0.05
-        ):
-            continue  # what these are multiplied by is the link's mass
-        if np.min(solution.series.get(f"{name.rpartition(':')[0]}:station", 1.0)) <= 0.0:
-            continue  # no section of the link sees it
-        off = {Output.of(name): values + 1e-6 * max(kinds.values())}
-        found = compare(drawn, replace(solution, outputs={**solution.outputs, **off}))
-        assert found.kind == "wrong", name
-        seen += 1
-    assert seen > 5

@@ -235,27 +235,3 @@ def test_a_direction_that_no_joint_takes_is_refused():
             match=f"link 'arm': {says} in the reference posture, but none of its joints",
         ):
             evaluate(Scene(m, {"O": harmonic(0.0, 0.1, 1.0), "A": harmonic(0.0, 0.1, 1.0)}))
-
-
-@pytest.mark.parametrize("by_points", [True, False])
-@pytest.mark.parametrize(
-    ("told", "up"), [({}, None), ({"beside": (0.3, -1.0, 2.0)}, (0.3, -1.0, 2.0))]
-)
-@pytest.mark.parametrize("tip", [(0.0, 1.0, 0.0), (0.2, -0.4, 0.9), (1.0, 0.0, 0.0)])
-def test_a_link_lies_between_its_places_however_its_joints_are_told(by_points, told, up, tip):
-    m, end = SpatialMechanism("arm"), (0.7, -0.1, 0.4)
-    arm = m.link("arm", between=((0, 0, 0), tip), mass=1.0, **told)
-    fore = m.link("fore", between=(tip, end), mass=0.5, **told)
-    if by_points:
-        m.universal("O", m.ground, arm, axis=(1, 0, 0), second=(0, 1, 0))
-        m.weld("A", arm.tip, fore)
-    else:
-        m.universal("O", m.ground, arm, axis=(1, 0, 0), second=(0, 1, 0), at=(0, 0, 0))
-        m.weld("A", arm, fore, at=tip)
-    m.path("end", fore.tip)
-    solution = evaluate(
-        Scene(m, {"O": (harmonic(0.0, 0.1, 1.0), harmonic(0.0, 0.2, 1.0))}, t=(0, 0.25, 3))
-    )
-    assert solution.certified
-    found = [solution.array(f"output:end_{axis}")[0] for axis in "xyz"]
-    assert found == pytest.approx(end, abs=1e-12)

@@ -126,34 +126,6 @@ def test_systems_that_time_moves(place, way):
         assert float(equation(*state)) == pytest.approx(told, rel=1e-12, abs=1e-12)
 
 
-def test_a_rheonomic_constraint_bears_what_newton_says():
-    """A bead on a straight wire that is turned in a level plane: the wire pushes it by m (2 W r' +
-    W' r).
-    """
-    q = ca.SX.sym("q", 2)
-    qd = ca.SX.sym("qd", 2)
-    qdd = ca.SX.sym("qdd", 2)
-    lam = ca.SX.sym("lam")
-    t = ca.SX.sym("t")
-    m, angle = 0.8, 1.5 * t + t**2
-    phi = ca.cos(angle) * q[1] - ca.sin(angle) * q[0]  # across the wire
-    system = LagrangeSystem(
-        m * ca.sumsqr(qd) / 2, ca.SX(0), q, qd, qdd, constraints=phi, multipliers=lam, time=t
-    )
-    (along, _) = system.terms()
-    now, r, slide, out = 0.6, 0.9, -0.7, 2.0
-    a, w, change = 1.5 * now + now**2, 1.5 + 2 * now, 2.0
-    e, n = np.array([np.cos(a), np.sin(a)]), np.array([-np.sin(a), np.cos(a)])
-    place, speed = r * e, slide * e + r * w * n
-    push = m * (2 * w * slide + change * r)
-    acceleration = (out - r * w**2) * e + push / m * n
-    f = ca.Function("f", [q, qd, qdd, lam, t], [along])
-    left = f(place, speed, acceleration, push, now).full().ravel()
-    np.testing.assert_allclose(
-        left, m * (out - r * w**2) * e, rtol=1e-13
-    )  # what pulls it along the wire, and nothing across
-
-
 @pytest.mark.parametrize(
     ("change", "says"),
     [

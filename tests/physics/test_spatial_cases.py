@@ -50,22 +50,6 @@ def test_a_shaft_out_of_phase_pulsates():
     assert np.ptp(fast) > 4 * np.ptp(slow.effort("bearing"))
 
 
-def test_bricards_loop_moves_and_one_force_is_open():
-    scene = scene_of("bricard")
-    found = vm(scene, t=(0, 1, 257))
-    angles = [found.motion(f"J{k}").value for k in range(6)]
-    first, second = np.cos(angles[0]), np.cos(angles[1])
-    for k in range(6):
-        assert np.max(np.abs(np.cos(angles[k]) - (first, second)[k % 2])) < 1e-13
-    assert np.max(np.abs(first + second + first * second)) < 1e-13
-    open_of = {
-        str(output).split(":")[1] for output in found.indeterminate if output.group == "reaction"
-    }
-    assert open_of == {f"J{k}" for k in range(6)}
-    assert all(np.isnan(found.outputs[output]).all() for output in found.indeterminate)
-    assert np.isnan(found.section("link3").axial).all()
-
-
 FORCES = ("axial", "shear_y", "shear_z", "torsion", "bending_y", "bending_z")
 
 
