@@ -18,7 +18,7 @@ from random_verdict import compare, judge, peaks_off
 from lagrange_casadi import evaluate
 from lagrange_casadi.peaks import forces
 
-COUNT, LONG, QUICK = 10, 100, 3
+COUNT, LONG, QUICK = 10, 100, 2
 """Mechanisms of each kind by default, with ``--long``, and for whoever is editing."""
 
 ANY, LONG_ANY, AT_ONCE = [*range(20), 700042], range(20, 1000), 10
