@@ -1,7 +1,5 @@
 """Outputs of a user's own: what they are made of, what they cost, and how they are misused."""
 
-import math
-
 import casadi as ca
 import numpy as np
 import pytest
@@ -14,31 +12,18 @@ pytestmark = pytest.mark.usefixtures("interpreted")
 
 
 def engine(wanted=("all",), more=lambda m, parts: None):
-    """A crank, a rod with a lump beside a station, a piston under a spring of gas; outputs of
-    everything that there is.
-    """
+    """A crank, a rod with a lump beside a station, a piston under a spring of gas; two outputs."""
     m = Mechanism("engine")
     r = m.parameter("r", 0.1, "m")
     crank, rod = links_of(m, crank=(r, 0.8), rod=(0.25, 1.1))
     piston = m.point_mass("piston", 0.6)
-    main, pin, *_ = pins_of(
-        m, main=(m.ground, crank), pin=(crank.tip, rod), wrist=(rod.tip, piston)
-    )
+    main, *_ = pins_of(m, main=(m.ground, crank), pin=(crank.tip, rod), wrist=(rod.tip, piston))
     bore = m.prismatic("bore", m.ground, piston, axis=(1, 0))
     m.weld("lump", rod.at(0.1, 0.02), m.point_mass("lumped", 0.3))
-    gas = m.force("gas", piston, x=-100.0 * m.coordinate(bore))
+    m.force("gas", piston, x=-100.0 * m.coordinate(bore))
     found = m.results
     m.output("power", found.effort(main) * m.rate(main), unit="W")
-    m.output(
-        "pin_load", ca.sqrt(found.reaction(pin).fx ** 2 + found.reaction(pin).fy ** 2), unit="N"
-    )
     m.output("vx", m.velocity(rod.at(0.125, 0.02))[0], unit="m/s")
-    m.output("ax", found.acceleration(rod.at(0.125, 0.02))[0], unit="m/s^2")
-    m.output("stroke_acceleration", found.acceleration(bore), unit="m/s^2")
-    m.output("gas_force", found.load(gas).fx, unit="N")
-    m.output("lean", m.direction(rod), unit="rad")
-    m.output("bent", m.coordinate(pin) / (2 * math.pi), unit="1")
-    m.output("clock", 2 * m.time + r, unit="s")
     more(m, {"main": main, "rod": rod, "bore": bore})
     return Scene(
         m,
@@ -47,37 +32,6 @@ def engine(wanted=("all",), more=lambda m, parts: None):
         posture={"rod": 0.0},
         t=(0, 1, 201),
     )
-
-
-def test_they_are_what_they_are_made_of():
-    found = evaluate(engine())
-    assert found.certified
-    piston, pin = found.motion("bore"), found.reaction("pin")
-    same = {
-        "power": found.effort("main") * found.motion("main").rate,
-        "pin_load": np.hypot(pin.fx, pin.fy),
-        "stroke_acceleration": piston.acceleration,
-        "gas_force": -100.0 * piston.value,
-        "lean": found.pose("rod").angle,
-        "bent": found.motion("pin").value / (2 * math.pi),
-        "clock": 2 * found.t + 0.1,
-    }
-    for name, values in same.items():
-        np.testing.assert_allclose(
-            found.output(name), values, rtol=1e-13, atol=1e-13 * np.abs(values).max()
-        )
-        assert float(found.errors[f"output:{name}"]) < 1e-11 * np.abs(values).max()
-    assert np.abs(found.output("bent")).max() > 1.5
-    pose = found.pose("rod")
-    lever = (0.125 + 0.02j) * np.exp(1j * pose.angle)
-    place = pose.x + 1j * pose.y + lever
-    speed = np.gradient(place.real, found.t)
-    assert np.abs(speed - found.output("vx"))[1:-1].max() < 2e-3 * np.abs(speed).max()
-    assert (
-        np.abs(np.gradient(found.output("vx"), found.t) - found.output("ax"))[1:-1].max()
-        < 2e-3 * np.abs(found.output("ax")).max()
-    )
-    assert found.unit("output:power") == "W"
 
 
 def test_what_is_wanted_brings_what_it_is_made_of_and_costs_little_more():
