@@ -53,6 +53,26 @@ def test_the_gas_force(even):
     assert -least == pytest.approx(24_740 / math.cos(lean), rel=5e-3)
 
 
+def test_bending_by_its_own_inertia(scene):
+    """m r w^2 l^2 / (9 sqrt 3) supposes a rod at right angles to the crank, and that its motion is
+    a pure turning there.
+    """
+    whipped = evaluate(scene, parameters={**EVEN, "pressure": 0.0}, certificate=False)
+    formula = (
+        11 * T**2 * 8000 * RADIUS * (1800 * 2 * math.pi / 60) ** 2 * LENGTH**2 / (9 * math.sqrt(3))
+    )
+    peak = whipped.peak("section:rod:bending")
+    assert abs(peak.value) == pytest.approx(formula, rel=0.04)
+    # From the piston's pin it is 1/sqrt 3 of the length away.
+    assert 1 - peak.xi == pytest.approx(1 / math.sqrt(3), abs=0.02)
+    stress = whipped.stress("rod")
+    upper, lower = (
+        stress.at(peak.xi)[0, stress.fibres(peak.xi).index(f"corner {side}y +z")] for side in "+-"
+    )
+    bending = (upper - lower)[int(np.argmin(abs(whipped.t - peak.t)))] / 2
+    assert abs(bending) == pytest.approx(abs(peak.value) / (419 / 30 * T**3), rel=1e-9)
+
+
 def test_the_bearings_bear_the_gas_force(scene):
     """24 740 N over 1.3 d^2 and 2 d^2 at 10 and 15 N/mm^2: 43.6 and 28.7 mm, rounded upward to 44
     and 29 mm, 58 mm wide.
