@@ -13,7 +13,6 @@ from lagrange_casadi.base.threads import in_threads
 from lagrange_casadi.engine import assembly, blocks, codegen, loops, placement
 from lagrange_casadi.engine.codegen import compiler, library
 from lagrange_casadi.engine.codegen.printer import print_functions
-from lagrange_casadi.engine.codegen.stages import compensated, controlled, plain
 from lagrange_casadi.engine.identity import identity_of
 from lagrange_casadi.engine.instants import backends, cycle_table, grids
 from lagrange_casadi.engine.instants.backends import run

@@ -182,21 +182,21 @@ def laws():
     return Scene(m, driven, t=(0.0, 1.0, 57))
 
 
-def namesake(called=lambda name: name):
+def namesake():
     """A slider-crank whose names are those that files and C give to other things; a driven bob is
     in the middle of its rod, at which two loads act twice.
     """
     m = Mechanism("namesake")
-    size = m.parameter(called("law_rate"), 0.3)
+    size = m.parameter("law_rate", 0.3)
     crank, rod = links_of(m, crank=(size, 1.0), rod=(0.9, 2.0))
-    bob = m.link(called("rod_acceleration"), length=0.2, mass=0.5)
+    bob = m.link("rod_acceleration", length=0.2, mass=0.5)
     m.revolute("O", m.ground, crank)
-    m.revolute(called("O_rate"), crank.tip, rod)
+    m.revolute("O_rate", crank.tip, rod)
     m.slot("guide", m.ground, rod.tip, axis=(1.0, 0.0))
-    m.revolute(called("law"), rod.at(0.45), bob)
+    m.revolute("law", rod.at(0.45), bob)
     m.spring("pull", rod.at(0.2), rod.at(0.7), stiffness=100.0, length=0.1)
-    m.force(called("pull_2"), rod.at(0.5), y=-7.0)
-    motion = {"O": polynomial(0.3, 5.0), called("law"): harmonic(0.0, 0.5, 3.0, 0.0)}
+    m.force("pull_2", rod.at(0.5), y=-7.0)
+    motion = {"O": polynomial(0.3, 5.0), "law": harmonic(0.0, 0.5, 3.0, 0.0)}
     return Scene(m, motion, t=(0.0, 1.0, 41), posture={"rod": 0.0}, xi=(0.0, 1.0, 5))
 
 

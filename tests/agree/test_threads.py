@@ -218,25 +218,6 @@ def test_a_prepared_scene_answers_each_thread(asked, way):
     assert not hammered(lambda l: told(ASKED[way](f, l)), RODS, 4)
 
 
-@pytest.mark.parametrize(
-    "method",
-    [{}, {"backend": "vm"}, {"newton": 3}, {"precision": "single"}, {"table": 32}],
-    ids=str,
-)
-def test_one_scene_is_evaluated_by_many_threads(method):
-    def asked(l):
-        scene = threaded.ITERATED if "newton" in method else threaded.SHARED
-        found = evaluate(scene, parameters={"l": l}, t=(0.0, 1.0, 9), **method)
-        laws = {
-            f"bending:{name}": found.section(name).bending for name in found.links_with_sections
-        }
-        return told(
-            {**found.series, **laws, "errors": found.errors, "certificate": found.certificate}
-        )
-
-    assert not hammered(asked, RODS[:3], 1)
-
-
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs os.fork")
 @pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning")
 def test_a_child_process_does_not_wait_for_threads_of_its_parent():

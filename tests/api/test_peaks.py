@@ -9,9 +9,9 @@ import pytest
 from conftest import CASES
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mechanisms import LENGTH, MASS, G, parallelogram, pendulum, pins_of
+from mechanisms import LENGTH, MASS, G, parallelogram, pendulum
 
-from lagrange_casadi import Mechanism, Scene, evaluate, load, load_case, motion, save
+from lagrange_casadi import Scene, evaluate, load, load_case, motion, save
 from lagrange_casadi.errors import AssemblyError, DeclarationError
 from lagrange_casadi.peaks import forces, refine, shortfall
 
@@ -86,27 +86,6 @@ def test_peaks_over_a_drive_are_those_over_time(speed, start, sign, count):
     assert abs(math.remainder(peak.over, math.pi)) < 1e-6
     assert peak.t == pytest.approx((peak.over - start) / (sign * speed), abs=1e-9)
     assert (np.diff(found.over.values) * sign > 0).all()
-
-
-@settings(max_examples=20)
-@given(st.floats(0.0, 0.1), st.floats(0.3, 5.0), st.floats(0.0, 2.0))
-def test_a_range_may_begin_at_the_first_sample_of_another_drive(first, rate, start):
-    """The time of its start is that of the sample but for rounding."""
-    times = np.linspace(first, first + 2.8, 15)
-    bend = motion.samples(times, np.sin(times))
-    slide = two_links(motion.polynomial(start, rate), bend)
-    begin = start + rate * first
-    found = evaluate(slide, over=("A", begin, begin + rate, 3), backend="vm", certificate=False)
-    assert found.t == pytest.approx(first + np.array([0.0, 0.5, 1.0]), abs=1e-12)
-    assert found.motion("B").value == pytest.approx(np.sin(found.t), abs=1e-3)
-
-
-def two_links(one, other):
-    """An arm of two links, each with a motion of its own."""
-    m = Mechanism("two_links")
-    arm = m.link("arm", length=0.5, mass=1.0)
-    pins_of(m, A=(m.ground, arm), B=(arm.tip, m.link("hand", length=0.3, mass=0.5)))
-    return Scene(m, {"A": one, "B": other}, wanted=["motion"])
 
 
 def test_a_solution_brings_its_parameters_and_outputs(tmp_path, slider_crank):

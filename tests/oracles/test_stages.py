@@ -3,21 +3,20 @@
 import dataclasses
 import functools
 import math
-from fractions import Fraction
 
 import casadi as ca
 import numpy as np
 import pytest
 from conftest import CASES, NAMES
 from estimates import kind as kind_of
-from internals import certify, controlled, interpret, numpy_arithmetic
+from internals import certify
 from mechanisms import counting, four_bar, harmonics, links_of, pins_of, sampled, slider_crank
 from mechanisms import sprung as four_bar_with_springs
 from outside import doubled
 from stepped import pinned
 from truth import true_errors, truth
 
-from lagrange_casadi import Mechanism, Scene, SpatialMechanism, derive, evaluate, load_case
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate, load_case
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import expression, harmonic, polynomial
 
@@ -194,25 +193,6 @@ def test_iterated_angles_that_a_gear_counts_are_not_kept_within_a_turn():
 def test_from_few_turns_to_many(stop):
     """Doubles that count, and pairs, wherever the one takes over from the other."""
     assert gap(slider_crank(["all"], t=(stop - 0.02, stop, 5)), DOUBLE[0]) < 1e-13
-
-
-def test_fixed_parameters_keep_the_phase_of_a_motion():
-    """Numbers for parameters that come after the arithmetic of pairs is written would be folded in
-    doubles: rests were lost.
-    """
-    m = Mechanism("arm")
-    speed = m.parameter("speed", 7.3, "rad/s")
-    m.revolute("O", m.ground, m.link("arm", length=0.5, mass=1.0))
-    law = controlled(
-        derive(Scene(m, {"O": polynomial(0.0, speed)}), ["effort"]), "single", (7.3,)
-    ).law
-    single = dataclasses.replace(numpy_arithmetic(), constant=np.float32)
-    for t in (1.1, 1e5 / 7, 1e6 / 3):
-        high = np.float32(t)
-        rest = np.float32(t - float(high))
-        found = interpret(law, [[high, rest], [np.float32(7.3)]], single)[0]
-        exact = Fraction(7.3) * (Fraction(float(high)) + Fraction(float(rest)))
-        assert abs(sum(Fraction(float(part)) for part in found) - exact) < 1e-13 * abs(exact)
 
 
 def test_what_cannot_be_followed_is_not_in_single():

@@ -131,8 +131,6 @@ def test_a_roller_follower_is_pressed_as_textbooks_say(offset):
     assert solution.reaction("lead").fx == pytest.approx(
         pushed * np.tan(angle), rel=0, abs=1e-10 * pushed.max()
     )
-    assert solution.effort("main") == pytest.approx(pushed * slope, rel=0, abs=1e-11 * pushed.max())
-    assert solution.reaction("main").fy == pytest.approx(pushed + 1.5 * 9.81, rel=1e-11)
     if not offset:
         away = height
         pitch = (away**2 + slope**2) ** 1.5 / (away**2 + 2 * slope**2 - bend * away)
