@@ -66,7 +66,7 @@ LINKS = {
 }
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("name", LINKS)
 def test_series_are_the_largest_along_the_link(name):
     """Against all zeros of slopes along the link and its elastic curve, by other code; a
