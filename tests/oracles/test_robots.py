@@ -187,6 +187,17 @@ MJCF = """<mujoco><worldbody><body name="a">
 <geom size="0.1" pos="0.1 0.2 0"/></body></body></worldbody></mujoco>"""
 
 
+def test_armature_is_that_of_mujoco(arm):
+    mujoco = pytest.importorskip("mujoco")
+    model = mujoco.MjModel.from_xml_string(MJCF)
+    data = mujoco.MjData(model)
+    data.qpos[:], data.qvel[:], data.qacc[:] = np.array([MOVES["q1"], MOVES["q2"]]).T
+    mujoco.mj_inverse(model, data)
+    solution = evaluate(arm(MJCF, "arm.xml"))
+    np.testing.assert_allclose(efforts(solution, ("q1", "q2")), data.qfrc_inverse, rtol=1e-11)
+    assert solution.drives_used()["q1_drive"].effort.limit == 40.0
+
+
 LEGS = {"FL": (0.2, 1), "FR": (0.2, -1), "RL": (-0.2, 1), "RR": (-0.2, -1)}
 ANGLES = dict(enumerate((0.1, 0.7, -1.4, 0.6, -0.15, 0.05), 1))
 BENT = {f"{leg}_{k}": q for leg in LEGS for k, q in ANGLES.items()}

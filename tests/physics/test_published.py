@@ -4,15 +4,17 @@ rods, and the printed equations of Nguyen, Petre, Stroe, corrected and as printe
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 import pytest
 from balance import instant_at
 from conftest import SIXTY_DIGITS
-from mechanisms import slider_crank
+from mechanisms import pins_of, slider_crank
 
-from lagrange_casadi import derive, evaluate
+from lagrange_casadi import Mechanism, Scene, derive, evaluate
+from lagrange_casadi.motion import polynomial
 
 pytestmark = pytest.mark.quick
 
@@ -59,6 +61,54 @@ def test_sections_as_a_solution_gives_them(slider_crank):
         assert (
             np.max(np.abs(solution.array(f"section:rod:{force}")[0] + expected)) <= 1e-13 * largest
         )
+
+
+def test_marghitu_slider_crank():
+    """D.
+
+    B. Marghitu, Mechanisms and Robots Analysis with MATLAB (2009), R-RRT example, eq. 4.51-4.52,
+    without the external force.
+
+    The book's force on the slider enters linearly; its part is taken off by equilibrium: 100 N in
+    +x on the slider.
+    """
+    root = math.sqrt(2.0)
+    m = Mechanism("marghitu")
+    m.set_gravity(0.0, -10.0)
+    a, b = (m.link(name, length=1.0, mass=1.0) for name in ("one", "two"))
+    c = m.point_mass("three", 1.0)
+    pins_of(m, A=(m.ground, a), B=(a.tip, b), C=(b.tip, c))
+    m.prismatic("guide", m.ground, c, axis=(1, 0))
+    solution = evaluate(
+        Scene(
+            m,
+            {"A": polynomial(math.pi / 4, 1.0)},
+            t=(0.0, 0.0, 1),
+            posture={"two": -0.8},
+            wanted=["effort", *REACTIONS],
+        )
+    )
+    # The second link, at -45 deg, passes the 100 N on as (100, -100) N; the guide and the two pins
+    # bear it.
+    f12 = np.array([-(400 + 7 * root) / 4, 5 * (84 + root) / 4])
+    f01 = np.array([-100 - 2 * root, 115 + root])
+    external = np.array([-100.0, 100.0])
+    assert solution.reaction("guide").fy[0] == pytest.approx(-(85 + 1.5 * root) + 100.0, rel=1e-13)
+    np.testing.assert_allclose(
+        np.hstack([solution.reaction("B").fx, solution.reaction("B").fy]),
+        f12 - external,
+        rtol=1e-13,
+    )
+    np.testing.assert_allclose(
+        np.hstack([solution.reaction("A").fx, solution.reaction("A").fy]),
+        f01 - external,
+        rtol=1e-13,
+    )
+    lever = external[1] * math.cos(math.pi / 4) - external[0] * math.sin(math.pi / 4)
+    assert solution.effort("A")[0] == pytest.approx(3 + 105 * root - lever, rel=1e-13)
+
+
+REACTIONS = ("reaction:A", "reaction:B", "reaction:guide")
 
 
 G = 9.81
