@@ -5,7 +5,7 @@ moments of inertia.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import casadi as ca
@@ -17,9 +17,6 @@ from .declared_parts import Body, Expression, Link, Point
 from .joints import Triad
 from .limits import ROUNDED
 from .ownership import Ownership
-
-Checked = Callable[..., Expression]
-"""Takes what is said of an expression, the expression, and its unit if a text may state it."""
 
 RIGHT = 1e-9
 """A cosine that is smaller is that of a right angle."""
@@ -79,12 +76,9 @@ class Reference:
         return self.rotation.resolve(other.rotation.x), self.rotation.resolve(other.rotation.y)
 
 
-def vector(what: str, value: object, checked: Checked, unit: str = "1") -> Vector:
-    """Three expressions, in a unit. Raises :class:`DeclarationError` for anything else."""
-    if not isinstance(value, (tuple, list)) or len(value) != 3:
-        raise DeclarationError(f"{what} must be three components (x, y, z), got {value!r}")
-    x, y, z = (checked(what, component, unit) for component in value)
-    return x, y, z
+def directed(what: str, value: object, own: Ownership) -> Vector:
+    """A direction of length 1. Raises :class:`DeclarationError` for one of length zero."""
+    return _unit(what, own.vector(what, value))
 
 
 def triad_of(
@@ -106,13 +100,11 @@ def triad_of(
                 f"{said}: second= needs axis=, and must be at right angles to it"
             )
         return AXES
-    u = _unit(f"{said}: axis", vector(f"{said}: axis", axis, ownership.expression))
+    u = directed(f"{said}: axis", axis, ownership)
     if second is None:
         v = across(u)
     else:
-        v = _unit(
-            f"{said}: second axis", vector(f"{said}: second axis", second, ownership.expression)
-        )
+        v = directed(f"{said}: second axis", second, ownership)
         cosine = dot(u, v)
         if isinstance(cosine, float) and abs(cosine) > ROUNDED:
             raise DeclarationError(not_right(said, cosine))
@@ -123,17 +115,6 @@ def triad_of(
             v = _unit(f"{said}: second axis", minus(v, times(along, u)))
             ownership.snapped(what, angle=abs(off))
     return u, v, cross(u, v)
-
-
-def in_plane(what: str, axis: object, checked: Checked) -> Vector:
-    """A direction of length 1 in the x-y plane, from two components.
-
-    Raises :class:`DeclarationError` for one of length zero, and for what has not two components.
-    """
-    if not isinstance(axis, (tuple, list)) or len(axis) != 2:
-        raise DeclarationError(f"{what}: axis must be two components, got {axis!r}")
-    x, y = (checked(f"{what}: axis", component) for component in axis)
-    return _unit(f"{what}: axis", (x, y, 0.0))
 
 
 def not_right(what: str, cosine: float) -> str:
@@ -187,14 +168,14 @@ def turned_by(what: str, turned: Expression, own: Ownership) -> tuple[Vector, Ve
 
 
 def between(
-    what: str, places: Expression, beside: Expression, checked: Checked
+    what: str, places: Expression, beside: Expression, own: Ownership
 ) -> tuple[Reference, Expression, Vector | None]:
     """The reference of a link that lies between two places, its length, and the direction
     ``beside`` of length 1, if given.
     """
     if not isinstance(places, (tuple, list)) or len(places) != 2:
         raise DeclarationError(f"{what}: between must be two places, got {places!r}")
-    base, tip = (vector(f"{what}: between", place, checked, "m") for place in places)
+    base, tip = (own.vector(f"{what}: between", place, "m") for place in places)
     along = minus(tip, base)
     length = norm(along)
     if isinstance(length, float) and length == 0.0:
@@ -206,7 +187,7 @@ def between(
     if beside is None:
         y = across(x)
     else:
-        aside = _unit(f"{what}: beside", vector(f"{what}: beside", beside, checked))
+        aside = directed(f"{what}: beside", beside, own)
         part = minus(aside, times(dot(aside, x), x))
         if all(isinstance(component, float) and abs(component) < RIGHT for component in part):
             raise DeclarationError(
@@ -217,25 +198,27 @@ def between(
     return Reference(base, Rotation.of(x, y), tip), length, aside
 
 
-def tensor(what: str, inertia: Expression, checked: Checked) -> tuple[Vector, Vector, Vector]:
+def tensor(what: str, inertia: Expression, own: Ownership) -> tuple[Vector, Vector, Vector]:
     """Moments of inertia as three rows, symmetric to the last digit where they are but for
-    rounding.
+    rounding; in a plane there is that about z alone.
 
     Raises :class:`DeclarationError` for what is no symmetric matrix, and are not three moments.
     """
     where = f"{what}: inertia"
+    if not own.declared.space:
+        return ZERO, ZERO, (0.0, 0.0, own.expression(where, inertia, "kg m^2"))
     if (
         isinstance(inertia, (tuple, list))
         and len(inertia) == 3
         and not any(isinstance(row, (tuple, list)) for row in inertia)
     ):
-        x, y, z = vector(where, inertia, checked, "kg m^2")
+        x, y, z = own.vector(where, inertia, "kg m^2")
         return (x, 0.0, 0.0), (0.0, y, 0.0), (0.0, 0.0, z)
     if not isinstance(inertia, (tuple, list)) or len(inertia) != 3:
         raise DeclarationError(
             f"{where} must be three moments of inertia or a 3 x 3 matrix, got {inertia!r}"
         )
-    rows = [list(vector(where, row, checked, "kg m^2")) for row in inertia]
+    rows = [list(own.vector(where, row, "kg m^2")) for row in inertia]
     size = max(
         (abs(entry) for row in rows for entry in row if isinstance(entry, float)), default=0.0
     )

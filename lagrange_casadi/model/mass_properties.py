@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
 from typing import TypeAlias
 
 import casadi as ca
@@ -13,14 +12,13 @@ import casadi as ca
 from ..base.vectors import ZERO
 from ..errors import DeclarationError
 from .beams.beam import Beam
-from .declared_parts import Expression, Link, PointMass, RigidMass, Vector
+from .declared_parts import Expression, Link, PointMass, RigidMass
+from .directions import Reference, rotated, tensor
 from .link_density import Density, Slices, uniform
+from .ownership import Ownership
 
-Inertia: TypeAlias = tuple[Vector, Vector, Vector]
-"""Moments of inertia [kg m^2], three rows of a matrix."""
-
-Rigid: TypeAlias = Callable[[Expression, Expression], tuple[Vector, Inertia]]
-"""Reader of a centre and moments of inertia."""
+Masses: TypeAlias = tuple[Expression, Density | None, Expression, Expression, bool]
+"""What is given of a link's mass: mass, density, centre, inertia, and whether any is accepted."""
 
 ALL = "all"
 """Name of the mass of everything that moves."""
@@ -30,23 +28,18 @@ UNDECLARED = RigidMass(math.nan, ZERO, (ZERO, ZERO, ZERO))
 
 
 def mass_properties_of(
+    own: Ownership,
     what: str,
-    mass: Expression,
-    density: Density | None,
-    centre: tuple[Expression, ...] | None,
-    inertia: Expression,
-    checked: Callable[..., Expression],
-    rigid: Rigid | None,
+    masses: Masses,
     beam: Beam | None,
+    reference: Reference | None,
 ) -> Density | RigidMass:
-    """The mass of a link by one of the ways, or none so far; ``checked`` takes what is said of an
-    expression, and the expression.
-
-    ``rigid`` reads a centre and moments of inertia; by default those of a plane, two places and one
-    moment.
+    """The mass of a link by one of the ways, or none so far. A centre and moments of inertia are on
+    the link's axes, or where there is a ``reference`` on the ground's.
 
     Raises :class:`DeclarationError` for more than one of the ways.
     """
+    mass, density, centre, inertia, accepted = masses
     if all(one is None for one in (mass, density, centre, inertia, beam)):
         return UNDECLARED
     if beam is not None and centre is None and mass is None and density is None:
@@ -65,37 +58,29 @@ def mass_properties_of(
             raise DeclarationError(
                 f"{what}: expected a density of lagrange_casadi.density, got {density!r}"
             )
-        if density.slices is not None and rigid is None:
+        if density.slices is not None and not own.declared.space:
             raise DeclarationError(
                 f"{what}: second moments of slices are for links in space; leave them out in a"
                 " plane"
             )
         unit = "kg/m" if density.per_length else "kg"
-        checked_density = _checked(density, f"{what}: density", checked, unit)
+        checked_density = _checked(own, density, f"{what}: density", unit)
         if density.slices is None:
             return checked_density
-        moments = (
-            _checked(moment, f"{what}: second moments", checked, "kg m")
+        slices = (
+            _checked(own, moment, f"{what}: second moments", "kg m")
             for moment in density.slices.each
         )
-        return replace(checked_density, slices=Slices(*moments))
+        return replace(checked_density, slices=Slices(*slices))
     if centre is not None:
-        place, about = (rigid or partial(_in_plane, what, checked))(centre, inertia)
-        return RigidMass(checked(f"{what}: mass", mass, "kg"), place, about)
-    return uniform(checked(f"{what}: mass", mass, "kg"))
+        place, moments = own.vector(f"{what}: centre", centre, "m"), tensor(what, inertia, own)
+        if reference is not None:
+            place, moments = reference.local(place), rotated(moments, reference)
+        return RigidMass(own.expression(f"{what}: mass", mass, "kg"), place, moments, accepted)
+    return uniform(own.expression(f"{what}: mass", mass, "kg"))
 
 
-def _in_plane(
-    what: str, checked: Callable[..., Expression], centre: Expression, inertia: Expression
-) -> tuple[Vector, Inertia]:
-    """A centre of two places, and one moment of inertia, about z."""
-    if not isinstance(centre, (tuple, list)) or len(centre) != 2:
-        raise DeclarationError(f"{what}: centre must be two components (x, y), got {centre!r}")
-    x, y = (checked(f"{what}: centre", c, "m") for c in centre)
-    return (x, y, 0.0), (ZERO, ZERO, (0.0, 0.0, checked(f"{what}: inertia", inertia, "kg m^2")))
-
-
-def beam_of(what: str, beam: Beam | None, checked: Callable[..., Expression]) -> Beam | None:
+def beam_of(own: Ownership, what: str, beam: Beam | None) -> Beam | None:
     """Beam of a link, with its dimensions checked.
 
     Raises :class:`DeclarationError` for what is no beam.
@@ -104,11 +89,13 @@ def beam_of(what: str, beam: Beam | None, checked: Callable[..., Expression]) ->
         return None
     if not isinstance(beam, Beam):
         raise DeclarationError(f"{what}: expected a beam of lagrange_casadi.beams, got {beam!r}")
-    return beam.mapped(lambda name, value: checked(f"{what}: {name} of its cross-section", value))
+    return beam.mapped(
+        lambda name, value: own.expression(f"{what}: {name} of its cross-section", value)
+    )
 
 
-def _checked(density: Density, what: str, checked: Callable[..., Expression], unit: str) -> Density:
-    cells = tuple(tuple(checked(what, c, unit) for c in cell) for cell in density.cells)
+def _checked(own: Ownership, density: Density, what: str, unit: str) -> Density:
+    cells = tuple(tuple(own.expression(what, c, unit) for c in cell) for cell in density.cells)
     return Density(density.breaks, cells, density.per_length)
 
 

@@ -38,7 +38,7 @@ from .declared_parts import (
     UserOutput,
     Vector,
 )
-from .directions import in_plane
+from .directions import Reference, directed
 from .drives import Drive
 from .expressions import check_line
 from .joints import Joint, JointKind, check_ends
@@ -46,7 +46,7 @@ from .limits import check_connected, parameter_values
 from .link_density import Density
 from .load_arguments import Between, LoadDensity, drive, friction, line_load
 from .loads import Force, Friction, LineLoad, Spring, Torque
-from .mass_properties import UNDECLARED, Rigid, beam_of, mass_properties_of
+from .mass_properties import UNDECLARED, Masses, beam_of, mass_properties_of
 from .ownership import Ownership
 from .results import Results
 from .validity import demands
@@ -212,21 +212,21 @@ class Mechanism(Declaration):
             If the name is taken, or the arguments contradict each other.
         """
         self.ownership.free("link", name, self.bodies)
-        return self._link(name, length, (mass, density, centre, inertia), beam)
+        return self._link(name, length, (mass, density, centre, inertia, False), beam)
 
     def _link(
         self,
         name: str,
         length: Expression,
-        masses: tuple[Expression, Density | None, Expression, Expression],
+        masses: Masses,
         beam: Beam | None,
-        rigid: Rigid | None = None,
+        reference: Reference | None = None,
         beside: Vector | None = None,
     ) -> Link:
-        what, checked = f"link '{name}'", self.ownership.expression
-        beam = beam_of(what, beam, checked)
-        mass_properties = mass_properties_of(what, *masses, checked, rigid, beam)
-        length = checked(f"{what}: length", length, "m")
+        what, own = f"link '{name}'", self.ownership
+        beam = beam_of(own, what, beam)
+        mass_properties = mass_properties_of(own, what, masses, beam, reference)
+        length = own.expression(f"{what}: length", length, "m")
         self.bodies[name] = link = Link(name, length, mass_properties, beam, beside=beside)
         return link
 
@@ -414,31 +414,31 @@ class Mechanism(Declaration):
         DeclarationError
             If the coefficient is negative, or the normal has no length.
         """
-        what, checked = f"contact '{name}'", self.ownership.expression
-        foot, mu = self.ownership.point(what, point), self._coefficient(what, friction)
-        upward = in_plane(f"{what}: normal", normal, checked)
-        if not isinstance(at, (tuple, list)) or len(at) != 2:
-            raise DeclarationError(f"{what}: at must be two components (x, y), got {at!r}")
-        x, y = (checked(f"{what}: at", component, "m") for component in at)
-        return self._standing(self.revolute(name, self.ground.at(x, y), foot), upward, mu)
+        return self._contact(name, point, friction, at, normal, self.revolute)
 
-    def _coefficient(self, what: str, friction: Expression) -> Expression:
-        """A coefficient of friction."""
-        mu = self.ownership.expression(f"{what}: friction", friction)
+    def _contact(
+        self,
+        name: str,
+        point: Body | Point,
+        friction: Expression,
+        at: Expression,
+        normal: tuple[Expression, ...],
+        pin: Callable[[str, Point, Point], Joint],
+    ) -> Joint:
+        what, own = f"contact '{name}'", self.ownership
+        foot, mu = own.point(what, point), own.expression(f"{what}: friction", friction)
         if isinstance(mu, float) and mu < 0.0:
             raise DeclarationError(f"{what}: friction must be at least 0, got {mu:g}")
-        return mu
-
-    def _standing(self, joint: Joint, upward: Vector, mu: Expression) -> Joint:
-        """A joint as a contact with a coefficient of friction, with its outputs."""
+        upward = directed(f"{what}: normal: axis", normal, own)
+        joint = pin(name, self.ground.at(*own.vector(f"{what}: at", at, "m")), foot)
         fx, fy, *fz = self.results.reaction(joint)
         force = (fx, fy, fz[0] if self.space else 0.0)
         pressing = dot(upward, force)
         sliding = norm(minus(force, times(pressing, upward)))
         margin = (mu * pressing - sliding) / ca.sqrt(1 + mu * mu)
-        self.output(f"{joint.name}_normal", pressing, unit="N")
-        self.output(f"{joint.name}_margin", margin, unit="N")
-        self.contacts.append(joint.name)
+        self.output(f"{name}_normal", pressing, unit="N")
+        self.output(f"{name}_margin", margin, unit="N")
+        self.contacts.append(name)
         return joint
 
     def gear(
@@ -1117,8 +1117,7 @@ class Mechanism(Declaration):
             If a scene has been made.
         """
         self.ownership.refuse_frozen("set gravity")
-        x, y = (self.ownership.expression("gravity", part, "m/s^2") for part in (x, y))
-        self.gravity = x, y, 0.0
+        self.gravity = self.ownership.vector("gravity", (x, y), "m/s^2")
 
     def freeze(self) -> None:
         """Check the whole mechanism and end the declaration.
@@ -1173,7 +1172,7 @@ class Mechanism(Declaration):
         own.free("joint", name, self.joints)
         start, end = own.point(what, parent), own.point(what, child)
         check_ends(what, kind, start, end)
-        along = in_plane(what, (1.0, 0.0) if axis is None else axis, own.expression)
+        along = directed(f"{what}: axis", (1.0, 0.0) if axis is None else axis, own)
         turn = 0.0 if angle is None else own.expression(f"{what}: angle", angle, "rad")
         joint = Joint.flat(name, kind, start, end, along, turn, turn_given=angle is not None)
         return self.joints.setdefault(name, joint)

@@ -21,6 +21,7 @@ from .declared_parts import (
     Point,
     PointMass,
     UserOutput,
+    Vector,
 )
 from .drives import Drive
 from .expressions import check_name, scalar
@@ -149,6 +150,16 @@ class Ownership:
         allowed = "parameter, time, coordinate or rate" if moving else "parameter"
         allowed = f"{allowed.replace(' or rate', ', rate')} or result" if found else allowed
         return scalar(what, value, symbols, f"{allowed} of mechanism '{declared.name}'", unit)
+
+    def vector(self, what: str, value: object, unit: str = "1") -> Vector:
+        """As many expressions as there are axes, in a unit; in a plane the third is zero."""
+        axes, count = self.declared.measures.components, "three" if self.declared.space else "two"
+        if not isinstance(value, (tuple, list)) or len(value) != len(axes):
+            raise DeclarationError(
+                f"{what} must be {count} components ({', '.join(axes)}), got {value!r}"
+            )
+        x, y, *z = (self.expression(what, component, unit) for component in value)
+        return x, y, z[0] if z else 0.0
 
     def at_defaults(self, expression: Expression) -> float:
         """The value of an expression in the parameters, with their defaults."""

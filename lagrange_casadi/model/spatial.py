@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import ClassVar
 
 from ..base.arguments import public
@@ -13,14 +13,13 @@ from ..base.symbolic import symbolic
 from ..base.vectors import times
 from ..errors import DeclarationError, check_kind
 from .beams.beam import Beam
-from .declared_parts import Body, Expression, Ground, Link, Point, PointMass, RigidMass, Vector
-from .directions import Reference, rotated, tensor, triad_of, turned_by, vector
+from .declared_parts import Body, Expression, Ground, Link, Point, PointMass, Vector
+from .directions import Reference, triad_of, turned_by
 from .directions import between as lying
 from .joints import Joint, JointKind, Triad, check_ends
 from .link_density import Density
 from .load_arguments import Between, LoadDensity, line_load
 from .loads import Force, LineLoad, Torque
-from .mass_properties import UNDECLARED
 from .measures import Measures
 from .mechanism import Mechanism
 
@@ -134,25 +133,13 @@ class SpatialMechanism(Mechanism):
                 f"{what}: beside needs between; the orientation of a link with a length follows"
                 " from its joint"
             )
+        if accept_inertia and centre is None:
+            raise DeclarationError(f"{what}: accept_inertia needs centre= and inertia=")
         reference, aside = None, None
         if between is not None:
-            reference, length, aside = lying(what, between, beside, self.ownership.expression)
-
-        def rigid(
-            centre: Expression, inertia: Expression
-        ) -> tuple[Vector, tuple[Vector, Vector, Vector]]:
-            place = self._vector(f"{what}: centre", centre, "m")
-            moments = tensor(what, inertia, self.ownership.expression)
-            if reference is None:
-                return place, moments
-            return reference.local(place), rotated(moments, reference)
-
-        link = self._link(name, length, (mass, density, centre, inertia), beam, rigid, aside)
-        if accept_inertia:
-            if not isinstance(link.mass, RigidMass) or link.mass is UNDECLARED:
-                raise DeclarationError(f"{what}: accept_inertia needs centre= and inertia=")
-            accepted = replace(link.mass, accepted=True)
-            self.bodies[name] = link = replace(link, mass=accepted)
+            reference, length, aside = lying(what, between, beside, self.ownership)
+        masses = mass, density, centre, inertia, accept_inertia
+        link = self._link(name, length, masses, beam, reference, aside)
         if reference is not None:
             self.references[name] = reference
         return link
@@ -179,7 +166,7 @@ class SpatialMechanism(Mechanism):
         """
         check_kind("place", body, "a body", Ground, Link, PointMass)
         what = f"place on '{body.name}'"
-        return self._reference(what, body).point(body, self._vector(what, (x, y, z), "m"))
+        return self._reference(what, body).point(body, self.ownership.vector(what, (x, y, z), "m"))
 
     def revolute(
         self,
@@ -494,18 +481,15 @@ class SpatialMechanism(Mechanism):
             If the coefficient is negative, the normal has no length, or the body has no position
             in the reference posture and ``at`` is missing.
         """
-        what = f"contact '{name}'"
-        foot, mu = self.ownership.point(what, point), self._coefficient(what, friction)
-        if at is None and foot.body.name not in self.references:
-            raise DeclarationError(
-                f"{what}: '{foot.body.name}' has no position in the reference posture; expected"
-                " at=, the place of the point"
-            )
         if at is None:
-            at = self._reference(what, foot.body).place(foot.place)
-        upward = triad_of(f"{what}: normal", normal, None, self.ownership)[0]
-        place = self.ground.at(*self._vector(f"{what}: at", at, "m"))
-        return self._standing(self.spherical(name, place, foot), upward, mu)
+            foot = self.ownership.point(f"contact '{name}'", point)
+            if foot.body.name not in self.references:
+                raise DeclarationError(
+                    f"contact '{name}': '{foot.body.name}' has no position in the reference"
+                    " posture; expected at=, the place of the point"
+                )
+            at = self.references[foot.body.name].place(foot.place)
+        return self._contact(name, point, friction, at, normal, self.spherical)
 
     def force(
         self,
@@ -610,7 +594,7 @@ class SpatialMechanism(Mechanism):
             Components [m/s^2] on ground axes, numbers or expressions of parameters.
         """
         self.ownership.refuse_frozen("set gravity")
-        self.gravity = self._vector("gravity", (x, y, z), "m/s^2")
+        self.gravity = self.ownership.vector("gravity", (x, y, z), "m/s^2")
 
     def _spatial(
         self,
@@ -672,7 +656,7 @@ class SpatialMechanism(Mechanism):
                 )
         assert isinstance(parent, Body)
         assert isinstance(child, Body)
-        place = self._vector(f"{what}: at", at, "m")
+        place = self.ownership.vector(f"{what}: at", at, "m")
         for body in (parent, child):
             if isinstance(body, PointMass) and body.name not in self.references:
                 self.references[body.name] = Reference(place)
@@ -691,6 +675,3 @@ class SpatialMechanism(Mechanism):
                 " point of each body in place of at="
             )
         return self.references[body.name]
-
-    def _vector(self, what: str, value: object, unit: str = "1") -> Vector:
-        return vector(what, value, self.ownership.expression, unit)

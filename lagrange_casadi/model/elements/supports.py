@@ -19,7 +19,7 @@ from ...base.brief import Brief
 from ...base.vectors import AXES, cross, minus, norm, plus, times
 from ...errors import DeclarationError
 from ..declared_parts import Body, Expression, Point, Vector
-from ..directions import in_plane, triad_of
+from ..directions import directed, triad_of
 from ..expressions import plain
 from ..joints import Joint, Triad
 from ..mechanism import Mechanism
@@ -215,7 +215,7 @@ def _triad(mechanism: Mechanism, what: str, axis: Vector | None) -> Triad:
     """Directions along an axis, by default x, and across it."""
     if mechanism.space:
         return triad_of(what, (1.0, 0.0, 0.0) if axis is None else axis, None, mechanism.ownership)
-    u = in_plane(what, (1.0, 0.0) if axis is None else axis, mechanism.ownership.expression)
+    u = directed(f"{what}: axis", (1.0, 0.0) if axis is None else axis, mechanism.ownership)
     return u, cross(AXES[2], u), AXES[2]
 
 
