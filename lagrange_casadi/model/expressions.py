@@ -105,7 +105,7 @@ def coordinates(
                 f" {examples}, got {shown(value)}{f', {Unit.of(unit).kind}' if unit else ''}"
             )
         units |= {base} if unit else set()
-        found.append(scalar(what, read, symbols_of(read), "parameter"))
+        found.append(parametric(what, read))
     if len(units) > 1:
         raise DeclarationError(
             f"{what}: mixes angles and lengths; expected the unit of one coordinate"
@@ -113,9 +113,10 @@ def coordinates(
     return found, next(iter(units), "")
 
 
-def symbols_of(value: Expression) -> list[ca.SX]:
-    """The symbols of an expression; of anything else none."""
-    return list(ca.symvar(value)) if isinstance(value, ca.SX) else []
+def parametric(what: str, value: object, unit: str = "1") -> Expression:
+    """A :func:`scalar` in any symbols, for what belongs to no mechanism yet."""
+    symbols = ca.symvar(value) if isinstance(value, ca.SX) else []
+    return scalar(what, value, symbols, "parameter", unit)
 
 
 def sound(condition: ca.SX) -> ca.SX:

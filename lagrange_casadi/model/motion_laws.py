@@ -19,7 +19,7 @@ from ..base.brief import Brief
 from ..errors import DeclarationError, shown
 from .curves import curve, rows
 from .declared_parts import Expression
-from .expressions import coordinates, scalar, symbols_of
+from .expressions import coordinates, parametric
 from .polynomials import value_at
 from .stretches import Stretch
 from .validity import Demand
@@ -124,8 +124,8 @@ def harmonic(
         For a value that is neither a number nor an expression of parameters.
     """
     (middle, size), unit = coordinates("harmonic", ((mean, ""), (amplitude, "")))
-    often = scalar("harmonic: frequency", frequency, symbols_of(frequency), "parameter", "1/s")
-    ahead = scalar("harmonic: phase", phase, symbols_of(phase), "parameter", "rad")
+    often = parametric("harmonic: frequency", frequency, "1/s")
+    ahead = parametric("harmonic: phase", phase, "rad")
     return Motion(lambda t: middle + size * ca.sin(2.0 * math.pi * often * t + ahead), unit=unit)
 
 
@@ -178,10 +178,7 @@ def samples(times: Sequence[Expression], values: Sequence[Expression]) -> Motion
     """
     unit = ""
     if isinstance(times, list | tuple) and any(isinstance(time, str) for time in times):
-        times = [
-            scalar("motion samples: times", time, symbols_of(time), "parameter", "s")
-            for time in times
-        ]
+        times = [parametric("motion samples: times", time, "s") for time in times]
     if isinstance(values, list | tuple) and any(isinstance(value, str) for value in values):
         values, unit = coordinates("motion samples: values", ((value, "") for value in values))
     at, to = Scaled.of("motion samples: times", times), Scaled.of("motion samples: values", values)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -11,32 +11,33 @@ from typing import Any
 import casadi as ca
 
 from ..base.arguments import Symbolic, public
-from ..base.arrays import Operand
 from ..base.numerals import readable
 from ..base.symbolic import symbolic
+from ..base.vectors import nil
 from ..errors import DeclarationError
 from .declared_parts import Expression
-from .expressions import check_name, coordinates, plain, scalar, sound, symbols_of
+from .expressions import check_name, coordinates, parametric, plain, sound
 from .motion_laws import Motion
-from .rest_laws import Limits, RestLaw, rest_law, s_curve_within, trapezoid_within
+from .rest_laws import RestLaw, rest_law, s_curve_within, trapezoid_within
 from .stretches import Stretch
 from .validity import Demand, Evaluator
 
 _PER = {"speed": "/s", "acceleration": "/s^2", "jerk": "/s^3"}
+_Limits = Mapping[str, Expression]
 _FORGIVEN = 1e-9
 """Relative tolerance by which a time may be too short, or a cycle not close, by rounding."""
 
 
 @dataclass(frozen=True, eq=False)
 class Move:
-    """A move from rest to rest, from :func:`move`."""
+    """A move from rest to rest, from :func:`move`; ``limits`` are those that are given, by name."""
 
     name: str
     to: Expression | str | None
     by: Expression | str | None
     time: Expression | None
     law: object
-    limits: Limits
+    limits: _Limits
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +95,7 @@ def move(
     what = f"move '{name}'" if name else "move"
     if (to is None) == (by is None):
         raise DeclarationError(f"{what}: expected either to=, an end value, or by=, a distance")
-    return Move(_named(name), to, by, time, law, Limits(speed, acceleration, jerk))
+    return Move(_named(name), to, by, time, law, _given(speed, acceleration, jerk))
 
 
 @public
@@ -165,7 +166,7 @@ def moves(
         designs are refused when they are evaluated.
     """
     each = _sequence(parts)
-    common = Limits(speed, acceleration, jerk)
+    common = _given(speed, acceleration, jerk)
     demands = _Demanded([], set())
     origin = demands.coordinate("moves: start", start)
     place, displacement, found = origin, _Sum(origin), []
@@ -176,25 +177,25 @@ def moves(
         else:
             by, after = _way(what, part, place, displacement, demands)
             law, time = _timed(what, part, by, common, demands)
-        found.append([part.name or f"part {number + 1}", law, time, place, by, after])
+        found.append((part.name or f"part {number + 1}", law, time, place, by))
         place = after
     times = _filled(each, [row[2] for row in found], period, demands)
     for number, (part, time) in enumerate(zip(each, times, strict=True)):
         words = f"{_what(part, number)}: its time must be positive, got {{got}} s"
         demands.add(Demand.saying(time, True, words))
-    first = _expression("moves: begin", begin, "s")
+    first = plain(parametric("moves: begin", begin, "s"))
     total = _Sum(first)
     seams = [first, *(total.then(time) for time in times)]
     stretches = tuple(
         Stretch(name, law, seams[k], seams[k + 1], times[k], at, by)
-        for k, (name, law, _, at, by, _) in enumerate(found)
+        for k, (name, law, _, at, by) in enumerate(found)
     )
     far = demands.coordinate("moves: advance", advance)
     length = None
     if cyclic:
         length = _Sum(0.0).then(*times)
         _demand_closure(origin, place, far, demands)
-    elif not (isinstance(far, float) and far == 0.0):
+    elif not nil(far):
         raise DeclarationError("moves: advance= needs cyclic=True")
     each_demand = tuple(demands.each)
     if len(demands.units) > 1:
@@ -269,17 +270,14 @@ def _graph(
 
 def _bends(stretch: Stretch) -> bool:
     """Return whether a stretch may begin and end with an acceleration."""
-    if stretch.law is None:
-        return False
-    bend = stretch.law.begins[0]
-    return not (isinstance(bend, int | float) and bend == 0.0)
+    return stretch.law is not None and not nil(stretch.law.begins[0])
 
 
 def _chosen(rows: Expression) -> Expression:
     """Select the value whose condition holds, of which at most one does; zero if none does."""
     total: Any = 0.0
     for here, value in rows:
-        if not (isinstance(value, float) and value == 0.0):
+        if not nil(value):
             total = total + ca.if_else(here, value, 0.0)
     return total
 
@@ -349,8 +347,9 @@ def _named(name: str) -> str:
     return name
 
 
-def _expression(what: str, value: Operand, unit: str = "1") -> Operand:
-    return plain(scalar(what, value, symbols_of(value), "parameter", unit))
+def _given(*limits: Expression | None) -> _Limits:
+    """Limits of speed, acceleration and jerk that are given, by name."""
+    return {name: x for name, x in zip(_PER, limits, strict=True) if x is not None}
 
 
 def _way(
@@ -362,46 +361,42 @@ def _way(
         return by, way.then(by)
     to = demands.coordinate(f"{what}: to", part.to)
     way.terms[:] = [to]
-    negative = -place if isinstance(place, ca.SX) else float(-place)
-    return _Sum(to).then(negative), to
+    return _Sum(to).then(-place), to
 
 
 def _timed(
-    what: str, part: Move, by: Expression, common: Limits, demands: _Demanded
+    what: str, part: Move, by: Expression, common: _Limits, demands: _Demanded
 ) -> tuple[RestLaw, Expression]:
     """The law of a move and its time, with what its limits demand."""
-    limits = _limits(what, part.limits if part.limits.given else common, demands)
-    if not limits.given and part.time is None:
+    limits = _limits(what, part.limits or common, demands)
+    if not limits and part.time is None:
         raise DeclarationError(f"{what}: expected a time, or limits of speed, acceleration or jerk")
     size = ca.fabs(ca.SX(by))
-    if limits.given and part.time is None:
+    if limits and part.time is None:
         words = f"{what}: its distance is zero, so limits give no duration; expected a dwell"
         demands.add(Demand.saying(size, True, words))
-    given = frozenset(limits.given)
     named = part.law if part.law is not None else "polynomial_345"
     standard_law = part.law is None or part.law in ("trapezoid", "s_curve")
-    if standard_law and given == {"speed", "acceleration"} and part.law != "s_curve":
-        law = trapezoid_within(by, **limits.given)
-    elif standard_law and given == {"speed", "acceleration", "jerk"} and part.law != "trapezoid":
-        law = s_curve_within(by, **limits.given)
+    if standard_law and limits.keys() == {"speed", "acceleration"} and part.law != "s_curve":
+        law = trapezoid_within(by, **limits)
+    elif standard_law and limits.keys() == {*_PER} and part.law != "trapezoid":
+        law = s_curve_within(by, **limits)
     else:
         law = rest_law(what, named)
-    if "jerk" in given and isinstance(law.jerk, float) and math.isinf(law.jerk):
+    if "jerk" in limits and isinstance(law.jerk, float) and math.isinf(law.jerk):
         raise DeclarationError(
             f"{what}: accelerations of the law {law.name} jump, so its jerk is infinite; expected"
             " another law, or no limit of jerk"
         )
-    if not limits.given:
-        return law, _expression(f"{what}: time", part.time, "s")
+    if not limits:
+        return law, plain(parametric(f"{what}: time", part.time, "s"))
     least = plain(law.least_time(by, limits))
     if part.time is None:
         return law, least
-    time = _expression(f"{what}: time", part.time, "s")
+    time = plain(parametric(f"{what}: time", part.time, "s"))
 
     def refusal(number: Evaluator) -> str:
-        broken = ", ".join(
-            f"{name} {readable(number(limit))}" for name, limit in limits.given.items()
-        )
+        broken = ", ".join(f"{name} {readable(number(limit))}" for name, limit in limits.items())
         asked = f"{readable(abs(number(by)))} in {readable(number(time))} s"
         needed = f"{number(least):.6g} s or more"
         return (
@@ -412,13 +407,13 @@ def _timed(
     return law, time
 
 
-def _limits(what: str, limits: Limits, demands: _Demanded) -> Limits:
+def _limits(what: str, limits: _Limits, demands: _Demanded) -> _Limits:
     found: dict[str, Expression] = {}
-    for name, value in limits.given.items():
+    for name, value in limits.items():
         found[name] = demands.coordinate(f"{what}: {name}", value, _PER[name])
         words = f"{what}: {name} must be positive, got {{got}}"
         demands.add(Demand.saying(found[name], True, words))
-    return Limits(**found)
+    return found
 
 
 def _filled(
@@ -426,7 +421,7 @@ def _filled(
 ) -> list[Expression]:
     """The times of all parts, the dwell that has none filled up."""
     known = [
-        None if time is None else _expression(f"{_what(parts[k], k)}: time", time, "s")
+        None if time is None else plain(parametric(f"{_what(parts[k], k)}: time", time, "s"))
         for k, time in enumerate(times)
     ]
     lacking = [k for k, time in enumerate(known) if time is None]
@@ -438,7 +433,7 @@ def _filled(
                 " moves"
             )
         return given
-    whole, total = _expression("moves: period", period, "s"), _Sum(0.0).then(*given)
+    whole, total = plain(parametric("moves: period", period, "s")), _Sum(0.0).then(*given)
     if len(lacking) > 1:
         raise DeclarationError(
             f"moves: {len(lacking)} dwells have no time; expected a time for all but one"
@@ -455,9 +450,7 @@ def _filled(
             )
         )
         return given
-    remaining = _Sum(whole).then(
-        *(-time if isinstance(time, ca.SX) else float(-time) for time in given)
-    )
+    remaining = _Sum(whole).then(*(-time for time in given))
     words = (
         "moves: no time is left for the part without one: the others take {total} s of the period"
         " of {whole} s"
@@ -471,7 +464,7 @@ def _demand_closure(
 ) -> None:
     gap = ca.fabs(ca.SX(end) - start - advance)
     size = ca.fabs(ca.SX(start)) + ca.fabs(ca.SX(end)) + ca.fabs(ca.SX(advance))
-    aside = "" if isinstance(advance, float) and advance == 0.0 else ", {advance} beyond it"
+    aside = "" if nil(advance) else ", {advance} beyond it"
     words = (
         f"moves: a cyclic motion must end where it starts, at {{start}}{aside}, but it ends at"
         " {end}; expected a move back, or advance={climb}"

@@ -17,7 +17,7 @@ from ..base.units import count, differs, known, quantity
 from ..errors import DeclarationError, PathError, UnknownNameError, one_line
 from .curves import Curve, curve
 from .declared_parts import Expression
-from .expressions import coordinates, scalar, symbols_of
+from .expressions import coordinates, parametric
 from .motion_laws import Motion
 
 _LEAST = 5
@@ -307,7 +307,7 @@ def _motion(
         )
     (ahead,), unit_in = coordinates(f"{name}: offset", [(offset, "")])
     each = zip(("ratio", "offset", "stretch"), (ratio, ahead, stretch), strict=True)
-    found = [scalar(f"{name}: {word}", x, symbols_of(x), "parameter") for word, x in each]
+    found = [parametric(f"{name}: {word}", x) for word, x in each]
     if cyclic:
         recording = _closed(recording, period, advance)
     elif advance:

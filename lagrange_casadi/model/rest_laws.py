@@ -9,8 +9,9 @@ Manufacturing Handbook*, 2nd edition, 2009, chapter 3; VDI 2143, part 1.
 
 from __future__ import annotations
 
+import functools
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -23,6 +24,14 @@ from .declared_parts import Expression
 from .expressions import plain
 
 _CUBE = 1.0 / 3.0
+_ROOTS: dict[str, Callable[[Any], Any]] = {
+    "speed": lambda ratio: ratio,
+    "acceleration": ca.sqrt,
+    "jerk": lambda ratio: ratio**_CUBE,
+}
+"""How the time of a move follows from the ratio of its speed, acceleration or jerk in a time of one
+to the limit.
+"""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -43,36 +52,19 @@ class RestLaw(Brief):
     begins: tuple[Expression, Expression] = (0.0, 0.0)
     inner: tuple[tuple[Expression, tuple[Expression, Expression]], ...] = ()
 
-    def least_time(self, displacement: Expression, limits: Limits) -> Expression:
-        """The shortest time [s] in which a way [rad or m] is made within limits."""
-        size, times = ca.fabs(ca.SX(displacement)), []
-        if limits.speed is not None:
-            times.append(self.speed * size / limits.speed)
-        if limits.acceleration is not None:
-            times.append(ca.sqrt(self.acceleration * size / limits.acceleration))
-        if limits.jerk is not None:
-            times.append((self.jerk * size / limits.jerk) ** _CUBE)
-        least = times[0]
-        for time in times[1:]:
-            least = ca.fmax(least, time)
-        return least
-
-
-@dataclass(frozen=True, eq=False)
-class Limits:
-    """Limits of a move: the largest speed, acceleration and jerk, in rad or m and s; None is no
-    limit.
-    """
-
-    speed: Expression | None = None
-    acceleration: Expression | None = None
-    jerk: Expression | None = None
-
-    @property
-    def given(self) -> dict[str, Expression]:
-        """Limits that are given, by name."""
-        each = {"speed": self.speed, "acceleration": self.acceleration, "jerk": self.jerk}
-        return {name: limit for name, limit in each.items() if limit is not None}
+    def least_time(self, displacement: Expression, limits: Mapping[str, Expression]) -> Expression:
+        """The shortest time [s] in which a way [rad or m] is made within limits of speed,
+        acceleration and jerk, by these names.
+        """
+        size = ca.fabs(ca.SX(displacement))
+        return functools.reduce(
+            ca.fmax,
+            (
+                root(getattr(self, name) * size / limits[name])
+                for name, root in _ROOTS.items()
+                if name in limits
+            ),
+        )
 
 
 @public

@@ -93,13 +93,10 @@ def _timed(stretches: Sequence[Stretch], number: Evaluator) -> list[TimedStretch
         start, stop, time, at, by = map(
             number, (stretch.start, stretch.stop, stretch.time, stretch.at, stretch.by)
         )
-        law, size = stretch.law, abs(by)
-        each = (
-            (0.0, 0.0, 0.0)
-            if law is None or not size
-            else tuple(map(number, (law.speed, law.acceleration, law.jerk)))
-        )
-        peaks = (peak * size / time**order if size else 0.0 for order, peak in enumerate(each, 1))
+        law, peaks = stretch.law, [0.0, 0.0, 0.0]
+        if law is not None and by:
+            each = enumerate((law.speed, law.acceleration, law.jerk), 1)
+            peaks = [number(peak) * abs(by) / time**order for order, peak in each]
         found.append(
             TimedStretch(
                 stretch.name, "dwell" if law is None else law.name, start, stop, at, by, *peaks
@@ -110,50 +107,46 @@ def _timed(stretches: Sequence[Stretch], number: Evaluator) -> list[TimedStretch
 
 def _jumps(stretches: Sequence[Stretch], number: Evaluator, *, cyclic: bool) -> list[Jump]:
     """Times at which accelerations jump, and at which only jerks do, in the order of time."""
-    rest = (0.0, 0.0)
-    begins, ends, inner = [], [], []
-    for stretch in stretches:
-        law, time, by = stretch.law, number(stretch.time), number(stretch.by)
-        bend, sharp = rest if law is None or not by else map(number, law.begins)
-        bend, sharp = (x * by / time**k for x, k in ((bend, 2), (sharp, 3)))
-        begins.append((bend, sharp))
-        ends.append((-bend, sharp))
-        for share, bent, sharpened in () if law is None or not by else _places(law, number):
-            jump = bent * by / time**2, sharpened * by / time**3
-            inner.append((number(stretch.start) + share * time, f"within '{stretch.name}'", jump))
-    seams = []
-    for k, (before, after) in enumerate(itertools.pairwise(stretches)):
-        where = f"from '{before.name}' to '{after.name}'"
-        seams.append((number(after.start), where, _change(ends[k], begins[k + 1])))
-    opening = _change(ends[-1] if cyclic else rest, begins[0])
-    seams.append((number(stretches[0].start), f"where '{stretches[0].name}' begins", opening))
+    names = [stretch.name for stretch in stretches]
+    pairs = itertools.pairwise(names)
+    seams = [f"where '{names[0]}' begins", *(f"from '{one}' to '{next_}'" for one, next_ in pairs)]
+    each = [_changes(stretch, number) for stretch in stretches]
+    ended = each[-1][-1] if cyclic else (0.0, 0.0, 0.0)
+    every = []
+    for name, seam, (begun, *inner, end) in zip(names, seams, each, strict=True):
+        every.append((begun[0], seam, ended[1] + begun[1], ended[2] + begun[2]))
+        every += [(t, f"within '{name}'", bend, sharp) for t, bend, sharp in inner]
+        ended = end
     if not cyclic:
-        last = stretches[-1]
-        seams.append((number(last.stop), f"where '{last.name}' ends", _change(ends[-1], rest)))
-    every = sorted([*seams, *inner])
-    sizes = [max((abs(jump[k]) for *_, jump in every), default=0.0) for k in (0, 1)]
+        every.append((ended[0], f"where '{names[-1]}' ends", *ended[1:]))
+    bends = max(abs(bend) for *_, bend, _ in every)
+    sharps = max(abs(sharp) for *_, sharp in every)
     found = []
-    for t, where, (bend, sharp) in every:
-        if abs(bend) > _SAME * sizes[0]:
+    for t, where, bend, sharp in sorted(every):
+        if abs(bend) > _SAME * bends:
             found.append(Jump(t, "acceleration", bend, where))
-        elif abs(sharp) > _SAME * sizes[1]:
+        elif abs(sharp) > _SAME * sharps:
             found.append(Jump(t, "jerk", sharp, where))
     return found
 
 
-def _places(law: RestLaw, number: Evaluator) -> list[tuple[float, float, float]]:
-    """Places and sizes of jumps within a law; jumps at one place are one, as between parts without
-    constant acceleration.
+def _changes(stretch: Stretch, number: Evaluator) -> list[tuple[float, float, float]]:
+    """By how much acceleration and jerk jump where a stretch begins, within it and where it ends,
+    after the time; within it jumps at one place are one, as between parts without constant
+    acceleration.
     """
-    found: list[tuple[float, float, float]] = []
+    start, stop, by = map(number, (stretch.start, stretch.stop, stretch.by))
+    law = stretch.law
+    if law is None or not by:
+        return [(start, 0.0, 0.0), (stop, 0.0, 0.0)]
+    time, inner = number(stretch.time), [(-1.0, 0.0, 0.0)]
     for place, change in law.inner:
-        share, bent, sharpened = number(place), *map(number, change)
-        if found and share - found[-1][0] <= _SAME:
-            _, bent_before, sharpened_before = found.pop()
-            bent, sharpened = bent + bent_before, sharpened + sharpened_before
-        found.append((share, bent, sharpened))
-    return found
-
-
-def _change(before: tuple[float, float], after: tuple[float, float]) -> tuple[float, float]:
-    return after[0] - before[0], after[1] - before[1]
+        share, bend, sharp = number(place), *map(number, change)
+        if share - inner[-1][0] <= _SAME:
+            _, bend_before, sharp_before = inner.pop()
+            bend, sharp = bend + bend_before, sharp + sharp_before
+        inner.append((share, bend, sharp))
+    bend, sharp = map(number, law.begins)
+    places = [(start, bend, sharp), *((start + u * time, *jump) for u, *jump in inner[1:])]
+    places.append((stop, bend, -sharp))
+    return [(t, bend * by / time**2, sharp * by / time**3) for t, bend, sharp in places]

@@ -16,7 +16,7 @@ from ..base.tables import FORCE, MOMENT
 from ..base.units import typed
 from ..errors import DeclarationError
 from . import curves
-from .expressions import expressed, scalar, symbols_of
+from .expressions import expressed, parametric, scalar
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +43,7 @@ class Law:
         Law
             Its torque [N m] or force [N] at the drive.
         """
-        times = _number("geared: ratio", ratio, "1")
+        times = parametric("geared: ratio", ratio, "1")
         return Law(
             lambda t, angle, speed: times * self.graph(t, times * angle, times * speed), self.unit
         )
@@ -92,7 +92,7 @@ def torque(value: Symbolic) -> Law:
         The torque or force.
     """
     unit = typed(value)[1]
-    constant = _number("torque", value, FORCE if unit == FORCE else MOMENT)
+    constant = parametric("torque", value, FORCE if unit == FORCE else MOMENT)
     return Law(lambda t, angle, speed: constant, unit)
 
 
@@ -110,7 +110,7 @@ def power(value: Symbolic) -> Law:
     Law
         The torque power/speed, which is without bound at rest.
     """
-    constant = _number("power", value, "W")
+    constant = parametric("power", value, "W")
     return Law(lambda t, angle, speed: constant / speed)
 
 
@@ -160,8 +160,8 @@ def dc_motor(stall_torque: Symbolic, no_load_speed: Symbolic) -> Law:
     DeclarationError
         For numbers of different signs, and for zero.
     """
-    stall = _number("dc_motor: stall_torque", stall_torque, "N m")
-    free = _number("dc_motor: no_load_speed", no_load_speed, "rad/s")
+    stall = parametric("dc_motor: stall_torque", stall_torque, "N m")
+    free = parametric("dc_motor: no_load_speed", no_load_speed, "rad/s")
     _check_direction("dc_motor", stall, free)
     return Law(lambda t, angle, speed: stall * (1.0 - speed / free))
 
@@ -192,9 +192,9 @@ def induction_motor(
     DeclarationError
         For torque and speed of different signs, for a slip that is not positive, and for zero.
     """
-    most = _number("induction_motor: breakdown_torque", breakdown_torque, "N m")
-    at = _number("induction_motor: breakdown_slip", breakdown_slip, "1")
-    field = _number("induction_motor: synchronous_speed", synchronous_speed, "rad/s")
+    most = parametric("induction_motor: breakdown_torque", breakdown_torque, "N m")
+    at = parametric("induction_motor: breakdown_slip", breakdown_slip, "1")
+    field = parametric("induction_motor: synchronous_speed", synchronous_speed, "rad/s")
     _check_direction("induction_motor", most, field)
     if not isinstance(at, ca.SX) and not at > 0.0:
         raise DeclarationError(f"induction_motor: breakdown_slip must be positive, got {at:g}")
@@ -227,10 +227,6 @@ def expression(law: Callable[[Expression, Expression, Expression], Expression]) 
         If it is not a function.
     """
     return Law(law)
-
-
-def _number(what: str, value: object, unit: str) -> Expression:
-    return scalar(what, value, symbols_of(value), "parameter", unit)
 
 
 def _check_direction(motor: str, torque: Expression, speed: Expression) -> None:
