@@ -12,12 +12,14 @@ from __future__ import annotations
 import enum
 import functools
 from dataclasses import dataclass
+from typing import Any
 
 import casadi as ca
 import numpy as np
-import numpy.typing as npt
 
-from ..base.arrays import Array
+from ..base.arrays import Array, Flags
+from ..base.scalars import called, graph, inputs_of
+from .one_sided_limits import Numbers, halved
 from .sampled_laws import Laws
 
 _SHARE = 1 / 32
@@ -26,8 +28,8 @@ _SHARE = 1 / 32
 _FIRST = 1e-6
 """Seconds of the first step from where a law rests with neither rate nor acceleration."""
 
-_STEPS, _HALVINGS = 5000, 80
-"""Largest number of steps along a motion, and of halvings for a time of reversal."""
+_STEPS = 5000
+"""Largest number of steps along a motion."""
 
 _NEWTON, _TRIALS = 60, 200
 """Largest number of Newton steps for a time, and of trials in all; the rest are halvings."""
@@ -37,9 +39,6 @@ _ROUNDING = 16 * float(np.finfo(float).eps)
 
 _RESTS = 1e-9
 """Fraction of the largest rate below which a rate of the wrong sign is rounding."""
-
-_FEW, _MANY = 1 << 4, 1 << 10
-"""Numbers of times at which a law is evaluated at once."""
 
 _CAPACITY = 1 << 16
 """Number of times that are kept at once."""
@@ -62,22 +61,20 @@ class Passage:
     parameters, each (n,).
 
     ``first`` and ``last`` are its ends [s], NaN where ``missed`` says why there is none; ``t`` and
-    ``d`` then are a time and the coordinate at which that is seen. ``sense`` is the sign of the
-    way.
+    ``d`` then are a time and the coordinate at which that is seen.
     """
 
     first: Array
     last: Array
-    sense: Array
-    missed: npt.NDArray[np.int8]
+    missed: Numbers
     t: Array
     d: Array
 
 
 @dataclass(frozen=True, eq=False)
 class MotionInverse:
-    """A law of motion to be inverted: ``law(t, p) -> (d, rate, acceleration)``, defined within
-    ``span`` [s].
+    """A law of motion to be inverted: ``law(t, p)`` is a column of coordinate, rate and
+    acceleration, defined within ``span`` [s].
 
     ``steady`` says that its rate does not depend on time, ``varies`` that the law depends on
     parameters.
@@ -93,38 +90,19 @@ class MotionInverse:
     def of(cls, laws: Laws, joint: str) -> MotionInverse:
         """Return the law of a drive, to be inverted."""
         one = laws.only([joint])
-        law, (span,) = one.motion, one.spans
-        t, p = law.sx_in()
-        d, rate, _ = law(t, p)
-        steady = not (one.knots[0] or ca.depends_on(rate, t))
-        return cls(law, steady, bool(p.numel()) and bool(ca.depends_on(d, p)), span)
+        given = inputs_of(one.motion)
+        d, rate, bend = one.motion(*given.values())
+        law = graph("law", given, law=ca.vertcat(d, rate, bend))
+        steady = not (one.knots[0] or ca.depends_on(rate, given["t"]))
+        varies = bool(given["p"].numel()) and bool(ca.depends_on(d, given["p"]))
+        return cls(law, steady, varies, one.spans[0])
 
-    def at(self, t: Array, p: Array) -> tuple[Array, Array, Array]:
-        """Coordinate, rate and acceleration at times (n, k) for parameters (n, parameters), each
-        (n, k).
+    def at(self, t: Array, p: Array) -> Array:
+        """Coordinate, rate and acceleration (3, n, k) at times (n, k) for parameters (n,
+        parameters).
         """
-        count = t.shape[1]
-        moments, known = t.ravel(), np.repeat(p, count, axis=0)
-        found = np.empty((3, moments.size))
-        size, law = (_FEW, self._few) if moments.size <= _FEW else (_MANY, self._many)
-        for start in range(0, moments.size, size):
-            some = slice(start, start + size)
-            many = moments[some].size
-            filled = np.resize(moments[some], size), np.resize(known[some], (size, p.shape[1]))
-            with np.errstate(all="ignore"):
-                found[:, some] = [
-                    row.full().ravel()[:many] for row in law(filled[0][None], filled[1].T)
-                ]
-        return found[0].reshape(t.shape), found[1].reshape(t.shape), found[2].reshape(t.shape)
-
-    @functools.cached_property
-    def _few(self) -> ca.Function:
-        # Of so many times at once: the law called with as many columns takes ten times as long.
-        return self.law.map(_FEW)
-
-    @functools.cached_property
-    def _many(self) -> ca.Function:
-        return self.law.map(_MANY)
+        found = called(self.law, t.reshape(1, -1), np.repeat(p, t.shape[1], axis=0).T)
+        return found.reshape(3, *t.shape)
 
     def passage(
         self, start: Array, stop: Array, p: Array, around: Array, *, samples: int
@@ -136,98 +114,79 @@ class MotionInverse:
         (n,) [s], or from where it is defined; ``samples`` times between show that it does not turn
         back.
         """
-        sense = np.sign(stop - start)
-        if self.steady:
-            return self._steady(start, stop, sense, p)
-        size = max(1, _CAPACITY // samples)
-        found = []
-        for k in range(0, len(p), size):
-            some = slice(k, k + size)
-            found.append(
-                self._followed(start[some], stop[some], sense[some], p[some], around[some], samples)
+        parts = []
+        for some in _parts(np.arange(len(p)), samples):
+            given = start[some], stop[some], p[some]
+            parts.append(
+                self._steady(*given)
+                if self.steady
+                else self._followed(*given, around[some], samples)
             )
-        fields = ("first", "last", "sense", "missed", "t", "d")
-        return Passage(
-            *(
-                np.concatenate([np.zeros(0), *(getattr(passage, name) for passage in found)])
-                for name in fields
-            )
-        )
+        first, last, missed, t, d = map(np.concatenate, zip(*parts, strict=True))
+        bad = missed != Missed.REACHED
+        return Passage(np.where(bad, np.nan, first), np.where(bad, np.nan, last), missed, t, d)
 
     def times(self, passage: Passage, targets: Array, p: Array) -> Array:
         """The times (n, k) at which the motion is at ``targets`` (n, k), from the start of a way to
         its end; NaN without one.
         """
-        if self.steady:
-            zero = np.zeros((len(p), 1))
-            d, rate, _ = self.at(zero, p)
-            with np.errstate(all="ignore"):
-                return np.where(
-                    passage.missed[:, None] == Missed.REACHED, (targets - d) / rate, np.nan
-                )
         found = np.full(targets.shape, np.nan)
-        size = max(1, _CAPACITY // targets.shape[1])
-        there = np.flatnonzero(passage.missed == Missed.REACHED)
-        for k in range(0, there.size, size):
-            some = there[k : k + size]
-            first, last, sense = passage.first[some], passage.last[some], passage.sense[some, None]
-            found[some] = self._between(first, last, sense, targets[some], p[some])
+        for some in _parts(np.flatnonzero(passage.missed == Missed.REACHED), targets.shape[1]):
+            if self.steady:
+                d, rate, _ = self.at(np.zeros((some.size, 1)), p[some])
+                found[some] = (targets[some] - d) / rate
+            else:
+                ends = passage.first[some], passage.last[some]
+                found[some] = self._between(*ends, targets[some], p[some])
         return found
 
-    def _steady(self, start: Array, stop: Array, sense: Array, p: Array) -> Passage:
+    def _steady(self, start: Array, stop: Array, p: Array) -> tuple[Any, ...]:
+        """Ends of a way, why there is none, and where that is seen: as of a :class:`Passage`."""
         zero = np.zeros((len(p), 1))
-        d, rate, _ = (row[:, 0] for row in self.at(zero, p))
+        d, rate, _ = self.at(zero, p)[..., 0]
         with np.errstate(all="ignore"):
             first, last = (start - d) / rate, (stop - d) / rate
-        missed = np.where(np.isfinite(first) & np.isfinite(last), Missed.REACHED, Missed.NEVER)
-        missed = np.where(sense * rate < 0.0, Missed.OTHER_WAY, missed)
-        missed = np.where(rate == 0.0, Missed.STANDS_STILL, missed).astype(np.int8)
-        bad = missed != Missed.REACHED
-        return Passage(
-            np.where(bad, np.nan, first), np.where(bad, np.nan, last), sense, missed, zero[:, 0], d
-        )
+        reached = np.isfinite(first) & np.isfinite(last)
+        why = [rate == 0.0, np.sign(stop - start) * rate < 0.0, ~reached]
+        missed = np.select(why, [Missed.STANDS_STILL, Missed.OTHER_WAY, Missed.NEVER])
+        return first, last, missed, zero[:, 0], d
 
     def _followed(
-        self, start: Array, stop: Array, sense: Array, p: Array, around: Array, samples: int
-    ) -> Passage:
-        ends, missed = [], np.zeros(len(p), np.int8)
-        t, d = np.full((2, len(p)), np.nan)
-        for target in (start, stop):
-            end, why, at, there = self._reached(target, np.abs(stop - start), sense, p, around)
-            ends.append(end)
-            new = (missed == Missed.REACHED) & (why != Missed.REACHED)
-            missed, t, d = np.where(new, why, missed), np.where(new, at, t), np.where(new, there, d)
-        first, last = ends
+        self, start: Array, stop: Array, p: Array, around: Array, samples: int
+    ) -> tuple[Any, ...]:
+        """As :meth:`_steady`, of a law that is not steady."""
+        sense, rows = np.sign(stop - start), np.arange(len(p))
+        way, ways, begun = (np.tile(x, 2) for x in (np.abs(stop - start), sense, around))
+        reached = self._reached(np.append(start, stop), way, ways, begun, np.tile(p, (2, 1)))
+        (first, last), why, at, there = (x.reshape(2, -1) for x in reached)
+        which = np.where(why[0] == Missed.REACHED, 1, 0)
+        missed, t, d = (x[which, rows] for x in (why, at, there))
         grid = first[:, None] + (last - first)[:, None] * np.linspace(0.0, 1.0, samples)
         values, rates, _ = self.at(grid, p)
         with np.errstate(all="ignore"):
             back = sense[:, None] * rates < -_RESTS * np.abs(rates).max(axis=1, keepdims=True)
             rounding = _ROUNDING * np.abs(values).max(axis=1, keepdims=True)
             back[:, 1:] |= ~(sense[:, None] * np.diff(values) >= -rounding)
-        turned = back.any(axis=1) & (missed == Missed.REACHED)
-        rows, places = np.arange(len(p)), np.argmax(back, axis=1)
-        missed = np.where(turned, Missed.TURNS_BACK, missed).astype(np.int8)
+        turned, places = back.any(axis=1) & (missed == Missed.REACHED), np.argmax(back, axis=1)
+        missed = np.where(turned, Missed.TURNS_BACK, missed)
         t, d = np.where(turned, grid[rows, places], t), np.where(turned, values[rows, places], d)
-        bad = missed != Missed.REACHED
-        return Passage(
-            np.where(bad, np.nan, first), np.where(bad, np.nan, last), sense, missed, t, d
-        )
+        return first, last, missed, t, d
 
     def _reached(
-        self, target: Array, passage: Array, sense: Array, p: Array, around: Array
-    ) -> tuple[Array, npt.NDArray[np.int8], Array, Array]:
+        self, target: Array, passage: Array, sense: Array, around: Array, p: Array
+    ) -> tuple[Array, Numbers, Array, Array]:
         """Time at which the motion through its place at ``around`` is at a target; or the reason
         why there is none, and its time.
         """
         low, high = self.span
         here = np.clip(around, low, high)
-        d, rate, bend = (row[:, 0] for row in self.at(here[:, None], p))
+        d, rate, bend = self.at(here[:, None], p)[..., 0]
         rounding = _ROUNDING * np.maximum(np.maximum(np.abs(target), np.abs(d)), passage)
         onward = np.where(sense * (target - d) >= 0.0, 1.0, -1.0)
         share = _SHARE * np.maximum(passage, np.abs(target - d))
         step = _step(rate, bend, share, np.full(here.size, np.inf))
         step = np.where(np.isfinite(step), step, _FIRST)
-        missed = np.where(np.isfinite(d), Missed.REACHED, Missed.NEVER).astype(np.int8)
+        missed = np.where(np.isfinite(d), Missed.REACHED, Missed.NEVER)
         there = d == target
         before, after, visited, at = here.copy(), here.copy(), here.copy(), d.copy()
         for _ in range(_STEPS):
@@ -237,7 +196,7 @@ class MotionInverse:
             with np.errstate(over="ignore"):
                 now = np.clip(here[going] + onward[going] * step[going], low, high)
                 was = here[going]
-            found, speed, bent = (row[:, 0] for row in self.at(now[:, None], p[going]))
+            found, speed, bent = self.at(now[:, None], p[going])[..., 0]
             ahead = onward[going] * sense[going]
             passed = ahead * (found - target[going]) >= 0.0
             turned = ~passed & (
@@ -262,12 +221,10 @@ class MotionInverse:
             before[going] = np.where(reached, place, before[going])
             after[going] = np.where(reached, place, after[going])
             there[going] |= reached
-            why = np.where(
-                lost,
-                Missed.NEVER,
-                np.where(ended, Missed.ENDS, np.where(turned, Missed.TURNS_BACK, Missed.REACHED)),
+            missed[going] = np.select(
+                [there[going], lost, ended, turned],
+                [Missed.REACHED, Missed.NEVER, Missed.ENDS, Missed.TURNS_BACK],
             )
-            missed[going] = np.where(there[going], Missed.REACHED, why)
             visited[going] = np.where(turned, visited[going], now)
             at[going] = np.where(turned, at[going], found)
             here[going], d[going] = now, found
@@ -284,24 +241,23 @@ class MotionInverse:
 
     def _turning(self, was: Array, now: Array, sense: Array, p: Array) -> tuple[Array, Array]:
         """Time of reversal between two times, and the coordinate there."""
-        near, far = was.copy(), now.copy()
-        for _ in range(_HALVINGS):
-            middle = near + (far - near) / 2
-            rate = self.at(middle[:, None], p)[1][:, 0]
-            same = sense * rate > 0.0
-            near, far = np.where(same, middle, near), np.where(same, far, middle)
-        return near, self.at(near[:, None], p)[0][:, 0]
 
-    def _between(self, first: Array, last: Array, sense: Array, targets: Array, p: Array) -> Array:
+        def onward(share: Array) -> Flags:
+            rate = self.at((was + share * (now - was))[:, None], p)[1, :, 0]
+            return np.asarray(sense * rate > 0.0)
+
+        near = was + halved(onward, np.zeros(was.size), np.ones(was.size))[0] * (now - was)
+        return near, self.at(near[:, None], p)[0, :, 0]
+
+    def _between(self, first: Array, last: Array, targets: Array, p: Array) -> Array:
         """The times at targets (n, k) between the ends of a way, from a table of the motion."""
-        count = targets.shape[1]
+        count, sense = targets.shape[1], np.sign(targets[:, -1:] - targets[:, :1])
         grid = first[:, None] + (last - first)[:, None] * np.linspace(0.0, 1.0, count)
         grid[:, -1] = last
         values = sense * self.at(grid, p)[0]
         values = np.maximum.accumulate(values, axis=1)
-        place = np.stack(
-            [np.searchsorted(row, u) for row, u in zip(values, sense * targets, strict=True)]
-        )
+        each = zip(values, sense * targets, strict=True)
+        place = np.array([np.searchsorted(row, u) for row, u in each], int).reshape(targets.shape)
         place = np.clip(place, 1, count - 1)
         rows = np.arange(len(p))[:, None]
         lower, upper = grid[rows, place - 1], grid[rows, place]
@@ -332,7 +288,7 @@ class MotionInverse:
         low, high, now = (np.array(x, float).ravel() for x in (lower, upper, t))
         best, least, going = now.copy(), np.full(now.size, np.inf), np.arange(now.size)
         for trial in range(_TRIALS):
-            d, rate, _ = (row[:, 0] for row in self.at(now[going, None], p[rows[going]]))
+            d, rate, _ = self.at(now[going, None], p[rows[going]])[..., 0]
             miss = sign[going] * (d - aim[going])
             better = np.abs(miss) < least[going]
             best[going] = np.where(better, now[going], best[going])
@@ -352,8 +308,14 @@ class MotionInverse:
             going = going[~stays]
             if not going.size:
                 break
-        d = self.at(now[:, None], p[rows])[0][:, 0]
+        d = self.at(now[:, None], p[rows])[0, :, 0]
         return np.where(np.abs(d - aim) < least, now, best).reshape(targets.shape)
+
+
+def _parts(which: Numbers, count: int) -> list[Numbers]:
+    """Numbers of designs, in parts of which so many times each are kept; one part at least."""
+    size = max(1, _CAPACITY // count)
+    return [which[k : k + size] for k in range(0, max(which.size, 1), size)]
 
 
 def _step(rate: Array, bend: Array, share: Array, most: Array) -> Array:

@@ -49,7 +49,7 @@ def note(laws: Laws, kinds: Kinds, timing: Timing, p: Array) -> str:
         return ""
     start, stop, p = start[there], stop[there], p[there]
     law = MotionInverse.of(laws, joint)
-    first, last = (law.at(moment[:, None], p)[0][:, 0] for moment in (start, stop))
+    first, last = (law.at(moment[:, None], p)[0, :, 0] for moment in (start, stop))
     revolutions = (last - first) / math.tau
     sizes = np.abs(revolutions)
     least, most = sizes.min(), sizes.max()
@@ -83,7 +83,7 @@ def _goes_round(
             start[:, None] + longer[:, None] * np.linspace(0.0, 1.0, _SAMPLES), law.span[1]
         )
         d, rate, _ = law.at(moments, p)
-        last = law.at(stop[:, None], p)[1][:, 0]
+        last = law.at(stop[:, None], p)[1, :, 0]
         sign = np.sign(revolutions)
         onward = (sign[:, None] * rate > -_BACK * np.abs(rate).max(axis=1, keepdims=True)).all(
             axis=1

@@ -90,9 +90,9 @@ class DesignTimes:
         """The drive's coordinates at times (n, q) of designs (n, parameters)."""
         assert self.law is not None
         if not self.law.steady:
-            return self.law.at(t, p)[0]
+            return np.asarray(self.law.at(t, p)[0])
         d, rate, _ = self.law.at(np.zeros((len(p), 1)), p)
-        return d + rate * t
+        return np.asarray(d + rate * t)
 
     def _steps(self, start: Array, stop: Array) -> Array:
         numbers = np.arange(self.timing.count)
