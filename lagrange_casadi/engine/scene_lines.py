@@ -12,8 +12,8 @@ from ..base.arrays import Expression
 from ..base.lookups import PREFIX
 from ..model.constraints import Constraint
 from ..model.loads import Force, Friction, LineLoad, Load, Torque
+from ..model.motion_inverse import MotionInverse
 from ..model.motion_laws import Motion
-from ..model.sampled_laws import motion_function
 from ..model.scene import Scene
 from .kinematics import describe_coordinate
 
@@ -120,16 +120,9 @@ def _moves(scene: Scene, joint: str) -> Iterator[str]:
 
 def _course(scene: Scene, joint: str) -> str:
     """Start, end and limits of a drive with the default parameters."""
-    mechanism, (start, stop) = scene.mechanism, scene.span
-    motion = motion_function({joint: scene.laws[joint]}, mechanism.symbols)
-    values = list(mechanism.values(scene.assembly).values())
-    direction = (
-        motion(ca.DM(np.linspace(start, stop, _SAMPLES)).T, ca.repmat(ca.DM(values), 1, _SAMPLES))[
-            0
-        ]
-        .full()
-        .ravel()
-    )
+    values = [*scene.mechanism.values(scene.assembly).values()]
+    law, t = MotionInverse.of(scene.prescribed, joint), np.linspace(*scene.span, _SAMPLES)
+    direction = law.at(t[None], np.array([values], float))[0, 0]
     kind = scene.guided.coordinates[joint][1].kind
     words = (
         f"from {describe_coordinate(joint, kind, direction[0])} to"

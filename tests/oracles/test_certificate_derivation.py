@@ -65,20 +65,16 @@ def law(change):
     """Derive with another motion than was declared."""
 
     def patch(monkeypatch):
-        right = sampled_laws.motion_function
+        right = sampled_laws.Laws.of
 
         def wrong(given, parameters):
-            function = right(given, parameters)
-            t, p = function.sx_in()
-            return ca.Function(
-                "motion",
-                [t, p],
-                change(*function(t, p)),
-                ["t", "p"],
-                ["d", "d_rate", "d_acceleration"],
-            )
+            found = right(given, parameters)
+            t, p = found.motion.sx_in()
+            names = found.motion.name_in(), found.motion.name_out()
+            changed = change(*found.motion(t, p))
+            return replace(found, motion=ca.Function("motion", [t, p], changed, *names))
 
-        monkeypatch.setattr(sampled_laws, "motion_function", wrong)
+        monkeypatch.setattr(sampled_laws.Laws, "of", wrong)
 
     return patch
 
