@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from typing import Any, TypeAlias
 
 import casadi as ca
 
@@ -23,7 +23,9 @@ from .stretches import Stretch
 from .validity import Demand, Evaluator
 
 _PER = {"speed": "/s", "acceleration": "/s^2", "jerk": "/s^3"}
-_Limits = Mapping[str, Expression]
+Limits: TypeAlias = Mapping[str, Expression]
+"""Limits of speed, acceleration and jerk that are given, by name, in rad or m and s."""
+
 _FORGIVEN = 1e-9
 """Relative tolerance by which a time may be too short, or a cycle not close, by rounding."""
 
@@ -37,7 +39,7 @@ class Move:
     by: Expression | str | None
     time: Expression | None
     law: object
-    limits: _Limits
+    limits: Limits
 
 
 @dataclass(frozen=True, eq=False)
@@ -347,7 +349,7 @@ def _named(name: str) -> str:
     return name
 
 
-def _given(*limits: Expression | None) -> _Limits:
+def _given(*limits: Expression | None) -> Limits:
     """Limits of speed, acceleration and jerk that are given, by name."""
     return {name: x for name, x in zip(_PER, limits, strict=True) if x is not None}
 
@@ -365,7 +367,7 @@ def _way(
 
 
 def _timed(
-    what: str, part: Move, by: Expression, common: _Limits, demands: _Demanded
+    what: str, part: Move, by: Expression, common: Limits, demands: _Demanded
 ) -> tuple[RestLaw, Expression]:
     """The law of a move and its time, with what its limits demand."""
     limits = _limits(what, part.limits or common, demands)
@@ -407,7 +409,7 @@ def _timed(
     return law, time
 
 
-def _limits(what: str, limits: _Limits, demands: _Demanded) -> _Limits:
+def _limits(what: str, limits: Limits, demands: _Demanded) -> Limits:
     found: dict[str, Expression] = {}
     for name, value in limits.items():
         found[name] = demands.coordinate(f"{what}: {name}", value, _PER[name])
