@@ -133,7 +133,7 @@ def with_watched(program: Program, sharpness: Sharpness) -> Program:
     """
     inputs = program.instant.sx_in()
     out, corners, p = program.instant(*inputs), program.data.corners, inputs[-1]
-    marks = [smooth.marks(inputs[0], p) for smooth in corners.laws.values()]
+    marks = [smooth.marks(inputs[0], p) for smooth in corners.laws]
     marks += [
         smooth.marks(out[program.seen_columns(name)], p)
         for name, smooth in corners.constraints.items()

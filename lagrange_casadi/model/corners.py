@@ -7,7 +7,7 @@ They are looked for where a mechanism goes, with the parameters that it has ther
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import casadi as ca
@@ -30,39 +30,33 @@ def smooth_constraint(mechanism: Mechanism, constraint: Constraint) -> Smooth | 
     """Condition that a constraint has no kink over its symbols; None if it can have none."""
     curve = constraint.phi if constraint.lift is None else constraint.lift
     seen = ca.vertcat(mechanism.measures.places, mechanism.time)
-    what = _curve(constraint.name, constraint.lift is not None)
+    name = constraint.name
+    what = f"constraint '{name}'" if constraint.lift is None else f"cam '{name}': its lift"
     return Smooth.of(what, curve, seen, mechanism.symbols)
-
-
-def _curve(name: str, cam: bool) -> str:
-    return f"cam '{name}': its lift" if cam else f"constraint '{name}'"
-
-
-def _motion(joint: str) -> str:
-    return f"the motion of joint '{joint}'"
 
 
 @dataclass(frozen=True, eq=False)
 class Corners(Graphs):
-    """Functions of a scene that may have a kink, by joint or name: ``laws`` of motion, and
-    ``constraints``; some are ``cams``.
+    """Functions of a scene that may have a kink: ``laws`` of motion, and ``constraints`` by
+    name.
     """
 
-    laws: Mapping[str, Smooth]
+    laws: tuple[Smooth, ...]
     constraints: Mapping[str, Smooth]
-    cams: Collection[str]
+
+    @property
+    def _each(self) -> tuple[Smooth, ...]:
+        return *self.laws, *self.constraints.values()
 
     @property
     def whole(self) -> tuple[bool, ...]:
         """True for each mark of laws, then of constraints, that counts at whole numbers."""
-        each = (*self.laws.values(), *self.constraints.values())
-        return tuple(bool(whole) for smooth in each for whole in smooth.whole)
+        return tuple(bool(whole) for smooth in self._each for whole in smooth.whole)
 
     @property
     def hidden(self) -> bool:
         """True if a law or constraint cannot be followed, so that its marks are not known."""
-        each = (*self.laws.values(), *self.constraints.values())
-        return not all(smooth.whole.size for smooth in each)
+        return not all(smooth.whole.size for smooth in self._each)
 
     @classmethod
     @symbolic
@@ -73,17 +67,15 @@ class Corners(Graphs):
         found = {
             name: smooth_constraint(m, constraint) for name, constraint in m.constraints.items()
         }
-        laws = _smooth_laws(scene.laws, m.symbols)
-        cams = [name for name, constraint in m.constraints.items() if constraint.lift is not None]
-        return cls(
-            laws, {name: smooth for name, smooth in found.items() if smooth is not None}, cams
-        )
+        constraints = {name: smooth for name, smooth in found.items() if smooth is not None}
+        return cls(tuple(_smooth_laws(scene.laws, m.symbols)), constraints)
 
     def refuse_laws(self, span: tuple[float, float], p: Sequence[float]) -> None:
         """Raise :class:`.DeclarationError` for a motion with a kink within a span of time, for
         parameters ``p``.
         """
-        self._refuse_laws(np.linspace(*span, _SAMPLED), p, at=False)
+        for smooth in self.laws:
+            smooth.refuse(np.linspace(*span, _SAMPLED)[None], p, at=False)
 
     def refuse_isolated_laws(self, t: Array, p: Sequence[float], *, between: bool = False) -> None:
         """Raise :class:`.DeclarationError` for a motion that is other at an instant ``t`` (t,) than
@@ -91,13 +83,8 @@ class Corners(Graphs):
 
         With ``between`` also for one that is so between instants, where peaks may be sought.
         """
-        self._refuse_laws(t, p, between=between)
-
-    def _refuse_laws(self, t: Array, p: Sequence[float], **asked: bool) -> None:
-        for joint, smooth in self.laws.items():
-            found = smooth.kink(t[None], p, **asked)
-            if found is not None:
-                raise found.refused(_motion(joint))
+        for smooth in self.laws:
+            smooth.refuse(t[None], p, between=between)
 
     def refuse_constraints(
         self, arguments: Callable[[str], Array], p: Sequence[float], *, between: bool = False
@@ -109,9 +96,7 @@ class Corners(Graphs):
         that of motions.
         """
         for name, smooth in self.constraints.items():
-            found = smooth.kink(arguments(name), p, between=between)
-            if found is not None:
-                raise found.refused(_curve(name, name in self.cams))
+            smooth.refuse(arguments(name), p, between=between)
 
     def broken_laws(self, t: Array, p: Array) -> npt.NDArray[np.bool_]:
         """Return the designs ``p`` (d, parameters) in which a motion has a kink between the
@@ -119,7 +104,7 @@ class Corners(Graphs):
         """
         found = np.zeros(len(p), bool)
         start, stop = (np.broadcast_to(t[:, k], len(p)) for k in (0, -1))
-        for smooth in self.laws.values():
+        for smooth in self.laws:
             # Most designs share what their motions depend on.
             rows = np.column_stack([start, stop, np.where(smooth.uses, p, 0.0)])
             each, number = np.unique(rows, axis=0, return_inverse=True)
@@ -142,12 +127,8 @@ class Corners(Graphs):
 def _broken_law(smooth: Smooth, rows: bytes) -> npt.NDArray[np.bool_]:
     """Return, for each row of a start, a stop and parameters, whether a law has a kink."""
     start, stop, *p = np.frombuffer(rows).reshape(-1, 2 + smooth.uses.size).T
-    return smooth.broken(_instants(start, stop), np.array(p).T.reshape(start.size, -1))
-
-
-def _instants(start: Array, stop: Array) -> Array:
-    """Paths (d, 1, n) in time."""
-    return np.linspace(start, stop, _SAMPLED, axis=-1)[:, None]
+    paths = np.linspace(start, stop, _SAMPLED, axis=-1)[:, None]
+    return smooth.broken(paths, np.array(p).T.reshape(start.size, -1))
 
 
 def _broken_constraint(smooth: Smooth, paths: Array, p: Array) -> npt.NDArray[np.bool_]:
@@ -158,15 +139,13 @@ def _broken_constraint(smooth: Smooth, paths: Array, p: Array) -> npt.NDArray[np
     return np.asarray(smooth.broken(paths, p)[number.ravel()], bool)
 
 
-def _smooth_laws(laws: Mapping[str, Motion], parameters: ca.SX) -> dict[str, Smooth]:
-    """Check that laws have no kinks in time, by the joint's name.
-
-    Moves go on smoothly by their making, wherever parameters allow them.
+def _smooth_laws(laws: Mapping[str, Motion], parameters: ca.SX) -> Iterator[Smooth]:
+    """Laws that may have kinks in time: moves go on smoothly by their making, wherever parameters
+    allow them, and so do samples.
     """
     t = ca.SX.sym("t")
-    looked_at = {joint: law for joint, law in laws.items() if not (law.knots or law.stretches)}
-    found = {
-        joint: Smooth.of(_motion(joint), law_expression(joint, law, t, parameters), t, parameters)
-        for joint, law in looked_at.items()
-    }
-    return {joint: smooth for joint, smooth in found.items() if smooth is not None}
+    for joint, law in laws.items():
+        if not (law.knots or law.stretches):
+            expression = law_expression(joint, law, t, parameters)
+            smooth = Smooth.of(f"the motion of joint '{joint}'", expression, t, parameters)
+            yield from () if smooth is None else (smooth,)

@@ -11,7 +11,7 @@ there the limits of value and slopes from both sides, taken over distances that 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -65,41 +65,11 @@ _AT_ONCE = 1 << 17
 """Number of instants that are looked at together."""
 
 
-@dataclass(frozen=True)
-class Kink:
-    """A place, by symbol, at which a value or a slope jumps by a part of it, infinite where it has
-    no limit, NaN where that is not known; or is other than on both sides, ``alone``.
+class Kink(NamedTuple):
+    """A place on the path of a number, its ``owner``, at which a value or a slope jumps by a part
+    of it, infinite where it has no limit, NaN where that is not known; or is other than on both
+    sides, ``alone``.
     """
-
-    what: str
-    jump: float
-    alone: bool
-    at: Mapping[str, float]
-
-    def refused(self, what: str) -> DeclarationError:
-        """The error for ``what`` has the kink."""
-        where = ", ".join(f"{name} = {value:.6g}" for name, value in self.at.items())
-        if self.alone:
-            return DeclarationError(
-                f"{what}: its {self.what} where {where} differs from its values on both sides: the"
-                " value is that of this instant alone; expected other instants, or a curve that is"
-                " continuous there: if_else, fabs, sign and floor are not"
-            )
-        if math.isnan(self.jump):
-            return DeclarationError(
-                f"{what}: its {self.what} near {where} changes too fast between two instants for a"
-                " kink to be seen; expected a shorter span, more instants or a slower curve"
-            )
-        does = f"jumps by {100.0 * self.jump:.3g} %" if math.isfinite(self.jump) else "has no limit"
-        return DeclarationError(
-            f"{what}: its {self.what} {does} where {where}: rates would jump there, and"
-            " accelerations would be wrong; expected a curve with a continuous slope, as"
-            " curve(x, y) in place of a table, a polynomial or a Fourier sum"
-        )
-
-
-class _Found(NamedTuple):
-    """A kink of one of many paths: the path's number, and as of :class:`Kink`."""
 
     owner: int
     what: str
@@ -107,10 +77,30 @@ class _Found(NamedTuple):
     alone: bool
     place: Array
 
+    def refusal(self, where: str) -> str:
+        """Reason why what has the kink is refused, in words; ``where`` names the place."""
+        if self.alone:
+            return (
+                f"its {self.what} where {where} differs from its values on both sides: the value is"
+                " that of this instant alone; expected other instants, or a curve that is"
+                " continuous there: if_else, fabs, sign and floor are not"
+            )
+        if math.isnan(self.jump):
+            return (
+                f"its {self.what} near {where} changes too fast between two instants for a kink to"
+                " be seen; expected a shorter span, more instants or a slower curve"
+            )
+        does = f"jumps by {100.0 * self.jump:.3g} %" if math.isfinite(self.jump) else "has no limit"
+        return (
+            f"its {self.what} {does} where {where}: rates would jump there, and accelerations would"
+            " be wrong; expected a curve with a continuous slope, as curve(x, y) in place of a"
+            " table, a polynomial or a Fourier sum"
+        )
+
 
 @dataclass(frozen=True, eq=False)
 class Smooth:
-    """A scalar expression whose slopes must not jump, and its marks.
+    """A scalar expression whose slopes must not jump, and its marks; messages call it ``what``.
 
     ``symbols`` are those of the moving symbols that it depends on. ``marks(x, p)`` count where they
     are zero, or a whole number if ``whole``; what is ``open`` may have no bound there, and may have
@@ -119,6 +109,7 @@ class Smooth:
     along a way. ``uses`` (fixed,) says on which fixed symbols the expression depends.
     """
 
+    what: str
     symbols: tuple[Any, ...]
     marks: Any
     bends: Any
@@ -128,8 +119,8 @@ class Smooth:
 
     @classmethod
     def of(cls, what: str, expression: Expression, moving: ca.SX, fixed: ca.SX) -> Smooth | None:
-        """Make it from an expression, which messages call ``what``, of ``moving`` and ``fixed``
-        symbols; None if nothing can make a kink.
+        """Make it from an expression of ``moving`` and ``fixed`` symbols; None if nothing can make
+        a kink.
 
         Raises :class:`.DeclarationError` for a comparison by == or !=, which says something of
         single instants only.
@@ -161,6 +152,7 @@ class Smooth:
         rows = ca.densify(ca.vertcat(ca.SX(0, 1), *found.values()))
         kinds = np.array([key[1:] for key in found], bool).reshape(-1, 2)
         return cls(
+            what,
             tuple(symbols),
             ca.Function("marks", [x, fixed], [rows], {"cse": True}),
             ca.Function("bends", [x, fixed, way], [bends], {"cse": True}),
@@ -184,12 +176,16 @@ class Smooth:
         """
         paths, p = np.asarray(path, float)[None], np.array(values, float)[None]
         found = self._kinks(paths, p, between, at)
-        if not found:
-            return None
-        worst = max(found, key=lambda one: (not one.alone, one.what == "value", one.jump))
-        names = (symbol.name() for symbol in self.symbols)
-        place = dict(zip(names, worst.place.tolist(), strict=True))
-        return Kink(worst.what, worst.jump, worst.alone, place)
+        return max(
+            found, key=lambda one: (not one.alone, one.what == "value", one.jump), default=None
+        )
+
+    def refuse(self, path: Array, values: Sequence[float], **asked: bool) -> None:
+        """Raise :class:`.DeclarationError` for the worst kink, as of :meth:`kink`."""
+        if worst := self.kink(path, values, **asked):
+            places = zip(self.symbols, worst.place.tolist(), strict=True)
+            where = ", ".join(f"{symbol.name()} = {value:.6g}" for symbol, value in places)
+            raise DeclarationError(f"{self.what}: {worst.refusal(where)}")
 
     def broken(self, paths: Array, p: Array) -> Flags:
         """Return which paths (d, symbols, n) have a kink, or a place alone, for values ``p`` (d,
@@ -203,7 +199,7 @@ class Smooth:
             found[[start + k for k in owners]] = True
         return found
 
-    def _kinks(self, paths: Array, p: Array, between: bool, at: bool) -> list[_Found]:
+    def _kinks(self, paths: Array, p: Array, between: bool, at: bool) -> list[Kink]:
         """Everything that is found along paths (d, symbols, n) for values ``p`` (d, fixed)."""
         with np.errstate(all="ignore"):
             line = Line(paths, p)
@@ -337,7 +333,7 @@ class Smooth:
 
     def _judged(
         self, line: Line, places: Places, usual: Array, known: Array, between: bool
-    ) -> Iterator[_Found]:
+    ) -> Iterator[Kink]:
         """Places at which value or slopes have other limits on both sides, or are other than both
         limits.
         """
@@ -361,7 +357,7 @@ class Smooth:
             row = int((alone if lone else kinks)[:, k].argmax())
             jump = 0.0 if lone else float(part[row : 1 if row == 0 else -1, k].max())
             what = ("value", "slope", "curvature")[self._kinds[row]]
-            yield _Found(int(line.owner[places.step[k]]), what, jump, lone, at[:, k])
+            yield Kink(int(line.owner[places.step[k]]), what, jump, lone, at[:, k])
 
     def _alone(
         self, line: Line, places: Places, share: Array, before: Side, after: Side, least: Array
@@ -391,7 +387,7 @@ def _within(here: Array, sides: Sequence[Array], least: Array) -> Flags:
     return np.asarray((here >= low) & (here <= high) | ~np.isfinite(here))
 
 
-def _inconsistent(bends: ca.Function, line: Line) -> Iterator[_Found]:
+def _inconsistent(bends: ca.Function, line: Line) -> Iterator[Kink]:
     """Steps over which value and slope do not change by the integrals of slope and curvature,
     however often they are halved: Simpson's rule misses these by h^5.
 
@@ -423,7 +419,7 @@ def _inconsistent(bends: ca.Function, line: Line) -> Iterator[_Found]:
     for k, place in enumerate(line.at(step, high).T):
         row = 1 if part[0, k] <= _SAME else 0
         jump = float(part[row, k]) if high[k] - low[k] < _LEAST else math.nan
-        yield _Found(int(line.owner[step[k]]), ("value", "slope")[row], jump, False, place)
+        yield Kink(int(line.owner[step[k]]), ("value", "slope")[row], jump, False, place)
 
 
 _TRUTHS = (ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_NOT, ca.OP_AND, ca.OP_OR)

@@ -80,14 +80,16 @@ def refused(scene, seeds):
             else smooth.kink(TIMES, (k,), between=True, at=False)
         )
         assert (
-            told or status != Status.CORNER or told_by_limits(scaled, k, lone.at["t"]) == "isolated"
+            told
+            or status != Status.CORNER
+            or told_by_limits(scaled, k, lone.place[0]) == "isolated"
         ), f"{said}: {lone}"
         # A design may be refused for something else before its corners are looked for.
         assert not told or status != Status.OK, said
         if status in (Status.OK, Status.CORNER) and (told or broken):
             place = smooth and smooth.kink(TIMES, (k,), at=False)
             assert told == broken or (
-                told and place is not None and shown(program, k, place.at["t"])
+                told and place is not None and shown(program, k, place.place[0])
             ), said
         many[broken] += 1
     return many

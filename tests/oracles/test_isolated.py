@@ -55,7 +55,7 @@ def compare(some):
             kink = smooth.kink(HIT, (), at=False)
             # What limits say of zero, they say of zero alone.
             assert kink is None or (
-                abs(kink.at["t"]) > 0.1 and shown(program, 0.0, kink.at["t"], -1.0)
+                abs(kink.place[0]) > 0.1 and shown(program, 0.0, kink.place[0], -1.0)
             ), f"{name}: {program}: {kink}"
             if kink is not None:
                 continue
@@ -68,7 +68,7 @@ def compare(some):
         assert [one is not None for one in found] == [alone, alone, False], (
             f"{name}: {program}: {told}, {found}"
         )
-        assert not alone or (found[0].alone and abs(found[0].at["t"]) < 1e-6)
+        assert not alone or (found[0].alone and abs(found[0].place[0]) < 1e-6)
         many.setdefault(told, set()).add(name)
     return many
 
