@@ -80,7 +80,7 @@ def held_by(
         if isinstance(of, LoopEquations)
         else (of.multiplier, resting.at_state)
     )
-    for measure in resting.mechanism.measures.asked:
+    for measure in resting.mechanism.measures.asked.values():
         symbols = ca.vertcat(*(measure.places if isinstance(of, LoopEquations) else measure.rates))
         if not ca.depends_on(expression, symbols):
             continue

@@ -55,7 +55,9 @@ def assemble(
     matter is weighed in (d'Alembert).
     """
     measured = [
-        measure.axis.coordinate for measure in mechanism.measures.asked if measure.axis is not None
+        measure.axis.coordinate
+        for measure in mechanism.measures.asked.values()
+        if measure.axis is not None
     ]
     carried = coordinates_of(mechanism, tree, driven, {*measured, *pushed})
     upward = times(-1, mechanism.gravity)

@@ -103,7 +103,7 @@ class Grown:
     def _measured(self, expression: Expression, *, counted: bool) -> ca.SX:
         symbols: list[Any] = []
         values: list[Any] = []
-        for measure in self.mechanism.measures.asked:
+        for measure in self.mechanism.measures.asked.values():
             of = measure.of
             if not ca.depends_on(
                 ca.SX(expression),

@@ -100,7 +100,9 @@ def find_two_force_links(mechanism: Mechanism, driven: Collection[str]) -> tuple
         for body in joint.bodies:
             ends.setdefault(body, []).append(joint)
     checked = {
-        measure.of.name for measure in mechanism.measures.asked if isinstance(measure.of, Joint)
+        measure.of.name
+        for measure in mechanism.measures.asked.values()
+        if isinstance(measure.of, Joint)
     }
     checked |= {load.joint.name for load in mechanism.loads.values() if isinstance(load, Friction)}
     driven_joints = {
@@ -228,7 +230,7 @@ def _marked(mechanism: Mechanism, link: Link) -> Iterator[Point]:
     """Points of a link where something acts, or is measured."""
     for load in mechanism.loads.values():
         yield from (point for point in load.points if point.body is link)
-    for measure in mechanism.measures.asked:
+    for measure in mechanism.measures.asked.values():
         if isinstance(measure.of, Point) and measure.of.body is link:
             yield measure.of
 

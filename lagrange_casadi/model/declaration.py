@@ -11,6 +11,7 @@ import casadi as ca
 from ..base.arguments import public
 from ..base.scalars import column
 from ..base.symbolic import Graphs, symbolic
+from ..errors import DeclarationError, shown
 from .constraints import Constraint, Row
 from .declared_parts import (
     Asked,
@@ -29,7 +30,7 @@ from .declared_parts import (
     Vector,
 )
 from .drives import Drive
-from .expressions import check_name, value_of
+from .expressions import check_name
 from .fitted import Fittings
 from .joints import Axis, Joint
 from .loads import Load
@@ -133,6 +134,21 @@ class Declaration(Graphs):
         DeclarationError
             If it has other symbols, or a parameter has no value.
         """
-        return value_of(
-            expression, {name: one.symbol for name, one in self.parameters.items()}, values
-        )
+        if not isinstance(expression, ca.SX):
+            try:
+                return float(expression)
+            except (TypeError, ValueError, OverflowError, RuntimeError):
+                raise DeclarationError(
+                    f"number: expected an expression in parameters, got {shown(expression)}"
+                ) from None
+        if missing := [name for name in self.parameters if name not in values]:
+            raise DeclarationError(
+                f"number: expected values of all parameters, and {', '.join(missing)} have none"
+            )
+        try:
+            numbers = column(values[name] for name in self.parameters)
+            return float(ca.evalf(ca.substitute(expression, self.symbols, numbers)))
+        except (RuntimeError, NotImplementedError):
+            raise DeclarationError(
+                f"number: expected an expression of parameters only, got {shown(expression)}"
+            ) from None

@@ -28,11 +28,11 @@ _UNEVEN = 1e-9
 """Fraction of a step that is rounding."""
 
 
-def checked(what: str, even: EvenPoints, unit: str = "1") -> EvenPoints:
-    """Even points in numbers, of a unit.
+def checked(what: str, even: EvenPoints, unit: str = "1", *, falls: bool = False) -> EvenPoints:
+    """Even points in numbers, of a unit, which may be those of a way that ``falls``.
 
     Raises :class:`DeclarationError` for a count below 1, ends that are not finite, or too far apart
-    for a double, fall, or are one.
+    for a double, are one, or fall where they may not.
     """
     try:
         if isinstance(even, str | Mapping) or len(even) != 3:
@@ -57,9 +57,9 @@ def checked(what: str, even: EvenPoints, unit: str = "1") -> EvenPoints:
         raise DeclarationError(
             f"{what}: START and STOP are too far apart, got {start:g} and {stop:g}"
         )
-    if stop < start or (count > 1 and stop == start):
+    if (stop < start and not falls) or (count > 1 and stop == start):
         raise DeclarationError(f"{what}: STOP must be after START, got {start:g} and {stop:g}")
-    if count == 1 and stop > start:
+    if count == 1 and stop != start:
         raise DeclarationError(
             f"{what}: COUNT must be 2 or more to reach from {start:g} to {stop:g}, got 1"
         )

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 import casadi as ca
 
 from ..base.interpret import written_out
-from ..base.scalars import column
 from ..base.units import Unit, number, typed
 from ..errors import DeclarationError, NumberError, shown
 from .declared_parts import Expression
@@ -145,30 +144,3 @@ def expressed(
 def plain(value: Expression) -> Expression:
     """A number where an expression is one."""
     return float(value) if isinstance(value, ca.SX) and value.is_constant() else value
-
-
-def value_of(
-    expression: Expression, symbols: Mapping[str, ca.SX], values: Mapping[str, float]
-) -> float:
-    """The value of an expression in parameters.
-
-    Raises :class:`.DeclarationError` for what is none, or lacks values.
-    """
-    if not isinstance(expression, ca.SX):
-        try:
-            return float(expression)
-        except (TypeError, ValueError, OverflowError, RuntimeError):
-            raise DeclarationError(
-                f"number: expected an expression in parameters, got {shown(expression)}"
-            ) from None
-    if missing := [name for name in symbols if name not in values]:
-        raise DeclarationError(
-            f"number: expected values of all parameters, and {', '.join(missing)} have none"
-        )
-    try:
-        numbers = column(values[name] for name in symbols)
-        return float(ca.evalf(ca.substitute(expression, column(symbols.values()), numbers)))
-    except (RuntimeError, NotImplementedError):
-        raise DeclarationError(
-            f"number: expected an expression of parameters only, got {shown(expression)}"
-        ) from None

@@ -21,7 +21,6 @@ from .mechanism import Mechanism
 from .motion_laws import Motion
 
 _NOTHING = RigidMass(0.0, ZERO, (ZERO, ZERO, ZERO))
-_NAMES = {1: ("",), 2: (".x", ".y"), 3: (".x", ".y", ".angle")}
 
 
 def laws_of(
@@ -35,30 +34,27 @@ def laws_of(
     found: dict[str, Motion] = {}
     coordinates = mechanism.coordinates
     for name, laws in motion.items():
-        given = (
-            (laws,)
-            if isinstance(laws, Motion) or not isinstance(laws, (tuple, list))
-            else tuple(laws)
-        )
+        given = tuple(laws) if isinstance(laws, (tuple, list)) else (laws,)
+        names, what, wanted = [name], "joint", "one law"
         if name in mechanism.joints:
             joint = mechanism.joints[name]
             _check_joint(joint)
-            if len(joint.axes) > 1:
-                found |= _along_axes(joint, given)
-                continue
-            expected, what = 1, "joint"
+            names = [axis.coordinate for axis in joint.axes]
+            if len(names) > 1:
+                wanted = f"{len(names)} laws, of {', '.join(names)}"
         elif name in coordinates:
-            expected, what = 1, "joint"
+            pass
         elif mechanism.space and (name in mechanism.paths or name in mechanism.bodies):
             raise DeclarationError(
                 f"motion of '{name}': in space a point or a pose has no motion of its own; declare"
                 " a free() joint from the ground to it, give that joint the motion, and list the"
                 " joints that drive it in drives="
             )
-        elif name in mechanism.paths:
-            expected, what = 2, "path"
-        elif name in mechanism.bodies and mechanism.bodies[name] is not mechanism.ground:
-            expected, what = (3 if mechanism.bodies[name].oriented else 2), "body"
+        elif name in mechanism.paths or (name in mechanism.bodies and name != "ground"):
+            names, wanted = [f"{name}.x", f"{name}.y"], "two laws, of x and y"
+            what = "path" if name in mechanism.paths else "body"
+            if what == "body" and mechanism.bodies[name].oriented:
+                names, wanted = [*names, f"{name}.angle"], "three laws, of x, y and the angle"
         else:
             bodies = [body.name for body in mechanism.moving]
             raise UnknownNameError(
@@ -66,22 +62,17 @@ def laws_of(
                 name,
                 [*coordinates, *mechanism.paths, *bodies],
             )
+        if len(given) != len(names):
+            raise DeclarationError(
+                f"motion of {what} '{name}': expected {wanted}, got {len(given)}"
+            )
         for law in given:
             if not isinstance(law, Motion):
                 raise DeclarationError(
                     f"motion of {what} '{name}': expected a law of lagrange_casadi.motion, got"
                     f" {law!r}"
                 )
-        if len(given) != expected or (expected > 1 and isinstance(laws, Motion)):
-            wanted = {
-                1: "one law",
-                2: "two laws, of x and y",
-                3: "three laws, of x, y and the angle",
-            }[expected]
-            raise DeclarationError(
-                f"motion of {what} '{name}': expected {wanted}, got {len(given)}"
-            )
-        found |= {f"{name}{end}": law for end, law in zip(_NAMES[expected], given, strict=True)}
+        found |= zip(names, given, strict=True)
     for name, law in found.items():
         unit = ANGLE if kind_of(mechanism, name) == "angle" else LENGTH
         if law.unit not in ("", unit):
@@ -101,19 +92,6 @@ def point_of(mechanism: Mechanism, name: str) -> Point:
     """The point that guides move: of a path, or the base or origin of a body."""
     path = mechanism.paths.get(name)
     return path.point if path else Point(mechanism.bodies[name], 0.0, 0.0)
-
-
-def _along_axes(joint: Joint, given: Sequence[Motion]) -> dict[str, Motion]:
-    """The motions of a joint's several axes, in their sequence."""
-    names, what = [axis.coordinate for axis in joint.axes], f"motion of joint '{joint.name}'"
-    if len(given) != len(names):
-        raise DeclarationError(
-            f"{what}: expected {len(names)} laws, of {', '.join(names)}, got {len(given)}"
-        )
-    for law in given:
-        if not isinstance(law, Motion):
-            raise DeclarationError(f"{what}: expected laws of lagrange_casadi.motion, got {law!r}")
-    return dict(zip(names, given, strict=True))
 
 
 def _check_joint(joint: Joint) -> None:

@@ -211,15 +211,7 @@ class NumericDensity:
     @property
     def mass(self) -> float:
         """The whole mass [kg]."""
-        spans = zip(self.breaks, self.breaks[1:], self.cells, strict=False)
-        terms = (
-            coefficient * part / (j + 1)
-            for a, b, cell in spans
-            for j, (coefficient, part) in enumerate(
-                zip(cell, _differences(b, a, len(cell)), strict=True)
-            )
-        )
-        return sum(terms, 0.0)
+        return float(self.tails(0.0)[0])
 
     def tails(self, u: Operand) -> tuple[Any, Any, Any]:
         """T0, T1 and T2 at a ratio."""

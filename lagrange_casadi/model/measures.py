@@ -4,7 +4,6 @@ direction.
 
 from __future__ import annotations
 
-import operator
 from dataclasses import dataclass, field
 
 import casadi as ca
@@ -33,62 +32,58 @@ class Measure:
 class Measures:
     """The measures that a mechanism's loads and constraints have asked for, each once."""
 
-    asked: list[Measure] = field(default_factory=list)
+    asked: dict[tuple[str | float, ...], Measure] = field(default_factory=dict)
     components: str = "xy"
 
     def joint(self, joint: Joint, axis: Axis) -> Measure:
         """The measure of a joint's coordinate along an axis."""
-        return self._find(joint, (axis.coordinate,), axis)
+        return self._found((axis.coordinate,), joint, (axis.coordinate,), axis)
 
     def link(self, link: Link) -> Measure:
         """The measure of a link's direction."""
-        return self._find(link, (f"{link.name}_angle",))
+        return self._found((link.name, "angle"), link, (f"{link.name}_angle",))
 
     def point(self, point: Point) -> Measure:
         """The measure of a point's place."""
-        for measure in self.asked:
-            known = measure.of
-            if (
-                isinstance(known, Point)
-                and known.body is point.body
-                and all(map(operator.is_, known.place, point.place))
-            ):
-                return measure
-        return self._find(
-            point, tuple(f"{point.body.name}_{component}" for component in self.components)
-        )
+        names = tuple(f"{point.body.name}_{component}" for component in self.components)
+        place = (x if isinstance(x, float) else x.element_hash() for x in point.place)
+        return self._found((point.body.name, *place), point, names)
 
     @property
     def places(self) -> ca.SX:
         """All symbols of coordinates, places and directions, one column."""
-        return column(symbol for measure in self.asked for symbol in measure.places)
+        return column(symbol for measure in self.asked.values() for symbol in measure.places)
 
     @property
     def rates(self) -> ca.SX:
         """All symbols of rates and velocities, one column."""
-        return column(symbol for measure in self.asked for symbol in measure.rates)
+        return column(symbol for measure in self.asked.values() for symbol in measure.rates)
 
     @property
     def accelerations(self) -> list[ca.SX]:
         """All symbols of accelerations, one by one."""
-        return [symbol for measure in self.asked for symbol in measure.accelerations]
+        return [symbol for measure in self.asked.values() for symbol in measure.accelerations]
 
     @property
     def symbols(self) -> list[ca.SX]:
         """All symbols of places and rates, one by one."""
-        return [symbol for measure in self.asked for symbol in (*measure.places, *measure.rates)]
+        return [
+            symbol
+            for measure in self.asked.values()
+            for symbol in (*measure.places, *measure.rates)
+        ]
 
-    def _find(
-        self, of: Joint | Point | Link, names: tuple[str, ...], axis: Axis | None = None
+    def _found(
+        self,
+        key: tuple[str | float, ...],
+        of: Joint | Point | Link,
+        names: tuple[str, ...],
+        axis: Axis | None = None,
     ) -> Measure:
-        for measure in self.asked:
-            if measure.of is of and (measure.axis and measure.axis.coordinate) == (
-                axis and axis.coordinate
-            ):
-                return measure
-        places, rates, changes = (
-            tuple(ca.SX.sym(f"{name}{end}") for name in names)
-            for end in ("", "_rate", "_acceleration")
-        )
-        self.asked.append(Measure(of, places, rates, changes, axis))
-        return self.asked[-1]
+        if key not in self.asked:
+            places, rates, changes = (
+                tuple(ca.SX.sym(f"{name}{end}") for name in names)
+                for end in ("", "_rate", "_acceleration")
+            )
+            self.asked[key] = Measure(of, places, rates, changes, axis)
+        return self.asked[key]

@@ -811,11 +811,10 @@ class Mechanism(Declaration):
         k, free = self._load(name, stiffness, "N m/rad"), self._load(name, angle, "rad")
         c = self._load(name, damping, "N m s/rad")
         torque = -(k * (self.coordinate(joint) - free)) - c * self.rate(joint)
-        self.loads[name] = load = replace(self._turn_back(name, joint, torque), coiled=True)
-        return load
-
-    def _turn_back(self, name: str, joint: Joint, value: Expression) -> Torque:
-        return self.torque(name, joint.child, value, against=joint.parent)
+        axis = times(torque, joint.turned.resolve(joint.triad[0]))
+        load = self._torque(name, joint.child, axis, joint.parent, turning=self.space)
+        self.loads[name] = coil = replace(load, coiled=True)
+        return coil
 
     def friction(
         self,

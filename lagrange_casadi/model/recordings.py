@@ -396,12 +396,8 @@ def _law(
     start, rate = float(t[0]), climb * size
 
     def graph(time: Expression) -> Expression:
-        at = time if isinstance(stretch, float) and stretch == 1.0 else time / stretch
-        value = size * found(at)
-        if rate:
-            value = value + rate * (at - start)
-        value = value if isinstance(ratio, float) and ratio == 1.0 else ratio * value
-        return value if isinstance(offset, float) and offset == 0.0 else offset + value
+        at = time / stretch
+        return offset + ratio * (size * found(at) + rate * (at - start))
 
     every = f", resampled at {points} equally spaced times" if points else ""
     smoothed = f", smoothed by {noise:.3g} {recording.unit}" if noise else ""
@@ -418,9 +414,6 @@ def _law(
 
 
 def _curve(name: str, t: Array, values: Array, periodic: bool, noise: float) -> Curve:
-    values = values.copy()
-    if periodic:
-        values[-1] = values[0]
     try:
         return curve(t.tolist(), values.tolist(), periodic=periodic, smoothing=noise)
     except DeclarationError as error:

@@ -277,13 +277,13 @@ _LAWS: dict[str, RestLaw] = {
             lambda u: (1.0 - ca.cos(math.pi * u)) / 2.0,
             (math.pi**2 / 2.0, 0.0),
         ),
+        trapezoid(),
+        s_curve(),
     )
 }
-"""The laws that have no numbers of their own."""
+"""The laws by name, those of shares with the usual ones."""
 
-_SHAPED: dict[str, Callable[[], RestLaw]] = {"trapezoid": trapezoid, "s_curve": s_curve}
-
-LAWS = (*_LAWS, *_SHAPED)
+LAWS = (*_LAWS,)
 """The names of all laws."""
 
 
@@ -299,8 +299,6 @@ def rest_law(what: str, law: object) -> RestLaw:
             f"{what}: law: expected a name, trapezoid(SHARE) or s_curve(SHARE, ROUNDING), got"
             f" {law!r}"
         )
-    if law in _SHAPED:
-        return _SHAPED[law]()
     if law not in _LAWS:
         raise UnknownNameError("law", law, LAWS, place=what)
     return _LAWS[law]

@@ -10,7 +10,6 @@ from typing import ClassVar
 from ..base.arguments import public
 from ..base.rotation import Rotation
 from ..base.symbolic import symbolic
-from ..base.vectors import times
 from ..errors import DeclarationError, check_kind
 from .beams.beam import Beam
 from .declared_parts import Body, Expression, Ground, Link, Point, PointMass, Vector
@@ -551,10 +550,6 @@ class SpatialMechanism(Mechanism):
         Torque
         """
         return self._torque(name, point, (x, y, z), against, turning)
-
-    def _turn_back(self, name: str, joint: Joint, value: Expression) -> Torque:
-        x, y, z = times(value, joint.turned.resolve(joint.triad[0]))
-        return self.torque(name, joint.child, x=x, y=y, z=z, against=joint.parent, turning=True)
 
     def line_load(
         self,

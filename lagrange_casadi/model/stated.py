@@ -267,7 +267,7 @@ def _seen(mechanism: Mechanism, expression: ca.SX) -> list[_Measured]:
 
 
 def _measured(mechanism: Mechanism) -> Iterator[_Measured]:
-    for measure in mechanism.measures.asked:
+    for measure in mechanism.measures.asked.values():
         if isinstance(measure.of, Point):
             body, place = measure.of.body.name, measure.of.place
             entries = [Entry(component, body, place) for component in _COMPONENTS]

@@ -17,6 +17,7 @@ import numpy.typing as npt
 
 from ..base.arrays import Array, Operand
 from ..base.brief import Brief
+from ..base.scalars import called
 from ..base.tables import ANGLE, LENGTH
 from ..base.units import quantity
 from ..errors import DeclarationError, UnknownNameError, shown
@@ -314,11 +315,7 @@ def _read(
     at as :func:`.checked` does.
     """
     if not isinstance(even, Sequence) or not any(isinstance(bound, ca.SX) for bound in even[:2]):
-        if what == "t":
-            return checked(what, even, unit)
-        low, high, count = checked(what, _rising(even))
-        falls = float(even[0]) > float(even[1])
-        return (high, low, count) if falls else (low, high, count)
+        return checked(what, even, unit, falls=what == "over")
     if len(even) != 3:
         raise DeclarationError(f"{what}: expected (start, stop, count), got {shown(even)}")
     names = ("START", "STOP")
@@ -353,14 +350,6 @@ def _bound(name: str, bound: Expression, unit: str) -> Operand:
     return found
 
 
-def _rising(even: Times) -> Expression:
-    """Interval with the lesser end first, if that is known."""
-    try:
-        return (even[1], even[0], *even[2:]) if even[1] < even[0] else even
-    except (TypeError, IndexError):
-        return even
-
-
 def _written(mechanism: Mechanism, expression: ca.SX) -> str:
     return str(
         ca.Function(
@@ -377,9 +366,7 @@ def _function(written: str) -> ca.Function:
 def _values(bound: Bound, p: Array) -> Array:
     if not isinstance(bound, str):
         return np.full(len(p), float(bound))
-    if not len(p):
-        return np.zeros(0)
-    return np.asarray(_function(bound)(p.T).full(), float).ravel()
+    return np.asarray(called(_function(bound), p.T)[0])
 
 
 def _text(written: str, symbols: ca.SX) -> str:

@@ -113,7 +113,7 @@ class Rescaling:
         m = self.given.mechanism
         self.slides = {n for n, (_, axis) in m.coordinates.items() if axis.kind == "slide"}
         sizes = [(m.time, "s")]
-        for measure in m.measures.asked:
+        for measure in m.measures.asked.values():
             slides = measure.axis.kind == "slide" if measure.axis else hasattr(measure.of, "place")
             for row, per in ((measure.places, ""), (measure.rates, "/s")):
                 sizes += [(symbol, ("m" if slides else "1") + per) for symbol in row]
