@@ -119,7 +119,11 @@ class Corners(Graphs):
         """
         found = np.zeros(len(p), bool)
         for name, smooth in self.constraints.items():
-            found |= _broken_constraint(smooth, arguments(name), np.where(smooth.uses, p, 0.0))
+            # Designs often share a cam's coordinates.
+            paths, known = arguments(name), np.where(smooth.uses, p, 0.0)
+            rows = np.concatenate([paths.reshape(len(paths), -1), known], axis=1)
+            _, which, number = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+            found |= smooth.broken(paths[which], known[which])[number.ravel()]
         return found
 
 
@@ -129,14 +133,6 @@ def _broken_law(smooth: Smooth, rows: bytes) -> npt.NDArray[np.bool_]:
     start, stop, *p = np.frombuffer(rows).reshape(-1, 2 + smooth.uses.size).T
     paths = np.linspace(start, stop, _SAMPLED, axis=-1)[:, None]
     return smooth.broken(paths, np.array(p).T.reshape(start.size, -1))
-
-
-def _broken_constraint(smooth: Smooth, paths: Array, p: Array) -> npt.NDArray[np.bool_]:
-    """Return which paths (d, symbols, t) have a kink; designs often share a cam's coordinates."""
-    rows = np.concatenate([paths.reshape(len(paths), -1), p], axis=1)
-    _, which, number = np.unique(rows, axis=0, return_index=True, return_inverse=True)
-    paths, p = paths[which], p[which]
-    return np.asarray(smooth.broken(paths, p)[number.ravel()], bool)
 
 
 def _smooth_laws(laws: Mapping[str, Motion], parameters: ca.SX) -> Iterator[Smooth]:

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import ClassVar, Literal, TypeAlias
 
 import casadi as ca
 
@@ -73,10 +73,8 @@ class Body(Brief):
 
     name: str
 
-    @property
-    def oriented(self) -> bool:
-        """True if it has a direction of its own."""
-        return True
+    oriented: ClassVar[bool] = True
+    """True if it has a direction of its own."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -213,10 +211,7 @@ class PointMass(Body):
 
     mass: Expression
 
-    @property
-    def oriented(self) -> bool:
-        """False: it has none."""
-        return False
+    oriented: ClassVar[bool] = False
 
 
 @dataclass(frozen=True, eq=False, repr=False)

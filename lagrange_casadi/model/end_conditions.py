@@ -19,6 +19,19 @@ Ends = tuple[End, End]
 ENDS: tuple[End, ...] = ("pinned", "clamped", "free", "guided")
 """Supports of a beam's end: its place, its place and slope, not at all, its slope alone."""
 
+_SUPPORTS: dict[tuple[str, str], Ends] = {
+    ("", ""): ("free", "free"),
+    ("turns", ""): ("pinned", "free"),
+    ("", "turns"): ("free", "pinned"),
+    ("turns", "turns"): ("pinned", "pinned"),
+    ("held", ""): ("clamped", "free"),
+    ("", "held"): ("free", "clamped"),
+    ("held", "turns"): ("clamped", "free"),
+    ("turns", "held"): ("free", "clamped"),
+    ("held", "held"): ("clamped", "guided"),
+}
+"""Supports of base and tip by how joints in a plane hold them, as of :func:`held_ends`."""
+
 
 @public
 def effective_lengths(description: Description, link: str) -> tuple[float, float]:
@@ -66,18 +79,10 @@ def effective_lengths(description: Description, link: str) -> tuple[float, float
 def ends_of(description: Description, link: str) -> Ends:
     """Supports of base and tip, by the rule for columns."""
     base, tip = held_ends(description, link)
-    space = description.space
-    if not (base or tip):
-        return "free", "free"
-    if base and tip:
-        if space or (base == tip == "turns"):
-            return "pinned", "pinned"
-        if base == tip:
-            return "clamped", "guided"
-        return ("clamped", "free") if base == "held" else ("free", "clamped")
-    if space or "held" in (base, tip):
-        return ("clamped", "free") if base else ("free", "clamped")
-    return ("pinned", "free") if base else ("free", "pinned")
+    if description.space:
+        alone = "turns" if base and tip else "held"
+        base, tip = base and alone, tip and alone
+    return _SUPPORTS[base, tip]
 
 
 def held_ends(description: Description, link: str) -> tuple[str, str]:

@@ -11,7 +11,7 @@ there the limits of value and slopes from both sides, taken over distances that 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -430,45 +430,9 @@ def marks_of(operation: int, operands: Sequence[ca.SX]) -> Iterator[tuple[Expres
     undefined there.
     """
     x, y = operands[0], operands[-1]
-    if operation in (ca.OP_LE, ca.OP_FMIN, ca.OP_FMAX, ca.OP_LT):
-        yield (y - x if operation == ca.OP_LT else x - y), False, False
-    elif operation in (ca.OP_FABS, ca.OP_SIGN, ca.OP_COPYSIGN):
-        yield from ((one, False, False) for one in operands)
-    elif operation in (ca.OP_EQ, ca.OP_NE):
-        yield x - y, False, False
-    elif operation in (ca.OP_NOT, ca.OP_IF_ELSE_ZERO):
-        yield from ((one, False, False) for one in _zeros(x))
-    elif operation in (ca.OP_AND, ca.OP_OR):
-        yield from ((mark, False, False) for one in operands for mark in _zeros(one))
-    elif operation in (ca.OP_FLOOR, ca.OP_CEIL):
-        # What a table has for a cell is a whole number already.
-        if not is_entry(x):
-            yield (x if operation == ca.OP_FLOOR else -x), True, False
-    elif operation in (ca.OP_FMOD, ca.OP_REMAINDER):
-        yield x / y + (0.5 if operation == ca.OP_REMAINDER else 0.0), True, False
-        yield y, False, True
-    elif operation in (ca.OP_DIV, ca.OP_INV):
-        yield y, False, True
-    elif operation == ca.OP_TAN:
-        yield ca.cos(x), False, True
-    elif operation in (ca.OP_SQRT, ca.OP_LOG):
-        yield x, False, True
-    elif operation == ca.OP_LOG1P:
-        yield 1.0 + x, False, True
-    elif operation in (ca.OP_ASIN, ca.OP_ACOS, ca.OP_ATANH):
-        yield 1.0 - x * x, False, True
-    elif operation == ca.OP_ACOSH:
-        yield x - 1.0, False, True
-    elif operation == ca.OP_HYPOT:
-        yield x * x + y * y, False, True
-    elif operation == ca.OP_ATAN2:
-        # Its cut is where the first is zero and the second negative.
-        yield x, False, False
-        yield x * x + y * y, False, True
-    elif operation in (ca.OP_POW, ca.OP_CONSTPOW) and not (
-        y.is_constant() and float(y) >= 0.0 and float(y).is_integer()
-    ):
-        yield x, False, True
+    for marks, whole, crossing in ((_CROSSED, 0, 0), (_WHOLE, 1, 0), (_UNDEFINED, 0, 1)):
+        if operation in marks:
+            yield from ((mark, bool(whole), bool(crossing)) for mark in marks[operation](x, y))
 
 
 def _zeros(x: ca.SX) -> Iterator[Expression]:
@@ -477,3 +441,46 @@ def _zeros(x: ca.SX) -> Iterator[Expression]:
     """
     if x.op() not in _TRUTHS:
         yield from (ca.fabs(x), x)
+
+
+def _unless_natural(x: ca.SX, y: ca.SX) -> list[ca.SX]:
+    """The mark of a power; one with a natural number as exponent has none."""
+    natural = y.is_constant() and float(y) >= 0.0 and float(y).is_integer()
+    return [] if natural else [x]
+
+
+_Marks = dict[int, Callable[[Any, Any], Iterable[Any]]]
+
+_CROSSED: _Marks = {
+    ca.OP_LT: lambda x, y: [y - x],
+    **dict.fromkeys((ca.OP_LE, ca.OP_FMIN, ca.OP_FMAX), lambda x, y: [x - y]),
+    **dict.fromkeys((ca.OP_EQ, ca.OP_NE), lambda x, y: [x - y]),
+    **dict.fromkeys((ca.OP_FABS, ca.OP_SIGN), lambda x, _: [x]),
+    ca.OP_COPYSIGN: lambda x, y: [x, y],
+    **dict.fromkeys((ca.OP_NOT, ca.OP_IF_ELSE_ZERO), lambda x, _: _zeros(x)),
+    **dict.fromkeys((ca.OP_AND, ca.OP_OR), lambda x, y: [*_zeros(x), *_zeros(y)]),
+    # Its cut is where the first is zero and the second negative.
+    ca.OP_ATAN2: lambda x, _: [x],
+}
+"""Marks at whose zeros an operation of two operands, or of one alone, has a kink or jumps."""
+
+_WHOLE: _Marks = {
+    # What a table has for a cell is a whole number already.
+    ca.OP_FLOOR: lambda x, _: [] if is_entry(x) else [x],
+    ca.OP_CEIL: lambda x, _: [] if is_entry(x) else [-x],
+    ca.OP_FMOD: lambda x, y: [x / y],
+    ca.OP_REMAINDER: lambda x, y: [x / y + 0.5],
+}
+"""Marks at whose whole numbers an operation jumps."""
+
+_UNDEFINED: _Marks = {
+    **dict.fromkeys((ca.OP_FMOD, ca.OP_REMAINDER, ca.OP_DIV, ca.OP_INV), lambda _, y: [y]),
+    ca.OP_TAN: lambda x, _: [ca.cos(x)],
+    **dict.fromkeys((ca.OP_SQRT, ca.OP_LOG), lambda x, _: [x]),
+    ca.OP_LOG1P: lambda x, _: [1.0 + x],
+    **dict.fromkeys((ca.OP_ASIN, ca.OP_ACOS, ca.OP_ATANH), lambda x, _: [1.0 - x * x]),
+    ca.OP_ACOSH: lambda x, _: [x - 1.0],
+    **dict.fromkeys((ca.OP_HYPOT, ca.OP_ATAN2), lambda x, y: [x * x + y * y]),
+    **dict.fromkeys((ca.OP_POW, ca.OP_CONSTPOW), _unless_natural),
+}
+"""Marks at whose zeros an operation has no bound, or is not defined on both sides."""

@@ -6,7 +6,7 @@ They are made from the declared expressions alone. Nothing here comes from the d
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
@@ -231,13 +231,10 @@ class Stated:
             *mechanism.constraints.values(),
             *mechanism.rows.values(),
         )
-        coordinates = mechanism.coordinates
         found = cls(
             equations=tuple(Equation.of(mechanism, one) for one in declared),
             motions=tuple(
-                Equation.driven(
-                    mechanism, name, _moved(mechanism, name, joint=name in coordinates), law
-                )
+                Equation.driven(mechanism, name, _moved(mechanism, name), law)
                 for name, law in motions.items()
             ),
             laws=tuple(
@@ -278,9 +275,9 @@ def _measured(mechanism: Mechanism) -> Iterator[_Measured]:
         yield from map(_Measured, entries, measure.places, measure.rates)
 
 
-def _moved(mechanism: Mechanism, coordinate: str, *, joint: bool) -> _Measured:
+def _moved(mechanism: Mechanism, coordinate: str) -> _Measured:
     """Coordinate that a motion moves: of a joint, or, for a guide, of a point or of a body."""
-    if joint:
+    if coordinate in mechanism.coordinates:
         return _Measured(Entry("coordinate", coordinate))
     name, _, what = coordinate.rpartition(".")
     if what == "angle":
@@ -289,11 +286,8 @@ def _moved(mechanism: Mechanism, coordinate: str, *, joint: bool) -> _Measured:
     return _Measured(Entry("x" if what == "x" else "y", point.body.name, point.place))
 
 
-def _columns(found: Iterable[_Measured]) -> tuple[ca.SX, ca.SX]:
-    places, rates = (
-        zip(*((one.place, one.rate) for one in found), strict=True) if found else ((), ())
-    )
-    return column(places), column(rates)
+def _columns(found: Sequence[_Measured]) -> tuple[ca.SX, ca.SX]:
+    return column(one.place for one in found), column(one.rate for one in found)
 
 
 def _kind_and_numbers(

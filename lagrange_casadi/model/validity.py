@@ -17,6 +17,7 @@ import numpy as np
 from ..base.numerals import readable
 from ..base.scalars import column
 from ..base.symbolic import Graphs, symbolic, symbolic_property
+from ..base.templates import mapped
 from ..base.vectors import dot, nil
 from ..base.vocabulary import Precision
 from ..errors import ParameterError
@@ -169,18 +170,9 @@ def _of(declared: Declaration, precision: Precision) -> ParameterConstraints:
 def _numbers(declared: Declaration) -> Iterator[tuple[str, list[Expression]]]:
     """The expressions in parameters of which parts are made, and what they are of."""
     for body in declared.moving:
-        if isinstance(body, PointMass):
-            yield f"point mass '{body.name}'", [body.mass]
-            continue
-        numbers, mass = [body.length], body.mass
-        if isinstance(mass, RigidMass):
-            numbers += [mass.mass, *mass.centre, *(entry for row in mass.inertia for entry in row)]
-        else:
-            densities = (mass, *(mass.slices.each if mass.slices else ()))
-            numbers += [c for density in densities for cell in density.cells for c in cell]
-        for shape in () if body.beam is None else body.beam.course.shapes:
-            numbers += shape.dimensions.values()
-        yield f"link '{body.name}'", numbers
+        found: list[Expression] = []
+        mapped(body, found.append)
+        yield _called(body), found
     for joint in declared.joints.values():
         places = [number for point in (joint.parent, joint.child) for number in point.place]
         directions = (*joint.triad, joint.turned.x, joint.turned.y)
@@ -261,7 +253,7 @@ def _of_body(
     body: Link | PointMass, precision: Precision, *, space: bool
 ) -> tuple[Expression, list[Demand]]:
     """The mass of a body, and its demands."""
-    what = f"link '{body.name}'" if isinstance(body, Link) else f"point mass '{body.name}'"
+    what = _called(body)
     found: list[Demand] = []
     if isinstance(body, Link):
         found += _of_beam(what, body)
@@ -282,6 +274,10 @@ def _of_body(
         words = f"{what}: inertia must not be negative, got {{got}} kg m^2"
         found.append(Demand.saying(mass_properties.inertia[2][2], False, words))
     return mass, found
+
+
+def _called(body: Link | PointMass) -> str:
+    return f"link '{body.name}'" if isinstance(body, Link) else f"point mass '{body.name}'"
 
 
 def _of_beam(what: str, link: Link) -> list[Demand]:
