@@ -13,6 +13,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, NamedTuple
 
 import casadi as ca
@@ -248,7 +249,7 @@ class Smooth:
             step, low, end, before = step[left], low[left], end[left], before[:, left]
             if not step.size:
                 break
-            low, high = halved(self._same(line, step, before), low, end)
+            low, high = halved(partial(self._same, line, step, before), low, end)
             ends = (self._sides(line.rows(self.marks, step, x)) for x in (low, high))
             crossing = np.logical_and(np.not_equal(*ends), self.open[:, None]).any(axis=0)
             parts.append(Places(step, low, high, np.where(crossing, OPEN, CROSSED)))
@@ -257,13 +258,8 @@ class Smooth:
             parts.append(self._instants(line, self._off(marks) == 0.0))
         return Places(*map(np.concatenate, zip(*parts, strict=True)))
 
-    def _same(self, line: Line, step: Numbers, before: Array) -> Callable[[Array], Flags]:
-        def same(share: Array) -> Flags:
-            return np.asarray(
-                (self._sides(line.rows(self.marks, step, share)) == before).all(axis=0)
-            )
-
-        return same
+    def _same(self, line: Line, step: Numbers, before: Array, share: Array) -> Flags:
+        return np.asarray((self._sides(line.rows(self.marks, step, share)) == before).all(axis=0))
 
     def _instants(self, line: Line, zero: Flags) -> Places:
         """Instants at which a mark is ``zero`` (marks, instants), but does not stay so."""
@@ -287,12 +283,13 @@ class Smooth:
         row, owner, k = np.nonzero((here <= before) & (here <= after) & (lowest <= _DIP * here))
         row, step = np.tile(row, 2), np.concatenate([owner * n + k, owner * n + k + 1])
         none = np.zeros(step.size)
-        rises = [self._rises(line, step, row)(none + end) for end in (0.0, 1.0)]
+        rises = [self._rises(line, step, row, none + end) for end in (0.0, 1.0)]
         least = np.tile(_rounding(marks.reshape(off.shape))[row[: k.size], owner], 2)
         some = rises[0] != rises[1]
         step, row, first, none = step[some], row[some], rises[0][some], none[some]
-        going = self._rises(line, step, row)
-        low, high = halved(lambda x: np.asarray(going(x) == first), none, none + 1.0)
+        low, high = halved(
+            lambda x: np.asarray(self._rises(line, step, row, x) == first), none, none + 1.0
+        )
         each = np.arange(row.size)
         there = np.minimum(
             *(self._off(line.rows(self.marks, step, x))[row, each] for x in (low, high))
@@ -301,11 +298,8 @@ class Smooth:
         zero = there <= _TOUCH * np.maximum(*ends) + least[some]
         return Places(step, low, high, row), np.asarray(zero)
 
-    def _rises(self, line: Line, step: Numbers, row: Numbers) -> Callable[[Array], Flags]:
-        def rises(share: Array) -> Flags:
-            return np.asarray(line.rows(self._turns, step, share)[row, np.arange(row.size)] > 0.0)
-
-        return rises
+    def _rises(self, line: Line, step: Numbers, row: Numbers, share: Array) -> Flags:
+        return np.asarray(line.rows(self._turns, step, share)[row, np.arange(row.size)] > 0.0)
 
     @property
     def _kinds(self) -> Numbers:

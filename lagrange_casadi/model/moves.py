@@ -171,13 +171,13 @@ def moves(
     common = _given(speed, acceleration, jerk)
     demands = _Demanded([], set())
     origin = demands.coordinate("moves: start", start)
-    place, displacement, found = origin, _Sum(origin), []
+    place, terms, found = origin, [origin], []
     for number, part in enumerate(each):
         what = _what(part, number)
         if isinstance(part, Dwell):
             law, time, by, after = None, part.time, 0.0, place
         else:
-            by, after = _way(what, part, place, displacement, demands)
+            by, after = _way(what, part, place, terms, demands)
             law, time = _timed(what, part, by, common, demands)
         found.append((part.name or f"part {number + 1}", law, time, place, by))
         place = after
@@ -186,8 +186,7 @@ def moves(
         words = f"{_what(part, number)}: its time must be positive, got {{got}} s"
         demands.add(Demand.saying(time, True, words))
     first = plain(parametric("moves: begin", begin, "s"))
-    total = _Sum(first)
-    seams = [first, *(total.then(time) for time in times)]
+    seams = [first, *(_sum(first, *times[: k + 1]) for k in range(len(times)))]
     stretches = tuple(
         Stretch(name, law, seams[k], seams[k + 1], times[k], at, by)
         for k, (name, law, _, at, by) in enumerate(found)
@@ -195,7 +194,7 @@ def moves(
     far = demands.coordinate("moves: advance", advance)
     length = None
     if cyclic:
-        length = _Sum(0.0).then(*times)
+        length = _sum(0.0, *times)
         _demand_closure(origin, place, far, demands)
     elif not nil(far):
         raise DeclarationError("moves: advance= needs cyclic=True")
@@ -284,17 +283,11 @@ def _chosen(rows: Expression) -> Expression:
     return total
 
 
-class _Sum:
-    """A sum that goes on: of numbers as their decimals say, rounded once; else of expressions."""
-
-    def __init__(self, first: Expression) -> None:
-        self.terms = [first]
-
-    def then(self, *more: Expression) -> Expression:
-        self.terms += more
-        if any(isinstance(term, ca.SX) for term in self.terms):
-            return plain(sum(self.terms[1:], self.terms[0]))
-        return float(sum((Fraction(repr(term)) for term in self.terms), Fraction(0)))
+def _sum(*terms: Expression) -> Expression:
+    """A sum: of numbers as their decimals say, rounded once; else of expressions."""
+    if any(isinstance(term, ca.SX) for term in terms):
+        return plain(sum(terms[1:], terms[0]))
+    return float(sum((Fraction(repr(term)) for term in terms), Fraction(0)))
 
 
 @dataclass(frozen=True)
@@ -355,15 +348,16 @@ def _given(*limits: Expression | None) -> Limits:
 
 
 def _way(
-    what: str, part: Move, place: Expression, way: _Sum, demands: _Demanded
+    what: str, part: Move, place: Expression, terms: list[Expression], demands: _Demanded
 ) -> tuple[Expression, Expression]:
-    """Distance of a move, and its end."""
+    """Distance of a move, and its end, which is the sum of ``terms``."""
     if part.by is not None:
         by = demands.coordinate(f"{what}: by", part.by)
-        return by, way.then(by)
+        terms.append(by)
+        return by, _sum(*terms)
     to = demands.coordinate(f"{what}: to", part.to)
-    way.terms[:] = [to]
-    return _Sum(to).then(-place), to
+    terms[:] = [to]
+    return _sum(to, -place), to
 
 
 def _timed(
@@ -435,7 +429,7 @@ def _filled(
                 " moves"
             )
         return given
-    whole, total = plain(parametric("moves: period", period, "s")), _Sum(0.0).then(*given)
+    whole, total = plain(parametric("moves: period", period, "s")), _sum(0.0, *given)
     if len(lacking) > 1:
         raise DeclarationError(
             f"moves: {len(lacking)} dwells have no time; expected a time for all but one"
@@ -452,7 +446,7 @@ def _filled(
             )
         )
         return given
-    remaining = _Sum(whole).then(*(-time for time in given))
+    remaining = _sum(whole, *(-time for time in given))
     words = (
         "moves: no time is left for the part without one: the others take {total} s of the period"
         " of {whole} s"

@@ -166,13 +166,10 @@ class Results:
 
     def _force(self, group: str, part: str, *, moment: bool) -> Force | SpatialForce:
         space = self.ownership.declared.space
-        forces = [
-            self._ask(Output(group, part, member)) for member in force_members(space, moment=False)
-        ]
-        moments = force_members(space)[len(forces) :]
+        known = force_members(space, moment=moment)
         found = [
-            *forces,
-            *(self._ask(Output(group, part, member)) if moment else 0.0 for member in moments),
+            self._ask(Output(group, part, member)) if member in known else 0.0
+            for member in force_members(space)
         ]
         return SpatialForce(*found) if space else Force(*found)
 

@@ -29,7 +29,7 @@ from .joints import Joint
 from .limits import END
 from .link_density import Density, Slices
 from .loads import POSITIVE, Friction, LineLoad
-from .mass_properties import second_moments
+from .mass_properties import mass_of, second_moments
 from .meshes import FITTING, Fit
 from .polynomials import lowest, product
 
@@ -123,31 +123,28 @@ def _of_frozen(declared: Declaration, precision: Precision) -> ParameterConstrai
 
 def _of(declared: Declaration, precision: Precision) -> ParameterConstraints:
     found: list[Demand] = []
-    masses: list[Expression] = []
     for what, expressions in _numbers(declared):
         found += _of_curves(what, expressions)
     for body in declared.moving:
-        mass, constraints = _of_body(body, precision, space=declared.space)
-        masses.append(mass)
-        found += constraints
+        found += _of_body(body, precision, space=declared.space)
+    masses = [mass_of(body) for body in declared.moving]
     if not any(_surely_positive(mass) for mass in masses):
         loaded = any(not isinstance(load, Friction) for load in declared.loads.values())
         found.append(_some_mass(declared.name, masses, loaded=loaded))
     for joint in declared.joints.values():
         found += _of_axes(joint, precision)
-        for point in (joint.parent, joint.child):
-            if joint.slides and point is joint.parent:
-                continue  # a place on the line along which the child slides, and loads the parent
+        # A child that slides loads its parent at a place on the line along which it slides.
+        for point in (joint.child,) if joint.slides else (joint.parent, joint.child):
             found += _of_load_point(f"joint '{joint.name}'", point, precision, space=declared.space)
     for load in declared.loads.values():
         if isinstance(load, LineLoad):
             found += _of_part(load, precision)
-            continue
-        if isinstance(load, Friction):
+        elif isinstance(load, Friction):
             found += _of_friction(load)
-            continue
-        for point in load.points:
-            found += _of_load_point(f"load '{load.name}'", point, precision, space=declared.space)
+        else:
+            what = f"load '{load.name}'"
+            for point in load.points:
+                found += _of_load_point(what, point, precision, space=declared.space)
     for stroke in declared.strokes.values():
         words = f"{stroke.what}: open must be longer than closed, got {{open}} m and {{closed}} m"
         ends = {"open": stroke.open, "closed": stroke.closed}
@@ -249,31 +246,24 @@ def _of_numbers(what: str, numbers: Mapping[str, Expression]) -> Iterator[Demand
             yield Demand.saying(number, positive, f"{what}: {word} must be {least}, got {{got}}")
 
 
-def _of_body(
-    body: Link | PointMass, precision: Precision, *, space: bool
-) -> tuple[Expression, list[Demand]]:
-    """The mass of a body, and its demands."""
-    what = _called(body)
-    found: list[Demand] = []
+def _of_body(body: Link | PointMass, precision: Precision, *, space: bool) -> Iterator[Demand]:
+    """Conditions on the sizes and the mass of a body."""
+    what, mass = _called(body), body.mass
     if isinstance(body, Link):
-        found += _of_beam(what, body)
-        length = body.length
-        found.append(Demand.saying(length, True, f"{what}: length must be positive, got {{got}} m"))
-        if isinstance(body.mass, Density):
-            base, tip, _ = body.mass.ends(length)
-            slices = _of_slices(what, body.mass.slices, precision) if body.mass.slices else []
-            return base + tip, [*found, *_of_density(what, body.mass, length, precision), *slices]
-    mass_properties = body.mass
-    mass = mass_properties.mass if isinstance(mass_properties, RigidMass) else mass_properties
-    found.append(Demand.saying(mass, False, f"{what}: mass must not be negative, got {{got}} kg"))
-    if isinstance(mass_properties, RigidMass):
-        if mass_properties.accepted:
-            return mass, found
+        yield from _of_beam(what, body)
+        yield Demand.saying(body.length, True, f"{what}: length must be positive, got {{got}} m")
+        if isinstance(mass, Density):
+            yield from _of_density(what, mass, body.length, precision)
+            yield from _of_slices(what, mass.slices, precision) if mass.slices else ()
+            return
+    whole = mass.mass if isinstance(mass, RigidMass) else mass
+    yield Demand.saying(whole, False, f"{what}: mass must not be negative, got {{got}} kg")
+    if isinstance(mass, RigidMass) and not mass.accepted:
         if space:
-            return mass, [*found, *_of_inertia(what, mass_properties)]
-        words = f"{what}: inertia must not be negative, got {{got}} kg m^2"
-        found.append(Demand.saying(mass_properties.inertia[2][2], False, words))
-    return mass, found
+            yield from _of_inertia(what, mass)
+        else:
+            words = f"{what}: inertia must not be negative, got {{got}} kg m^2"
+            yield Demand.saying(mass.inertia[2][2], False, words)
 
 
 def _called(body: Link | PointMass) -> str:
@@ -294,7 +284,7 @@ def _of_beam(what: str, link: Link) -> list[Demand]:
     ]
 
 
-def _of_inertia(what: str, mass_properties: RigidMass) -> list[Demand]:
+def _of_inertia(what: str, mass_properties: RigidMass) -> Iterator[Demand]:
     """Conditions that moments of inertia belong to a mass: no principal second moment is negative.
 
     So it is where no minor on the diagonal of the matrix of second moments is, each beside its
@@ -306,12 +296,10 @@ def _of_inertia(what: str, mass_properties: RigidMass) -> list[Demand]:
         f"{what}: impossible moments of inertia {{x}}, {{y}}, {{z}} kg m^2 about x, y and z: each"
         " principal moment must be at most the sum of the other two"
     )
-    found = []
     for chosen in ((0,), (1,), (2,), (0, 1), (0, 2), (1, 2), (0, 1, 2)):
         minor = ca.vertcat(*(ca.horzcat(*(moments[i][j] for j in chosen)) for i in chosen))
         size = sum((ca.fabs(moments[i][i]) for i in range(3)), ca.SX(0)) ** len(chosen)
-        found.append(Demand.saying(ca.det(minor) + END["double"] * size, False, words, **numbers))
-    return found
+        yield Demand.saying(ca.det(minor) + END["double"] * size, False, words, **numbers)
 
 
 def _of_density(
@@ -344,7 +332,7 @@ def _of_density(
     ]
 
 
-def _of_slices(what: str, slices: Slices, precision: Precision) -> list[Demand]:
+def _of_slices(what: str, slices: Slices, precision: Precision) -> Iterator[Demand]:
     """Conditions that second moments of slices belong to a mass: neither yy, nor zz, nor yy zz - yz
     yz is negative anywhere.
     """
@@ -352,7 +340,6 @@ def _of_slices(what: str, slices: Slices, precision: Precision) -> list[Demand]:
         f"{what}: impossible second moments of slices: yy, zz and yy zz - yz yz must not be"
         " negative anywhere along the link"
     )
-    found = []
     for start, stop in itertools.pairwise(slices.breaks):
         yy, zz, yz = (moment.cell_at((start + stop) / 2) for moment in slices.each)
         squares = product(yy, zz), product(yz, yz)
@@ -360,11 +347,10 @@ def _of_slices(what: str, slices: Slices, precision: Precision) -> list[Demand]:
         for cell in (yy, zz, both) if any(not nil(c) for c in yz) else (yy, zz):
             size = sum(ca.fabs(ca.SX(c)) for c in cell)
             least = lowest(cell, start, stop)[1] + END[precision] * size
-            found.append(Demand.saying(least, False, words))
-    return found
+            yield Demand.saying(least, False, words)
 
 
-def _some_mass(name: str, masses: list[Expression], *, loaded: bool) -> Demand:
+def _some_mass(name: str, masses: list[ca.SX], *, loaded: bool) -> Demand:
     """Condition that something has a mass, or is loaded: without either there is no force
     anywhere.
     """
@@ -385,10 +371,9 @@ def _some_mass(name: str, masses: list[Expression], *, loaded: bool) -> Demand:
     return Demand(total, not loaded, refusal)
 
 
-def _surely_positive(mass: Expression) -> bool:
+def _surely_positive(mass: ca.SX) -> bool:
     """Return whether a mass is positive for all values of the parameters."""
-    constant = ca.SX(mass)
-    return bool(constant.is_constant() and 0.0 < float(constant) < math.inf)
+    return bool(mass.is_constant() and 0.0 < float(mass) < math.inf)
 
 
 def _of_axes(joint: Joint, precision: Precision) -> list[Demand]:
