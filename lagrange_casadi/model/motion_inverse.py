@@ -188,7 +188,7 @@ class MotionInverse:
         step = np.where(np.isfinite(step), step, _FIRST)
         missed = np.where(np.isfinite(d), Missed.REACHED, Missed.NEVER)
         there = d == target
-        before, after, visited, at = here.copy(), here.copy(), here.copy(), d.copy()
+        visited, at, held = here.copy(), d.copy(), np.array([here, here])
         for _ in range(_STEPS):
             going = np.flatnonzero(~there & (missed == Missed.REACHED))
             if not going.size:
@@ -204,37 +204,26 @@ class MotionInverse:
             )
             lost = ~np.isfinite(found) | ~np.isfinite(now)
             ended = ~passed & (now == was)
-            before[going] = np.where(passed, was, before[going])
-            after[going] = np.where(passed, now, after[going])
-            there[going] = passed & ~lost
-            if turned.any():
-                some = turned & ~lost
-                which = going[some]
-                visited[which], at[which] = self._turning(
-                    was[some], now[some], sense[which], p[which]
-                )
+            visited[going], at[going], some = now, found, turned & ~lost
+            which = going[some]
+            visited[which], at[which] = self._turning(was[some], now[some], sense[which], p[which])
             near = np.abs(at[going] - target[going]) <= rounding[going]
             stays = np.abs(d[going] - target[going]) <= rounding[going]
             # A target at which the motion rests is met where it comes to rest.
             reached = (turned & near) | ((ended | lost) & stays)
-            place = np.where(turned, visited[going], was)
-            before[going] = np.where(reached, place, before[going])
-            after[going] = np.where(reached, place, after[going])
-            there[going] |= reached
+            ends = np.where(passed, [was, now], held[:, going])
+            held[:, going] = np.where(reached, np.where(turned, visited[going], was), ends)
+            there[going] = (passed & ~lost) | reached
             missed[going] = np.select(
                 [there[going], lost, ended, turned],
                 [Missed.REACHED, Missed.NEVER, Missed.ENDS, Missed.TURNS_BACK],
             )
-            visited[going] = np.where(turned, visited[going], now)
-            at[going] = np.where(turned, at[going], found)
             here[going], d[going] = now, found
             with np.errstate(over="ignore"):
                 step[going] = _step(speed, bent, share[going], 2.0 * step[going])
         missed[~there & (missed == Missed.REACHED)] = Missed.NEVER
-        begin, end = np.minimum(before, after), np.maximum(before, after)
-        time = self._solved(
-            target[:, None], begin[:, None], end[:, None], begin[:, None], sense[:, None], p
-        )[:, 0]
+        begin, end = np.sort(held, axis=0)[..., None]
+        time = self._solved(target[:, None], begin, end, begin, sense[:, None], p)[:, 0]
         first_way = (missed == Missed.TURNS_BACK) & (visited == np.clip(around, low, high))
         missed[first_way] = Missed.OTHER_WAY
         return np.where(missed == Missed.REACHED, time, np.nan), missed, visited, at
