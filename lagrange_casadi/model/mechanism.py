@@ -12,6 +12,7 @@ import math
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import casadi as ca
 
@@ -45,11 +46,13 @@ from .joints import Joint, JointKind, check_ends
 from .limits import check_connected, parameter_values
 from .link_density import Density
 from .load_arguments import Between, LoadDensity, drive, friction, line_load
-from .loads import Force, Friction, LineLoad, Spring, Torque
+from .loads import Force, Friction, LineLoad, Load, Spring, Torque
 from .mass_properties import UNDECLARED, Masses, beam_of, mass_properties_of
 from .ownership import Ownership
 from .results import Results
 from .validity import demands
+
+_Load = TypeVar("_Load", bound=Load)
 
 
 @public
@@ -609,8 +612,7 @@ class Mechanism(Declaration):
                 " or a point mass"
             )
         x, y, z = (self._load(name, component, FORCE) for component in components)
-        self.loads[name] = load = Force(name, place, (x, y, z), turning)
-        return load
+        return self._add(Force(name, place, (x, y, z), turning))
 
     def torque(
         self,
@@ -662,8 +664,7 @@ class Mechanism(Declaration):
                     " link"
                 )
         x, y, z = (self._load(name, component, MOMENT) for component in components)
-        self.loads[name] = load = Torque(name, first, (x, y, z), second, turning)
-        return load
+        return self._add(Torque(name, first, (x, y, z), second, turning))
 
     def line_load(
         self,
@@ -702,8 +703,7 @@ class Mechanism(Declaration):
             If the body is not a link, the distances do not increase, or a function is not a
             polynomial of degree 7 at most.
         """
-        self.loads[name] = load = line_load(self.ownership, name, link, (x, y), between, turning)
-        return load
+        return self._add(line_load(self.ownership, name, link, (x, y), between, turning))
 
     def spring(
         self,
@@ -744,8 +744,7 @@ class Mechanism(Declaration):
         ends = self._load_point(name, first), self._load_point(name, second)
         stiffness, length = self._load(name, stiffness, "N/m"), self._load(name, length, "m")
         damping = self._load(name, damping, "N s/m")
-        self.loads[name] = load = Spring(name, *ends, stiffness, length, damping)
-        return load
+        return self._add(Spring(name, *ends, stiffness, length, damping))
 
     def damper(
         self, name: str, first: Body | Point, second: Body | Point, *, damping: Expression
@@ -813,8 +812,7 @@ class Mechanism(Declaration):
         torque = -(k * (self.coordinate(joint) - free)) - c * self.rate(joint)
         axis = times(torque, joint.turned.resolve(joint.triad[0]))
         load = self._torque(name, joint.child, axis, joint.parent, turning=self.space)
-        self.loads[name] = coil = replace(load, coiled=True)
-        return coil
+        return self._add(replace(load, coiled=True))
 
     def friction(
         self,
@@ -869,8 +867,7 @@ class Mechanism(Declaration):
         """
         numbers = {"mu": mu, "coulomb": coulomb, "radius": radius, "length": length}
         numbers |= {"viscous": viscous, "static": static, "stribeck": stribeck, "smooth": smooth}
-        self.loads[name] = load = friction(self.ownership, name, joint, along, numbers)
-        return load
+        return self._add(friction(self.ownership, name, joint, along, numbers))
 
     def drive(
         self,
@@ -1182,3 +1179,7 @@ class Mechanism(Declaration):
 
     def _load(self, name: str, value: Expression, unit: str) -> Expression:
         return self.ownership.expression(f"load '{name}'", value, unit, moving=True)
+
+    def _add(self, load: _Load) -> _Load:
+        self.loads[load.name] = load
+        return load

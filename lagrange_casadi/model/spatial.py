@@ -577,8 +577,7 @@ class SpatialMechanism(Mechanism):
         -------
         LineLoad
         """
-        self.loads[name] = load = line_load(self.ownership, name, link, (x, y, z), between, turning)
-        return load
+        return self._add(line_load(self.ownership, name, link, (x, y, z), between, turning))
 
     def set_gravity(self, x: Expression, y: Expression, z: Expression = 0.0) -> None:
         """Set the acceleration of gravity.

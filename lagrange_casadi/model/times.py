@@ -210,19 +210,12 @@ def even_of(timing: Timing, values: Mapping[str, float]) -> EvenPoints:
     Raises :class:`.DeclarationError` for what they cannot be.
     """
     start, stop, _ = (float(bound[0]) for bound in timing.bounds(_row(values)))
-    if not timing.joint:
-        try:
-            return checked("t", (start, stop, timing.count))
-        except DeclarationError as error:
-            raise DeclarationError(
-                f"{error}{'' if timing.fixed else values_note(values)}"
-            ) from None
-    if not (math.isfinite(start) and math.isfinite(stop)) or start == stop:
-        raise DeclarationError(
-            f"over: START and STOP must be finite and apart, got {start:g} and"
-            f" {stop:g}{values_note(values)}"
-        )
-    return start, stop, timing.count
+    what, falls = ("over", True) if timing.joint else ("t", False)
+    try:
+        return checked(what, (start, stop, timing.count), falls=falls)
+    except DeclarationError as error:
+        note = "" if timing.fixed else values_note(values)
+        raise DeclarationError(f"{error}{note}") from None
 
 
 def span_of(laws: Laws, timing: Timing, values: Mapping[str, float]) -> tuple[float, float]:
