@@ -22,7 +22,7 @@ import numpy as np
 from ..base.arrays import Array, Expression, Flags
 from ..base.interpret import followable, operations
 from ..base.lookups import is_entry
-from ..base.scalars import entries
+from ..base.scalars import column, entries, graph, inputs_of
 from ..base.symbolic import symbolic_property
 from ..errors import DeclarationError
 from .one_sided_limits import (
@@ -131,7 +131,8 @@ class Smooth:
         if not symbols:
             return None
         x, way = ca.vertcat(*symbols), ca.SX.sym("way", len(symbols))
-        function = ca.Function("sought", [x, fixed], [ca.densify(expression)], {"cse": True})
+        given = {"x": x, "p": fixed}
+        function = graph("sought", given, sought=expression)
         found: dict[tuple[int, bool, bool], Any] = {}
         followed = followable(function)
         for operation, operands in operations(function, [x, fixed]) if followed else ():
@@ -149,14 +150,12 @@ class Smooth:
             return None
         slopes = ca.gradient(expression, x)
         along = ca.jtimes(ca.dot(slopes, way), x, way)
-        bends = ca.densify(ca.vertcat(expression, slopes, along))
-        rows = ca.densify(ca.vertcat(ca.SX(0, 1), *found.values()))
         kinds = np.array([key[1:] for key in found], bool).reshape(-1, 2)
         return cls(
             what,
             tuple(symbols),
-            ca.Function("marks", [x, fixed], [rows], {"cse": True}),
-            ca.Function("bends", [x, fixed, way], [bends], {"cse": True}),
+            graph("marks", given, marks=column(found.values())),
+            graph("bends", given | {"way": way}, bends=ca.vertcat(expression, slopes, along)),
             kinds[:, 0],
             kinds[:, 1],
             np.array([ca.depends_on(expression, symbol) for symbol in entries(fixed)], bool),
@@ -165,9 +164,9 @@ class Smooth:
     @symbolic_property
     def _turns(self) -> ca.Function:
         """The function ``(x, p, way)`` of the derivatives of marks along a way."""
-        x, p, way = self.bends.sx_in()
-        rows = ca.densify(ca.jtimes(self.marks(x, p), x, way))
-        return ca.Function("turns", [x, p, way], [rows], {"cse": True})
+        given = inputs_of(self.bends)
+        x, p, way = given.values()
+        return graph("turns", given, turns=ca.jtimes(self.marks(x, p), x, way))
 
     def kink(
         self, path: Array, values: Sequence[float], *, between: bool = False, at: bool = True

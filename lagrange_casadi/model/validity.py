@@ -15,7 +15,7 @@ import casadi as ca
 import numpy as np
 
 from ..base.numerals import readable
-from ..base.scalars import column
+from ..base.scalars import column, graph
 from ..base.symbolic import Graphs, symbolic, symbolic_property
 from ..base.templates import mapped
 from ..base.vectors import dot, nil
@@ -71,16 +71,14 @@ class ParameterConstraints:
     def function(self) -> ca.Function:
         """``possible(p)``: the value of each demand."""
         values = column(ca.SX(demand.value) for demand in self.each)
-        return ca.Function("possible", [self.symbols], [ca.densify(values)], {"cse": True})
+        return graph("possible", {"p": self.symbols}, possible=values)
 
     def margins(self) -> Margins:
         """Return the values alone."""
         values = self.function(self.symbols)
         order = sorted(range(len(self.each)), key=lambda k: not self.each[k].positive)
-        ordered = ca.densify(column(values[k] for k in order))
-        function = ca.Function(
-            "margins", [self.symbols], [ordered], ["p"], ["margins"], {"cse": True}
-        )
+        margins = column(values[k] for k in order)
+        function = graph("margins", {"p": self.symbols}, margins=margins)
         return Margins(function, sum(demand.positive for demand in self.each))
 
     def check(self, p: Sequence[float], number: Evaluator) -> None:
