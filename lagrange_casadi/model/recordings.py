@@ -299,25 +299,22 @@ def _motion(
     offset and stretch; ``second`` is the unit of the file's time in s.
     """
     ratio, offset, stretch = scales
-    name, cyclic = recording.name, periodic or period is not None
+    name = recording.name
     advance = quantity(f"{name}: advance", advance, recording.unit)
     if period is not None:
-        period = quantity(f"{name}: period", period, "s") * (
-            1.0 if isinstance(period, str) else second
-        )
-    (ahead,), unit_in = coordinates(f"{name}: offset", [(offset, "")])
-    each = zip(("ratio", "offset", "stretch"), (ratio, ahead, stretch), strict=True)
-    found = [parametric(f"{name}: {word}", x) for word, x in each]
-    if cyclic:
-        recording = _closed(recording, period, advance)
-    elif advance:
+        each = 1.0 if isinstance(period, str) else second
+        recording = _closed(recording, quantity(f"{name}: period", period, "s") * each, advance)
+    elif advance and not periodic:
         raise DeclarationError(f"{name}: advance= needs periodic=True")
+    (ahead,), unit_in = coordinates(f"{name}: offset", [(offset, "")])
+    found = parametric(f"{name}: ratio", ratio), ahead, parametric(f"{name}: stretch", stretch)
     # A ratio may make turns of lengths, and radians may be a rule's usual unit.
     if not unit_in and isinstance(ratio, float) and ratio == 1.0:
         unit_in = (
             "m" if not differs(recording.unit, "m") else "" if recording.unit == "rad" else "rad"
         )
     noise = _noise(recording, smoothing)
+    cyclic = periodic or period is not None
     return _law(recording, noise, points, cyclic, advance, found, unit_in)
 
 
@@ -340,10 +337,8 @@ def _header(path: Path) -> tuple[int, dict[str, str]]:
     raise DeclarationError(f"{path.name}: expected a header that ends in the line 'endheader'")
 
 
-def _closed(recording: Recording, period: float | None, advance: float) -> Recording:
-    """A recording whose last row closes the cycle."""
-    if period is None:
-        return recording
+def _closed(recording: Recording, period: float, advance: float) -> Recording:
+    """A recording with the row that closes the cycle."""
     t, values = recording.t, recording.values
     end = t[0] + period
     if not t[-1] < end:
