@@ -424,7 +424,7 @@ def user_outputs(
     mechanism = body.mechanism
     asked = [
         asked
-        for asked in mechanism.asked
+        for asked in mechanism.asked.values()
         if any(asked in mechanism.outputs[name].made_of for name in body.user_outputs)
     ]
     values = column(_value(mechanism.links, one, found, table_of(mechanism.space)) for one in asked)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, cast
 
@@ -79,7 +79,7 @@ class Declaration(Graphs):
     frozen: bool = field(default=False, init=False)
     time: Any = field(default_factory=lambda: ca.SX.sym("t"), init=False)
     measures: Measures = field(default_factory=Measures, init=False)
-    asked: list[Asked] = field(default_factory=list, init=False)
+    asked: dict[Hashable, Asked] = field(default_factory=dict, init=False)
 
     def __post_init__(self) -> None:
         check_name("mechanism", self.name)

@@ -38,8 +38,15 @@ def laws_of(
         names, what, wanted = [name], "joint", "one law"
         if name in mechanism.joints:
             joint = mechanism.joints[name]
-            _check_joint(joint)
             names = [axis.coordinate for axis in joint.axes]
+            if not names:
+                weld = joint.kind == "weld"
+                why = (
+                    "weld has no coordinate"
+                    if weld
+                    else "revolute joint at a point mass has no angle"
+                )
+                raise DeclarationError(f"joint '{name}' cannot be driven: a {why}")
             if len(names) > 1:
                 wanted = f"{len(names)} laws, of {', '.join(names)}"
         elif name in coordinates:
@@ -92,16 +99,6 @@ def point_of(mechanism: Mechanism, name: str) -> Point:
     """The point that guides move: of a path, or the base or origin of a body."""
     path = mechanism.paths.get(name)
     return path.point if path else Point(mechanism.bodies[name], 0.0, 0.0)
-
-
-def _check_joint(joint: Joint) -> None:
-    if not joint.axes:
-        why = (
-            "a weld has no coordinate"
-            if joint.kind == "weld"
-            else "a revolute joint at a point mass has no angle"
-        )
-        raise DeclarationError(f"joint '{joint.name}' cannot be driven: {why}")
 
 
 def guided(mechanism: Mechanism, motion: Mapping[str, Motion | Sequence[Motion]]) -> Mechanism:

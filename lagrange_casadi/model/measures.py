@@ -4,6 +4,7 @@ direction.
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from dataclasses import dataclass, field
 
 import casadi as ca
@@ -32,7 +33,7 @@ class Measure:
 class Measures:
     """The measures that a mechanism's loads and constraints have asked for, each once."""
 
-    asked: dict[tuple[str | float, ...], Measure] = field(default_factory=dict)
+    asked: dict[Hashable, Measure] = field(default_factory=dict)
     components: str = "xy"
 
     def joint(self, joint: Joint, axis: Axis) -> Measure:
@@ -75,7 +76,7 @@ class Measures:
 
     def _found(
         self,
-        key: tuple[str | float, ...],
+        key: Hashable,
         of: Joint | Point | Link,
         names: tuple[str, ...],
         axis: Axis | None = None,

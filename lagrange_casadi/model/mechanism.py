@@ -947,7 +947,8 @@ class Mechanism(Declaration):
         expression = ca.SX(
             self.ownership.expression(f"output '{name}'", expression, moving=True, found=True)
         )
-        made_of = tuple(asked for asked in self.asked if ca.depends_on(expression, asked.symbol))
+        every = self.asked.values()
+        made_of = tuple(asked for asked in every if ca.depends_on(expression, asked.symbol))
         self.outputs[name] = UserOutput(name, expression, unit, made_of)
         return self.outputs[name]
 

@@ -143,7 +143,7 @@ class Ownership:
         symbols = [parameter.symbol for parameter in declared.parameters.values()]
         symbols += [declared.time, *declared.measures.symbols] if moving else []
         symbols += (
-            [*declared.measures.accelerations, *(asked.symbol for asked in declared.asked)]
+            [*declared.measures.accelerations, *(asked.symbol for asked in declared.asked.values())]
             if found
             else []
         )

@@ -177,14 +177,10 @@ class Results:
         self, output: Output, ratio: Expression | None = None, *, passive: bool = False
     ) -> ca.SX:
         asked = self.ownership.declared.asked
-        for one in asked:
-            same = one.ratio is ratio or (
-                isinstance(ratio, float) and isinstance(one.ratio, float) and one.ratio == ratio
-            )
-            if one.output == output and same and one.passive == passive:
-                return one.symbol
-        asked.append(Asked(output, ca.SX.sym(str(output)), ratio, passive))
-        return asked[-1].symbol
+        key = output, ratio.element_hash() if isinstance(ratio, ca.SX) else ratio, passive
+        if key not in asked:
+            asked[key] = Asked(output, ca.SX.sym(str(output)), ratio, passive)
+        return asked[key].symbol
 
     def _own(
         self,
