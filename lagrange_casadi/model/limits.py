@@ -4,17 +4,14 @@ points.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
+from collections.abc import Iterable, Mapping
 
 import casadi as ca
 
-from ..base.scalars import column
 from ..base.vocabulary import Precision
 from ..errors import DeclarationError, ParameterError, UnknownNameError
 from .declared_parts import Body, Expression, Ground, Link, Parameter, Point
 from .joints import Joint
-from .link_density import Density
 
 END: dict[Precision, float] = {"double": 1e-12, "single": 1e-6}
 """Fraction of a link's length within which a point is at the link's end."""
@@ -82,35 +79,6 @@ def parameter_values(
 def parameter_faults(parameters: Mapping[str, Parameter], values: Mapping[str, float]) -> list[str]:
     """Faults of values of parameters, each in words of its own."""
     return [fault for name, value in values.items() if (fault := parameters[name].fault(value))]
-
-
-def on_link(point: Point, number: Callable[[Expression], float]) -> tuple[Point, float]:
-    """A point; or where the rounding of a drawing put it beyond an end of a link that has sections,
-    the end; and how far it was.
-    """
-    if not (
-        isinstance(point.body, Link) and isinstance(point.body.mass, Density) and point.end is None
-    ):
-        return point, 0.0
-    x, moved = along_link(point.x, point.body.length, number)
-    return (replace(point, x=x), moved) if moved else (point, 0.0)
-
-
-def along_link(
-    x: Expression, length: Expression, number: Callable[[Expression], float]
-) -> tuple[Expression, float]:
-    """A place along a link [m]; or where the rounding of a drawing put it beyond an end, that end,
-    and by how much it was moved.
-
-    So far as it is beyond for any parameters; ``number`` has the value of an expression for the
-    default ones.
-    """
-    for end, beyond in ((0.0, -x), (length, x - length)):
-        if ca.jacobian(ca.SX(beyond), column(ca.symvar(ca.SX(beyond)))).is_zero():
-            size, far = number(length), number(beyond)
-            if END["double"] * size < far <= ROUNDED * size:
-                return end, far
-    return x, 0.0
 
 
 def at_end(point: Point) -> Expression:

@@ -99,23 +99,23 @@ class LineLoad(Brief):
     @property
     def reach(self) -> Expression:
         """The length of the part on which it acts [m]."""
-        return self.link.length if self.whole else self.between[1] - self.between[0]
+        return self.between[1] - self.between[0]
 
     @property
     def width(self) -> Expression:
         """The length of the part on which it acts, as a ratio to that of the link."""
-        return 1.0 if self.whole else self.reach / self.link.length
+        return self.reach / self.link.length
 
     @property
     def end(self) -> Expression:
         """End, as a ratio xi/l."""
-        return 1.0 if self.whole else self.between[1] / self.link.length
+        return self.between[1] / self.link.length
 
     @property
     def points(self) -> tuple[Point, ...]:
         """Place of its resultant: the middle of the part on which it acts."""
         start, end = self.between
-        return (self.link.at(end / 2 if self.whole else (start + end) / 2),)
+        return (self.link.at((start + end) / 2),)
 
 
 POSITIVE = ("radius", "length", "stribeck", "smooth", "effort", "speed")

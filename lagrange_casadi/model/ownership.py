@@ -8,6 +8,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import get_args
 
+import casadi as ca
+
+from ..base.scalars import column
 from ..errors import DeclarationError
 from .constraints import Constraint, Row
 from .declaration import Declaration
@@ -26,7 +29,8 @@ from .declared_parts import (
 from .drives import Drive
 from .expressions import check_name, scalar
 from .joints import Axis, Joint
-from .limits import along_link, on_link
+from .limits import END, ROUNDED
+from .link_density import Density
 from .loads import Load
 
 _WORDS: dict[type[object], str] = dict.fromkeys(get_args(Load), "a load") | {
@@ -83,15 +87,22 @@ class Ownership:
                 f"{place_of}: a planar mechanism has no z, got {z}; use SpatialMechanism for one"
                 " in space"
             )
-        found, moved = on_link(Point(point.body, x, y, point.end, z), self.at_defaults)
-        self.snapped(what, distance=moved)
-        return found
+        body, end = point.body, point.end
+        if isinstance(body, Link) and isinstance(body.mass, Density) and end is None:
+            x = self.along(what, x, body)
+        return Point(body, x, y, end, z)
 
     def along(self, what: str, x: Expression, link: Link) -> Expression:
-        """A place along a link of a part ``what``, at an end where rounding puts it beyond."""
-        found, moved = along_link(x, link.length, self.at_defaults)
-        self.snapped(what, distance=moved)
-        return found
+        """A place of a part ``what`` along a link [m]; or where the rounding of a drawing put it
+        beyond an end, by as much for any parameters, that end.
+        """
+        for end, beyond in ((0.0, -x), (link.length, x - link.length)):
+            if ca.jacobian(ca.SX(beyond), column(ca.symvar(ca.SX(beyond)))).is_zero():
+                size, far = self.at_defaults(link.length), self.at_defaults(beyond)
+                if END["double"] * size < far <= ROUNDED * size:
+                    self.snapped(what, distance=far)
+                    return end
+        return x
 
     def snapped(self, what: str, *, angle: float = 0.0, distance: float = 0.0) -> None:
         """Note by how much an axis [rad] or a place [m] of a part is taken as the exact one that a
