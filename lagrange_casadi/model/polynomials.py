@@ -9,6 +9,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import casadi as ca
@@ -46,8 +47,8 @@ def powers(expression: Expression, symbol: Expression, replaced: Polynomial) -> 
         other for other in ca.symvar(expression) if other.element_hash() != symbol.element_hash()
     ]
     function = ca.Function("along", [symbol, column(others)], [ca.densify(expression)])
-    operations: dict[int, Callable[..., Polynomial]] = {
-        step.operation: _alone(step.operation)
+    operations = {
+        step.operation: _alone(partial(applied, step.operation))
         for step in steps(function)
         if step.operation not in _NOT_COMPUTED
     }
@@ -65,17 +66,13 @@ def powers(expression: Expression, symbol: Expression, replaced: Polynomial) -> 
 _NOT_COMPUTED = {ca.OP_CONST, ca.OP_INPUT, ca.OP_OUTPUT}
 
 
-def _alone(operation: int) -> Callable[..., Polynomial]:
-    """An operation on what does not depend on the symbol."""
+def _alone(function: Callable[..., ca.SX]) -> Callable[..., Polynomial]:
+    """A function of what does not depend on the symbol."""
 
-    def apply(*operands: Any) -> Polynomial:
-        *looked_up, values = (operands[0], operands[1:]) if operation == ca.OP_CALL else (operands,)
+    def apply(*values: Polynomial) -> Polynomial:
         if any(len(value) > 1 for value in values):
             raise _NoPolynomialError
-        numbers = [value[0] for value in values]
-        if looked_up:
-            return (looked_up[0].function(*numbers),)
-        return (applied(operation, *numbers),)
+        return (function(*(value[0] for value in values)),)
 
     return apply
 
@@ -89,10 +86,7 @@ def _trimmed(polynomial: Sequence[Expression]) -> Polynomial:
 
 
 def _plus(a: Polynomial, b: Polynomial) -> Polynomial:
-    longer, shorter = (a, b) if len(a) >= len(b) else (b, a)
-    return _trimmed(
-        [*(x + y for x, y in zip(longer, shorter, strict=False)), *longer[len(shorter) :]]
-    )
+    return _trimmed([x + y for x, y in itertools.zip_longest(a, b, fillvalue=ca.SX(0))])
 
 
 def _negative(a: Polynomial) -> Polynomial:
@@ -142,6 +136,7 @@ _POLYNOMIAL: dict[int, Callable[..., Polynomial]] = {
     ca.OP_POW: _power,
     ca.OP_CONSTPOW: _power,
     ca.OP_ASSIGN: lambda a: a,
+    ca.OP_CALL: lambda looked_up, x: _alone(looked_up.function)(x),
 }
 """Operations that make polynomials of polynomials."""
 
