@@ -18,7 +18,7 @@ from .link_density import Density, Slices, uniform
 from .ownership import Ownership
 
 Masses: TypeAlias = tuple[Expression, Density | None, Expression, Expression, bool]
-"""What is given of a link's mass: mass, density, centre, inertia, and whether any is accepted."""
+"""Mass, density, centre and inertia of a link as given, and whether any inertia is accepted."""
 
 ALL = "all"
 """Name of the mass of everything that moves."""

@@ -29,8 +29,8 @@ _ROOTS: dict[str, Callable[[Any], Any]] = {
     "acceleration": ca.sqrt,
     "jerk": lambda ratio: ratio**_CUBE,
 }
-"""How the time of a move follows from the ratio of its speed, acceleration or jerk in a time of one
-to the limit.
+"""Time of a move from the ratio of its largest speed, acceleration or jerk in a time of one, to
+the limit.
 """
 
 

@@ -89,18 +89,20 @@ class Wanted:
                 " as effort"
             )
         chosen = set(every if "all" in names else names)
-        user_outputs = (
-            output
-            for name, output in mechanism.outputs.items()
-            if chosen & {"output", f"output:{name}"}
-        )
-        chosen |= {asked.wanted for output in user_outputs for asked in output.made_of}
+        chosen |= {
+            asked.wanted
+            for name in among("output", mechanism.outputs, chosen)
+            for asked in mechanism.outputs[name].made_of
+        }
         beams = links_with_beams(mechanism)
         chosen |= {f"section:{link}" for kind in STRENGTH for link in among(kind, beams, names)}
         if fitted := among("safety", mechanism.fitted, names):
             chosen |= {"motion", *(f"reaction:{joint}" for joint in fitted)}
-        loads = (name for name, load in mechanism.loads.items() if isinstance(load, Friction))
-        chosen |= {f"friction:{name}" for name in loads if chosen & {"load", f"load:{name}"}}
+        chosen |= {
+            f"friction:{name}"
+            for name in among("load", mechanism.loads, chosen)
+            if isinstance(mechanism.loads[name], Friction)
+        }
         if not chosen:
             raise DeclarationError(f"no output wanted; valid: {', '.join(choices)}")
 

@@ -4,7 +4,7 @@ and names that are refused.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 
 from ..base.arguments import texts
 from ..errors import DeclarationError
@@ -26,9 +26,9 @@ def others(names: Iterable[str]) -> tuple[str, ...]:
     return tuple(name for name in names if name.partition(":")[0] != SENSITIVITY)
 
 
-def among(kind: str, parts: Iterable[str], names: Sequence[str]) -> list[str]:
+def among(kind: str, parts: Iterable[str], names: Collection[str]) -> list[str]:
     """Choose of parts those of which a kind of output is among wanted names."""
-    return [part for part in parts if {"all", kind, f"{kind}:{part}"} & set(names)]
+    return [part for part in parts if not {"all", kind, f"{kind}:{part}"}.isdisjoint(names)]
 
 
 def without_fitted(fitted: Iterable[str], names: Sequence[str], what: str) -> None:
