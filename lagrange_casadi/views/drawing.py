@@ -30,7 +30,8 @@ from .shapes.picture_files import check_picture
 from .shapes.picture_sheet import Picture, picture, view_of
 from .shapes.pixels import frames
 from .shapes.poses import Poses
-from .shapes.primitives import Primitive, cloud, drawing, seen, size_of
+from .shapes.primitives import cloud, drawing, seen, size_of
+from .shapes.symbols import Primitive
 from .shapes.vector import svg
 
 ENDINGS = (".svg", ".png")

@@ -14,8 +14,8 @@ from ...base.quantities import Output
 from ...errors import DeclarationError, UnknownNameError
 from ...model.description import Place
 from ...results.solution import Solution
-from ..shapes.primitives import LOW, Arrow, Line, Primitive
 from ..shapes.readable import scale_for
+from ..shapes.symbols import LOW, Arrow, Line, Primitive
 from .film_frames import Frames
 
 ACTION_COLOURS = {"reaction": "#c2304a", "effort": "#6d3fc0", "load": "#1e7f55"}

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -14,35 +15,18 @@ import numpy as np
 from ...base.arrays import Array, every
 from ...results.solution import Solution
 from ...results.store.specs import MechanismDrawing
-from ..shapes.labels import apart, label_bodies, placed
 from ..shapes.marks import ground_axes
 from ..shapes.orthographic import View, page, views
-from ..shapes.picture_sheet import filling, together, view_of
+from ..shapes.picture_sheet import LETTER, view_of, written
 from ..shapes.poses import Poses
-from ..shapes.primitives import (
-    GROUND,
-    Line,
-    Name,
-    Primitive,
-    Symbol,
-    cloud,
-    colours_of,
-    drawing,
-    edge,
-    seen,
-    size_of,
-    spread,
-    turn,
-)
+from ..shapes.primitives import cloud, colours_of, drawing, seen, size_of
 from ..shapes.readable import Scale, instant, scale_for
-from ..shapes.symbols import SYMBOLS
+from ..shapes.symbols import GROUND, Line, Name, Primitive, Symbol, edge, outlines
 from .stills import stills
 
 if TYPE_CHECKING:
-    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from matplotlib.transforms import Transform
 
 _UNIT = 0.55
 """Points of a figure for a point of symbols and lines."""
@@ -56,8 +40,8 @@ _FAINT, _MARGIN = 0.2, 0.12
 _THINNED = 2000
 """Largest number of instants at which everything must have room."""
 
-_ROW = 0.21
-"""The height of a row of the legend [inch]."""
+_ROW, _IN_ROW = 0.21, 6
+"""The height of a row of the legend [inch], and bodies in a row beside other pictures."""
 
 
 class _Panel(NamedTuple):
@@ -109,14 +93,11 @@ def draw_mechanism(solution: Solution, spec: MechanismDrawing, si: bool = False)
         axes, view = figure.add_axes(tuple(np.array(place) / (sheet.size * 2))), panel.view
         _frame(axes, view, box, place[2:], scale_for("m", size, si))
         axes.set_title(panel.title, fontsize=10)
-        first, *others = (seen(drawing(poses.during([k]), thin), view) for k in panel.instants)
-        for other in reversed(others):
-            paint(axes, other, strong=False)
-        if panel.named and space:
-            first += seen(ground_axes(view, cloud(seen(everything, view)), size), view)
-        paint(axes, first)
-        if panel.named:
-            _name(axes, first)
+        point = (box[1] - box[0]) / (72.0 * place[2])
+        for k in reversed(panel.instants[1:]):
+            other = seen(drawing(poses.during([k]), thin, {}), view)
+            _painted(axes, other, point, strong=False)
+        _show(axes, view, poses.during([panel.instants[0]]), thin, box, point, panel.named)
     names, handles = zip(*entries, strict=True)
     figure.legend(
         handles,
@@ -126,7 +107,7 @@ def draw_mechanism(solution: Solution, spec: MechanismDrawing, si: bool = False)
         frameon=False,
         fontsize=9,
         labelspacing=0.35,
-        handler_map={Symbol: _handler()},
+        handler_map={Symbol: _Legend()},
     )
     figure.suptitle("\n".join(head), fontsize=11, y=1.0 - 0.1 / sheet.size[1], va="top")
     return figure
@@ -138,55 +119,85 @@ def draw_into(axes: Axes, solution: Solution) -> None:
     """
     description = solution.description
     whole, one = Poses.of(solution), view_of(description)
-    everything, things = drawing(whole), seen(drawing(whole.during([0]), whole), one)
+    everything = drawing(whole)
     size = size_of(everything)
-    if description.space:
-        things += seen(ground_axes(one, cloud(seen(everything, one)), size), one)
-    low, high = _ends(everything, one, size)
-    _frame(axes, one, (low[0], high[0], low[1], high[1]), (4.6, 3.4), scale_for("m", size))
+    (left, bottom), (right, top) = _ends(everything, one, size)
+    box = left, right, bottom, top
+    _frame(axes, one, box, (4.6, 3.4), scale_for("m", size))
     axes.set_aspect("equal")
     if description.space:
         axes.set_xlabel(one.title, fontsize=8)
-    paint(axes, things)
     bodies = [entry for entry in _entries(solution) if entry[0] in description.bodies]
-    label_bodies(axes.figure, [handle for _, handle in bodies], [name for name, _ in bodies])
     figure: Any = axes.figure
-    # Where everything is on the page is known when it is laid out.
-    if figure.get_layout_engine():
-        figure.draw_without_rendering()
-    else:
-        axes.apply_aspect()
-    _name(axes, things)
+    if not figure.legends:
+        names, handles = zip(*bodies, strict=True)
+        place = "outside lower center"
+        figure.legend(handles, names, loc=place, ncols=_IN_ROW, frameon=False, fontsize=8)
+    # How large a point is on the page is known when that is laid out.
+    figure.draw_without_rendering()
+    point = (right - left) / (72.0 * axes.bbox.width / figure.dpi)
+    _show(axes, one, whole.during([0]), whole, box, point)
 
 
-def paint(axes: Axes, things: Sequence[Line | Symbol | Name], strong: bool = True) -> None:
-    """Paint the lines and symbols of an instant; of one that is not the ``strong`` one faint,
-    without guides and the ground.
+def _show(
+    axes: Axes,
+    view: View,
+    now: Poses,
+    whole: Poses,
+    box: Sequence[float],
+    point: float,
+    named: bool = True,
+) -> None:
+    """Paint an instant with its names, in space with the ground's axes, into a ``box`` of left,
+    right, bottom and top [m], where a point of paper is so many metres.
     """
+    things = seen(drawing(now, whole, None if named else {}), view)
+    if named and now.description.space:
+        everything = drawing(whole)
+        things += seen(ground_axes(view, cloud(seen(everything, view)), size_of(everything)), view)
+    left, right, bottom, top = box
+    letters, corners = np.full(2, _POINTS / LETTER * point), ((left, bottom), (right, top))
+    _painted(axes, written(things, letters, corners), point)
+
+
+def _painted(
+    axes: Axes, things: Sequence[Line | Symbol | Name], point: float, strong: bool = True
+) -> None:
+    """Paint the lines and symbols of an instant, and the names beside them, where a point of paper
+    is so many metres; of an instant that is not the ``strong`` one faint, without guides, the
+    ground and names.
+    """
+    from matplotlib.patheffects import withStroke
+
     alpha = 1.0 if strong else _FAINT
     for order, thing in enumerate(things):
-        if isinstance(thing, Name) or (thing.level <= GROUND and not strong):
+        if isinstance(thing, Name):
+            x, y = thing.points[0, 0]
+            halo = [withStroke(linewidth=2.0, foreground="white")]
+            name = axes.text(x, y, thing.text, fontsize=_POINTS, color="0.2", zorder=6)
+            name.set(path_effects=halo, in_layout=False)
             continue
-        style: dict[str, Any] = {"alpha": alpha, "zorder": 2.0 + strong + 1e-4 * order}
-        points = thing.points[0]
-        if isinstance(thing, Symbol):
-            for patch in _patches(thing, _stands_at(axes, thing)):
-                patch.set(**style)
-                axes.add_artist(patch)
+        if thing.level <= GROUND and not strong:
             continue
-        if thing.opacity:
-            face = {**style, "alpha": thing.opacity * alpha}
-            axes.fill(*points.T, facecolor=thing.colour, linewidth=0.0, **face)
-        axes.plot(
-            *edge(points, thing.closed).T,
-            color=thing.colour,
-            linewidth=_UNIT * thing.width,
-            linestyle=(0, (6, 4)) if thing.dashed else "-",
-            solid_capstyle="round",
-            solid_joinstyle="round",
-            label=thing.body if thing.body and strong else "_",
-            **style,
-        )
+        style: dict[str, Any] = {"zorder": 2.0 + strong + 1e-4 * order}
+        for line in outlines(thing, np.full(2, _UNIT * point)):
+            if line.opacity:
+                face: dict[str, Any] = {
+                    "facecolor": line.fill or line.colour,
+                    "alpha": line.opacity * alpha,
+                }
+                axes.fill(*line.points.T, linewidth=0.0, **face, **style)
+            axes.plot(
+                *edge(line).T,
+                color=line.colour,
+                linewidth=_UNIT * line.width,
+                linestyle=(0, (6, 4)) if line.dashed else "-",
+                solid_capstyle="round",
+                solid_joinstyle="round",
+                label=line.body if line.body and strong else "_",
+                alpha=alpha,
+                **style,
+            )
 
 
 def _panels(solution: Solution, spec: MechanismDrawing, chosen: Sequence[int]) -> Iterator[_Panel]:
@@ -201,43 +212,19 @@ def _panels(solution: Solution, spec: MechanismDrawing, chosen: Sequence[int]) -
         yield _Panel(view_of(description), instants, title)
 
 
-def _stands_at(axes: Axes, symbol: Symbol) -> Transform:
-    """The transformation of points about a symbol's place to the display."""
-    from matplotlib.transforms import Affine2D, ScaledTranslation
-
-    display: Any = axes.transData
-    x, y = symbol.points[0, 0]
-    turned = Affine2D().rotate(turn(symbol, 0)).scale(_UNIT / 72.0)
-    return turned + axes.figure.dpi_scale_trans + ScaledTranslation(x, y, display)
-
-
-def _patches(symbol: Symbol, transform: Transform) -> Iterator[Artist]:
-    """The outlines of a symbol."""
-    from matplotlib.patches import PathPatch
-    from matplotlib.path import Path
-
-    for one in SYMBOLS[symbol.kind]:
-        yield PathPatch(
-            Path(edge(one.points, one.closed), closed=one.closed),
-            facecolor=filling(symbol, one) or "none",
-            edgecolor=one.colour,
-            linewidth=_UNIT * one.width,
-            transform=transform,
-        )
-
-
-def _handler() -> Any:
+class _Legend:
     """The painter of symbols in a legend."""
-    from matplotlib.legend_handler import HandlerBase
-    from matplotlib.transforms import Affine2D
 
-    class Handler(HandlerBase):
-        def create_artists(self, *given: Any) -> list[Artist]:
-            _, symbol, x, y, wide, high, size, transform = given
-            middle = Affine2D().scale(0.08 * _UNIT * size).translate(wide / 2 - x, high / 2 - y)
-            return [*_patches(symbol, middle + transform)]
+    def legend_artist(self, _: object, symbol: Symbol, size: float, box: Any) -> None:
+        """Paint a symbol for letters of a ``size`` [pt]."""
+        from matplotlib.patches import Polygon
 
-    return Handler()
+        middle = [box.width / 2 - box.xdescent, box.height / 2 - box.ydescent]
+        here = replace(symbol, points=np.array([[middle]]))
+        for line in outlines(here, np.full(2, 0.08 * _UNIT * size)):
+            style: dict[str, Any] = {"edgecolor": line.colour, "linewidth": _UNIT * line.width}
+            face = line.fill or "none"
+            box.add_artist(Polygon(line.points, closed=line.closed, facecolor=face, **style))
 
 
 def _ends(things: Sequence[Primitive], one: View, size: float) -> tuple[Array, Array]:
@@ -294,59 +281,3 @@ def _entries(solution: Solution) -> list[tuple[str, Any]]:
         if description.paths:
             found.append(("declared point", Symbol("point", nowhere)))
     return found
-
-
-def _name(axes: Axes, things: Sequence[Line | Symbol | Name]) -> None:
-    """Write names beside their places, where they hide neither each other nor more of the picture
-    than they must, with a line to the place if the name may be taken for another's.
-    """
-    from matplotlib.patheffects import withStroke
-    from matplotlib.textpath import TextPath
-
-    points, display = 72.0 / axes.figure.dpi, axes.transData
-    near = (
-        2.0
-        / points
-        / float(np.hypot(*(display.transform((1.0, 0.0)) - display.transform((0.0, 0.0)))))
-    )
-    names = together((one for one in things if isinstance(one, Name)), near)
-    if not names:
-        return
-    texts = ["\n".join(textwrap.wrap(one.text, 34)) for one in names]
-    lines = [[TextPath((0, 0), line, size=_POINTS) for line in text.split("\n")] for text in texts]
-    sizes = np.array(
-        [
-            (max(e.get_extents().width for e in rows) + 1.0, 1.25 * _POINTS * len(rows))
-            for rows in lines
-        ]
-    )
-    anchors = points * display.transform(np.array([one.points[0, 0] for one in names]))
-    hidden = [np.zeros((0, 2))]
-    for thing in things:
-        if isinstance(thing, Line) and thing.level > GROUND:
-            hidden.append(points * display.transform(spread(thing.points[0], thing.closed)))
-        elif isinstance(thing, Symbol):
-            about = _stands_at(axes, thing)
-            lines_of = (spread(one.points, one.closed) for one in SYMBOLS[thing.kind])
-            hidden += [points * about.transform(line) for line in lines_of]
-    border = points * axes.bbox.get_points().ravel() + [2.0, 2.0, -2.0, -2.0]
-    corners = placed(anchors, sizes, np.concatenate(hidden), [border] * len(names))
-    for text, anchor, low, size in zip(texts, anchors, corners, sizes, strict=True):
-        distance = apart(low, size, anchor)
-        far = (
-            distance > 10.0
-            or sum(apart(low, size, other) < 2.0 * distance for other in anchors) > 1
-        )
-        line = {"arrowstyle": "-", "color": "0.5", "linewidth": 0.5, "shrinkA": 0, "shrinkB": 0}
-        name = axes.annotate(
-            text,
-            tuple(display.inverted().transform(anchor / points)),
-            tuple(low - anchor),
-            textcoords="offset points",
-            fontsize=_POINTS,
-            color="0.2",
-            zorder=6,
-            arrowprops=line if far else None,
-            path_effects=[withStroke(linewidth=2.0, foreground="white")],
-        )
-        name.set_in_layout(False)

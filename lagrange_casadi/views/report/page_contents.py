@@ -26,7 +26,7 @@ from ..shapes.orthographic import upright
 from ..shapes.poses import Poses, require_poses
 from ..shapes.primitives import carried, colours_of, disc_axis, drawing, size_of
 from ..shapes.shapes import named_spots, shapes
-from ..shapes.symbols import BODY, FOOT, INK, PAPER, PATH, STAND, SYMBOLS, Outline
+from ..shapes.symbols import BODY, FOOT, INK, PAPER, PATH, STAND, SYMBOLS, Line
 from .array_block import Arrays, finite
 from .instants import drive_entry, mark, shown_instants
 from .live import Live, live_entry
@@ -161,7 +161,7 @@ def _carried(description: Description, poses: Poses) -> Iterator[dict[str, Json]
         }
 
 
-def _outline(one: Outline) -> dict[str, Json]:
+def _outline(one: Line) -> dict[str, Json]:
     """An outline of a symbol, its colours by the names that they have in a page."""
     return {
         "points": one.points.round(2).tolist(),

@@ -1,20 +1,15 @@
 """Names beside their points, where they hide neither each other nor more of the picture than they
-must; and those of colours.
+must.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...base.arrays import Array
-
-if TYPE_CHECKING:
-    from matplotlib.artist import Artist
-    from matplotlib.figure import Figure, SubFigure
 
 _REACHES, _DIRECTIONS = (6.0, 10.0, 15.0, 21.0, 28.0, 38.0, 50.0, 70.0), 16
 """Distances of a name from its point [pt], and number of directions, that are tried."""
@@ -23,9 +18,6 @@ _OVERLAP, _HIDDEN, _OUTSIDE, _FAR = 1e4, 6.0, 1e4, 1.0
 """Costs of a name's place: on another name, on a part of the picture, beyond the edge; and for each
 point [pt] of distance.
 """
-
-NAMES_IN_ROW = 6
-"""Bodies in a row of the legend."""
 
 
 def placed(
@@ -93,20 +85,3 @@ def _within(points: Array, low: Array, high: Array) -> Array:
     """Numbers (n,) of points (m, 2) between corners (n, 1, 2)."""
     (x, y), (left, bottom), (right, top) = (np.moveaxis(one, -1, 0) for one in (points, low, high))
     return np.asarray(np.sum((x > left) & (x < right) & (y > bottom) & (y < top), axis=1))
-
-
-def label_bodies(
-    figure: Figure | SubFigure, handles: Sequence[Artist], names: Sequence[str]
-) -> None:
-    """Draw the legend of bodies and colours, once below all drawings of a figure; where its layout
-    is not constrained, in its corner.
-    """
-    if not figure.legends:
-        figure.legend(
-            handles,
-            names,
-            loc="outside lower center" if figure.get_layout_engine() else "lower left",
-            ncols=NAMES_IN_ROW,
-            frameon=False,
-            fontsize=8,
-        )

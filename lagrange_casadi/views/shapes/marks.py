@@ -21,9 +21,10 @@ from ...model.stated import Entry, LoadLaw
 from .curves import around
 from .orthographic import View
 from .poses import Poses, frame_along
-from .primitives import AXES, PINS, Arrow, Line, Name, Primitive, colours_of
+from .primitives import colours_of
 from .readable import scale_for
 from .shapes import shapes
+from .symbols import AXES, PINS, Arrow, Line, Name, Primitive
 
 DRIVEN, LOAD, GAP, GROUND_AXES = "#6d3fc0", "#c0168f", "#d00000", "#777777"
 

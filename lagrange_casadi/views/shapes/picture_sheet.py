@@ -5,7 +5,7 @@ pixels from the upper left corner.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,8 +15,8 @@ from ...base.vocabulary import AZIMUTH, ELEVATION
 from ...model.description import Description
 from .labels import apart, placed
 from .orthographic import View, upright, view
-from .primitives import Line, Name, Primitive, Symbol, cloud, frame, seen, spread, turn
-from .symbols import BODY, INK, SYMBOLS, Outline
+from .primitives import cloud, seen
+from .symbols import Line, Name, Primitive, Symbol, edge, outlines
 
 _MARGIN, _FOOT = 40.0, 30.0
 """Around everything, and below for words [points]."""
@@ -41,16 +41,7 @@ _HEAD = 36
 _GRID = 2.0
 """Distance of points that names may hide, where lines have more [points]."""
 
-_SIDES = np.array([(1.0, 1.0), (-1.0, -1.0)])
-
-
-@dataclass(frozen=True, eq=False)
-class Words:
-    """A text whose left end is at ``points`` (frames, 2) [pixels]."""
-
-    points: Array
-    text: str
-    colour: str = INK
+_SIDES, _DOWN = np.array([(1.0, 1.0), (-1.0, -1.0)]), np.array([1.0, -1.0])
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +59,7 @@ class Picture:
     unit: float
     frames: int
     closed: bool
-    things: tuple[Line | Symbol | Words, ...]
+    things: tuple[Line | Symbol | Name, ...]
 
 
 def view_of(description: Description) -> View:
@@ -102,15 +93,11 @@ def picture(
     below = (_FOOT + _LINE * (len(lines) - 1)) * unit if words else 0.0
     scale = min((width - 2 * margin) / span[0], (tallest * width - 2 * margin - below) / span[1])
     height = 2 * math.ceil((max(scale * span[1] + 2 * margin, _FLATTEST * width) + below) / 2)
-    corner = np.array([width, height - below]) / 2 - scale * (low + high) / 2 * [1.0, -1.0]
-    flip = np.array([1.0, -1.0])
-    placed = [replace(thing, points=corner + scale * flip * thing.points) for thing in things]
-    painted: list[Line | Symbol | Words] = [one for one in placed if not isinstance(one, Name)]
-    names = together((one for one in placed if isinstance(one, Name)), _CLOSE * unit)
-    painted += _named(names, painted, (width, height - below), unit)
+    corner = np.array([width, height - below]) / 2 - scale * (low + high) / 2 * _DOWN
+    placed = [replace(thing, points=corner + scale * _DOWN * thing.points) for thing in things]
+    painted = written(placed, unit * _DOWN, ((0.0, height - below), (width, 0.0)))
     for k, line in enumerate(lines, 1 - len(lines)):
-        foot = height + (_LINE * k - 12.0) * unit
-        painted.append(Words(np.array([[12.0 * unit, foot]]), line))
+        painted.append(_words(12.0 * unit, height + (_LINE * k - 12.0) * unit, line))
     frames = max(len(thing.points) for thing in painted)
     return Picture(title, width, height, unit, frames, closed, tuple(painted))
 
@@ -119,7 +106,7 @@ def sheet(title: str, pictures: Sequence[Picture], across: int, lines: Sequence[
     """Stills of one width in rows, so many ``across``, below a title, with lines of words on the
     right.
     """
-    wide, top, things = pictures[0].width, _HEAD, list[Line | Symbol | Words]()
+    wide, top, things = pictures[0].width, _HEAD, list[Line | Symbol | Name]()
     for start in range(0, len(pictures), across):
         row = pictures[start : start + across]
         for k, one in enumerate(row):
@@ -127,27 +114,70 @@ def sheet(title: str, pictures: Sequence[Picture], across: int, lines: Sequence[
             things += [replace(thing, points=thing.points + shift) for thing in one.things]
         top += max(one.height for one in row)
     left, step = across * wide + 12.0, 1.4 * LETTER
-    written = [(12.0, 0.7 * _HEAD, title)]
-    written += [(left, _HEAD + step * k, line) for k, line in enumerate(lines, 1)]
-    things += [Words(np.array([[x, y]]), line) for x, y, line in written]
+    things.append(_words(12.0, 0.7 * _HEAD, title))
+    things += [_words(left, _HEAD + step * k, line) for k, line in enumerate(lines, 1)]
     width = left + _WIDE * LETTER * max(map(len, lines))
     height = max(top, _HEAD + step * (len(lines) + 1))
     return Picture(title, round(width), round(height), 1.0, 1, False, tuple(things))
 
 
-def outline(symbol: Symbol, one: Outline, unit: float, k: int) -> Array:
-    """The points (n, 2) of an outline of a symbol on the sheet at a frame [pixels]."""
-    angle = turn(symbol, k)
-    c, s = math.cos(angle), math.sin(angle)
-    return np.asarray(frame(symbol.points, k) + unit * one.points @ [[c, -s], [-s, -c]])
+def written(
+    things: Iterable[Line | Symbol | Name],
+    point: Array,
+    corners: tuple[tuple[float, float], tuple[float, float]],
+) -> list[Line | Symbol | Name]:
+    """Things on a sheet with their names where these hide neither each other nor more of the first
+    frame than they must, and are between ``corners`` at all frames; with a line to a place that is
+    far.
+
+    ``point`` (2,) is a point of paper to the right and up, ``corners`` are the lower left and the
+    upper right one.
+    """
+    painted: list[Line | Symbol | Name] = []
+    names, hidden = list[Name](), [np.zeros((0, 2))]
+    for thing in things:
+        if isinstance(thing, Name):
+            names.append(thing)
+            continue
+        painted.append(thing)
+        for line in outlines(thing, point):
+            along = _spread(line) / point
+            hidden += [along + line.width / 2 * side for side in _SIDES]
+    names = _together(names, _CLOSE * float(point[0]))
+    ways = [one.points[:, 0] / point for one in names]
+    anchors = np.array([way[0] for way in ways])
+    sizes = np.array([(_WIDE * LETTER * len(one.text), 1.1 * LETTER) for one in names])
+    low, high = (np.array(corner) / point for corner in corners)
+    boxes = [
+        np.concatenate(
+            [low + way[0] - way.min(axis=0) + 4.0, high + way[0] - way.max(axis=0) - 4.0]
+        )
+        for way in ways
+    ]
+    hides = _GRID * np.unique(np.round(np.concatenate(hidden) / _GRID), axis=0)
+    places = placed(anchors, sizes, hides, boxes)
+    for one, anchor, place, size in zip(names, anchors, places, sizes, strict=True):
+        if apart(place, size, anchor) > _FAR:
+            nearest = np.clip(anchor, place, place + size)
+            ends = np.array([anchor, nearest]) - anchor
+            painted.append(Line(one.points + ends * point, _LEADER, 0.7))
+        shift = place - anchor + [0.0, 0.25 * LETTER]
+        painted.append(replace(one, points=one.points + shift * point))
+    return painted
 
 
-def filling(symbol: Symbol, one: Outline) -> str:
-    """The colour in which an outline of a symbol is filled, or nothing."""
-    return symbol.colour if one.fill == BODY else one.fill
+def _words(x: float, y: float, text: str) -> Name:
+    return Name(np.array([[[x, y]]]), text)
 
 
-def together(names: Iterable[Name], close: float) -> list[Name]:
+def _spread(line: Line) -> Array:
+    """Points along a line, as things that a name may hide."""
+    ends = edge(line)
+    shares = np.linspace(0.0, 1.0, max(2, 80 // len(ends)))[:, None, None]
+    return np.asarray(ends[:-1] + shares * np.diff(ends, axis=0)).reshape(-1, 2)
+
+
+def _together(names: Iterable[Name], close: float) -> list[Name]:
     """Names in place of those that are never farther apart than ``close``."""
     found: list[Name] = []
     for one in names:
@@ -159,37 +189,3 @@ def together(names: Iterable[Name], close: float) -> list[Name]:
         else:
             found.append(one)
     return found
-
-
-def _named(
-    names: Sequence[Name],
-    things: Iterable[Line | Symbol | Words],
-    room: tuple[float, float],
-    unit: float,
-) -> Iterator[Line | Words]:
-    """Names where they hide neither each other nor more of the first frame than they must, and are
-    on the sheet at all frames; with a line to a place that is far.
-    """
-    if not names:
-        return
-    flip, hidden = np.array([1.0, -1.0]) / unit, [np.zeros((0, 2))]
-    for thing in things:
-        if isinstance(thing, Line):
-            along = flip * spread(thing.points[0], thing.closed)
-            hidden += [along + thing.width / 2 * side for side in _SIDES]
-        elif isinstance(thing, Symbol):
-            hidden += [flip * outline(thing, one, unit, 0) for one in SYMBOLS[thing.kind]]
-    anchors = np.array([flip * one.points[0, 0] for one in names])
-    sizes = np.array([(_WIDE * LETTER * len(one.text), 1.1 * LETTER) for one in names])
-    ways = [flip * one.points[:, 0] - anchor for one, anchor in zip(names, anchors, strict=True)]
-    low, high = np.array([4.0, 4.0 - room[1] / unit]), np.array([room[0] / unit - 4.0, -4.0])
-    boxes = [np.concatenate([low - way.min(axis=0), high - way.max(axis=0)]) for way in ways]
-    things_there = _GRID * np.unique(np.round(np.concatenate(hidden) / _GRID), axis=0)
-    corners = placed(anchors, sizes, things_there, boxes)
-    for one, way, anchor, corner, size in zip(names, ways, anchors, corners, sizes, strict=True):
-        if apart(corner, size, anchor) > _FAR:
-            nearest = np.clip(anchor, corner, corner + size)
-            yield Line(
-                one.points + np.array([[anchor - anchor, nearest - anchor]]) / flip, _LEADER, 0.7
-            )
-        yield Words((way + corner + np.array([0.0, 0.25 * LETTER])) / flip, one.text, one.colour)

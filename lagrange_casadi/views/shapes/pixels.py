@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base.arrays import Array
-from .picture_sheet import LETTER, Picture, Words, filling, outline
-from .primitives import Line, edge, frame
-from .symbols import PAPER, SYMBOLS
+from .picture_sheet import LETTER, Picture
+from .symbols import PAPER, Name, edge, frame, outlines
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -37,24 +36,18 @@ def frames(picture: Picture, chosen: Iterable[int] | None = None) -> Iterator[Im
         sheet = Image.new("RGB", (_FINE * size[0], _FINE * size[1]), PAPER)
         brush = ImageDraw.Draw(sheet, "RGBA")
         for thing in picture.things:
-            if isinstance(thing, Line):
-                points = _FINE * frame(thing.points, k)
-                if thing.opacity:
-                    fill = f"{thing.colour}{round(255 * thing.opacity):02x}"
-                    brush.polygon([*points.ravel()], fill)
-                points = edge(points, thing.closed)
-                for part in _dashes(points, _DASH * unit) if thing.dashed else [points]:
-                    _stroke(brush, part, thing.colour, thing.width * unit)
-            elif isinstance(thing, Words):
-                place = _FINE * frame(thing.points, k)
+            if isinstance(thing, Name):
+                place = _FINE * frame(thing.points, k)[0]
                 style: dict[str, Any] = {"stroke_width": round(1.5 * unit), "stroke_fill": PAPER}
                 brush.text((place[0], place[1]), thing.text, thing.colour, font, "ls", **style)
-            else:
-                for one in SYMBOLS[thing.kind]:
-                    points = _FINE * outline(thing, one, picture.unit, k)
-                    if fill := filling(thing, one):
-                        brush.polygon([*points.ravel()], fill)
-                    _stroke(brush, edge(points, one.closed), one.colour, one.width * unit)
+                continue
+            for line in outlines(thing, picture.unit * np.array([1.0, -1.0]), k):
+                if line.opacity:
+                    fill = f"{line.fill or line.colour}{round(255 * line.opacity):02x}"
+                    brush.polygon([*(_FINE * line.points).ravel()], fill)
+                points = _FINE * edge(line)
+                for part in _dashes(points, _DASH * unit) if line.dashed else [points]:
+                    _stroke(brush, part, line.colour, line.width * unit)
         yield sheet.resize(size, Image.Resampling.BOX)
 
 

@@ -8,11 +8,9 @@ moves.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
-from typing import TypeAlias
 
 import numpy as np
 
@@ -23,15 +21,27 @@ from .curves import ROUND, SPIRAL, around, belt, between, rack
 from .orthographic import View
 from .poses import Poses
 from .shapes import Shape, named_spots, shapes, spots_of
-from .symbols import INK, PATH
+from .symbols import (
+    AXES,
+    BLOCKS,
+    BODIES,
+    GROUND,
+    PATH,
+    PINS,
+    POINTS,
+    SPRINGS,
+    WAYS,
+    Arrow,
+    Line,
+    Name,
+    Primitive,
+    Symbol,
+)
 
 COLOURS = (
     *("#1f4e79", "#b3541e", "#2e7d4f", "#7a3b8f", "#8a6d1a", "#3c6e71", "#9c2f4a", "#555555"),
     *("#6fa3d8", "#eba277", "#7cc79a", "#b98acb", "#d4b95c", "#86bcc0", "#dd8aa0", "#a9a9a9"),
 )
-
-LOW, WAYS, GROUND, SPRINGS, BODIES, AXES, BLOCKS, PINS, POINTS, FORCES = range(10)
-"""Levels: what has a lower one lies behind."""
 
 _SLIDES = ("prismatic", "cylindrical", "screw", "slot")
 _UNSUPPORTED = ("free", "prismatic", "slot", "cylindrical", "screw", "planar")
@@ -45,65 +55,6 @@ half a side of a plane.
 """
 
 _PITCH, _METAL = "#777777", "#666666"
-
-
-@dataclass(frozen=True, eq=False)
-class Line:
-    """A polyline through ``points`` (frames, n, 3) [m], or a polygon where it is ``closed``.
-
-    ``width`` is in points of paper; 0 is no line. ``opacity`` is that of a polygon's filling, which
-    has the line's colour. ``body`` is the body of which the line is a part.
-    """
-
-    points: Array
-    colour: str
-    width: float
-    closed: bool = False
-    opacity: float = 0.0
-    dashed: bool = False
-    level: int = BODIES
-    body: str = ""
-
-
-@dataclass(frozen=True, eq=False)
-class Symbol:
-    """A symbol of :data:`.SYMBOLS` at ``points`` (frames, 1, 3) [m].
-
-    The symbol's x axis has the direction ``along`` (frames, 3), by default that to the right;
-    ``colour`` is that of the body.
-    """
-
-    kind: str
-    points: Array
-    along: Array | None = None
-    colour: str = ""
-    level: int = PINS
-
-
-@dataclass(frozen=True, eq=False)
-class Arrow:
-    """An arrow along ``points`` (frames, n, 3) [m], with its head at the last of them, whose length
-    is at most ``head`` [m].
-    """
-
-    points: Array
-    colour: str
-    head: float
-    level: int = FORCES
-    width: float = 2.6
-
-
-@dataclass(frozen=True, eq=False)
-class Name:
-    """A name beside ``points`` (frames, 1, 3) [m]; ``colour`` is by default that of all letters."""
-
-    points: Array
-    text: str
-    level: int = FORCES
-    colour: str = INK
-
-
-Primitive: TypeAlias = Line | Symbol | Arrow | Name
 
 
 def drawing(
@@ -224,32 +175,6 @@ def seen(primitives: Iterable[Primitive], view: View) -> list[Line | Symbol | Na
             found.append(replace(one, points=points, along=along))
         else:
             found.append(replace(one, points=points))
-    return found
-
-
-def turn(symbol: Symbol, k: int) -> float:
-    """The angle of a symbol on a page at a frame, counter-clockwise [rad]."""
-    if symbol.along is None:
-        return 0.0
-    x, y = frame(symbol.along, k)
-    return math.atan2(y, x)
-
-
-def edge(points: Array, closed: bool) -> Array:
-    """The points (n, 2) of a polyline; of a ``closed`` polygon, and the first again."""
-    return np.vstack([points, points[:1]]) if closed else points
-
-
-def spread(points: Array, closed: bool) -> Array:
-    """Points along a polyline (n, 2), as things that a name may hide."""
-    ends = edge(points, closed)
-    shares = np.linspace(0.0, 1.0, max(2, 80 // len(ends)))[:, None, None]
-    return np.asarray(ends[:-1] + shares * np.diff(ends, axis=0)).reshape(-1, 2)
-
-
-def frame(values: Array, k: int) -> Array:
-    """The values at a frame; the only ones of what stands still."""
-    found: Array = values[min(k, len(values) - 1)]
     return found
 
 

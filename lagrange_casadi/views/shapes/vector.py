@@ -6,14 +6,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from html import escape
 
 import numpy as np
 
 from ...base.arrays import Array
-from .picture_sheet import LETTER, Picture, Words, filling
-from .primitives import Line, Symbol, turn
-from .symbols import INK, PAPER, SYMBOLS
+from .picture_sheet import LETTER, Picture
+from .symbols import INK, PAPER, Line, Name, Symbol, outlines, turn
 
 _UNFIT = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 """Letters that XML cannot hold."""
@@ -41,26 +41,17 @@ def svg(picture: Picture, seconds: float = 0.0, *, paper: bool = True) -> str:
 
 
 def _element(
-    thing: Line | Symbol | Words, picture: Picture, seconds: float, paper: bool
+    thing: Line | Symbol | Name, picture: Picture, seconds: float, paper: bool
 ) -> Iterator[str]:
     if isinstance(thing, Line):
-        name = "polygon" if thing.closed else "polyline"
-        width = thing.width * picture.unit
-        dash = f' stroke-dasharray="{4.0 * width:.4g} {4.0 * width:.4g}"' if thing.dashed else ""
-        fill = (
-            f'fill="{thing.colour}" fill-opacity="{thing.opacity:g}"'
-            if thing.opacity
-            else 'fill="none"'
-        )
-        ink = f'{fill} stroke="{thing.colour}" stroke-width="{width:.4g}"{dash}'
         places = [_pairs(points) for points in thing.points]
         moved = _animated("points", places, picture, seconds)
-        yield f'<{name} points="{places[0]}" {ink}>{moved}</{name}>'
+        yield _drawn(thing, places[0], picture.unit, moved)
         return
     points = thing.points.reshape(-1, 2)
     places = [f"{x:.1f} {y:.1f}" for x, y in points]
     moved = _animated("translate", places, picture, seconds)
-    if isinstance(thing, Words):
+    if isinstance(thing, Name):
         fill = thing.colour if paper or thing.colour != INK else "currentColor"
         halo = f' stroke="{PAPER}" stroke-width="{3.0 * picture.unit:.4g}" paint-order="stroke"'
         ink = f'fill="{fill}"{halo if paper else ""}'
@@ -72,15 +63,22 @@ def _element(
     turned = f' transform="rotate({turns[0]})"' if thing.along is not None else ""
     rotated = _animated("rotate", turns, picture, seconds)
     yield f'<g transform="translate({places[0]})">{moved}<g{turned}>{rotated}'
-    for one in SYMBOLS[thing.kind]:
-        fill = filling(thing, one) or "none"
-        ink = f'fill="{fill}" stroke="{one.colour}" stroke-width="{one.width * picture.unit:.4g}"'
-        if one.radius:
-            yield f'<circle r="{one.radius * picture.unit:.4g}" {ink}/>'
-            continue
-        name = "polygon" if one.closed else "polyline"
-        yield f'<{name} points="{_pairs(picture.unit * one.points * [1.0, -1.0])}" {ink}/>'
+    still = replace(thing, points=np.zeros((1, 1, 2)), along=None)
+    for line in outlines(still, picture.unit * np.array([1.0, -1.0])):
+        yield _drawn(line, _pairs(line.points), picture.unit)
     yield "</g></g>"
+
+
+def _drawn(line: Line, points: str, unit: float, moved: str = "") -> str:
+    """The element of a line at some points."""
+    name, width = "polygon" if line.closed else "polyline", line.width * unit
+    fill = line.fill or line.colour if line.opacity else "none"
+    clear = f' fill-opacity="{line.opacity:g}"' if 0.0 < line.opacity < 1.0 else ""
+    dash = f' stroke-dasharray="{4.0 * width:.4g} {4.0 * width:.4g}"' if line.dashed else ""
+    ink = f'fill="{fill}"{clear} stroke="{line.colour}" stroke-width="{width:.4g}"{dash}'
+    if line.radius:
+        return f'<circle r="{line.radius * unit:.4g}" {ink}/>'
+    return f'<{name} points="{points}" {ink}>{moved}</{name}>'
 
 
 def _pairs(points: Array) -> str:
