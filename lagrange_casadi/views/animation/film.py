@@ -11,11 +11,12 @@ from ...errors import DeclarationError
 from ...results.pictures import Animation, Film
 from ...results.solution import Solution
 from ..shapes.picture_sheet import Picture, picture, view_of
+from ..shapes.poses import Poses
 from ..shapes.primitives import drawing, size_of
 from ..shapes.shapes import named_spots
 from ..shapes.vector import svg
 from .film_frames import frames_of
-from .forces import drawn_forces
+from .forces import drawn_forces, moving
 from .gltf import glb
 from .moving_pixels import find_ffmpeg, gif, mp4
 
@@ -115,12 +116,15 @@ def picture_of(solution: Solution, film: Film) -> Picture:
 
     Raises :class:`.DeclarationError` for motion or forces that the solution lacks.
     """
-    frames = frames_of(solution, max(2, round(film.rate * film.seconds)))
+    solution = moving(solution)
+    shown, closed = frames_of(solution, max(2, round(film.rate * film.seconds)))
     description = solution.description
     named = named_spots(description) if film.names else {}
     joints = {name: spot for name, spot in named.items() if name in description.joints}
-    lines = drawing(frames.poses, frames.whole, joints)
-    forces, words = drawn_forces(frames, size_of(lines), arrows=film.forces, section=film.section)
+    lines = drawing(Poses.of(shown), Poses.of(solution), joints)
+    forces, words = drawn_forces(
+        shown, solution, size_of(lines), arrows=film.forces, section=film.section
+    )
     return picture(
         solution.case,
         (*lines, *forces),
@@ -128,5 +132,5 @@ def picture_of(solution: Solution, film: Film) -> Picture:
         film.width,
         unit=film.width / _WIDE,
         words=words,
-        closed=frames.closed,
+        closed=closed,
     )

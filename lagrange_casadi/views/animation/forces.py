@@ -12,11 +12,10 @@ import numpy as np
 from ...base.arrays import Array
 from ...base.quantities import Output
 from ...errors import DeclarationError, UnknownNameError
-from ...model.description import Place
 from ...results.solution import Solution
+from ..shapes.poses import Poses
 from ..shapes.readable import scale_for
 from ..shapes.symbols import LOW, Arrow, Line, Primitive
-from .film_frames import Frames
 
 ACTION_COLOURS = {"reaction": "#c2304a", "effort": "#6d3fc0", "load": "#1e7f55"}
 _POSITIVE, _NEGATIVE = "#d9622b", "#2267b0"
@@ -58,40 +57,41 @@ class Action:
 
 
 def drawn_forces(
-    frames: Frames, size: float, *, arrows: bool, section: str
+    shown: Solution, whole: Solution, size: float, *, arrows: bool, section: str
 ) -> tuple[tuple[Primitive, ...], str]:
-    """The forces of a mechanism of a ``size`` [m], and the largest ones in words: arrows of
-    reactions, efforts and loads, and ribbons of one section force if one is named.
+    """The forces of a mechanism of a ``size`` [m] at the instants that are ``shown``, and the
+    largest ones in words: arrows of reactions, efforts and loads, and ribbons of one section force
+    if one is named, whose peaks are those of the ``whole`` solution.
 
     Raises :class:`.DeclarationError` where the solution does not have them.
     """
     found: list[Primitive] = []
     words: list[str] = []
     if arrows:
-        pushes, moments = actions_of(frames)
+        pushes, moments = actions_of(shown)
         for actions, unit, what in ((pushes, "N", "arrows"), (moments, "N m", "drive torques")):
             largest = largest_of(actions)
-            found += [_arrow(one, frames, size, largest or 1.0) for one in actions]
+            found += [_arrow(one, shown.description.space, size, largest or 1.0) for one in actions]
             words += (
                 [f"{what}: up to {scale_for(unit, largest).said(largest, 3)}"] if actions else []
             )
     if section:
-        frames = _moving(frames)
-        laws = _laws(frames.solution, section)
-        peaks = [frames.solution.peak(Output("section", link, section)) for link in laws]
+        laws, poses = _laws(whole, section), Poses.of(shown)
+        peaks = [whole.peak(Output("section", link, section)) for link in laws]
         largest = max(abs(peak.value) for peak in peaks)
         scale = _WIDEST * size / (largest or 1.0)
-        found += [one for link in laws for one in _ribbon(frames, link, section, scale)]
+        for link in laws:
+            found += _ribbon(shown, poses, link, section, scale)
         what = section.replace("_", " ")
         words.append(f"{what}: up to {scale_for(peaks[0].unit, largest).said(largest, 3)}")
     return tuple(found), " · ".join(words)
 
 
-def _arrow(action: Action, frames: Frames, size: float, largest: float) -> Arrow:
+def _arrow(action: Action, space: bool, size: float, largest: float) -> Arrow:
     """The arrow of a force or a moment; of a moment in the plane the arc, counter-clockwise if the
     moment is positive.
     """
-    if action.moment and not frames.solution.description.space:
+    if action.moment and not space:
         angles = np.pi / 4 + _FULL / largest * action.vector[:, 2:] * np.linspace(0.0, 1.0, 25)
         around = np.stack([np.cos(angles), np.sin(angles), 0.0 * angles], axis=-1)
         points = action.place[:, None] + _ARC * size * around
@@ -102,19 +102,17 @@ def _arrow(action: Action, frames: Frames, size: float, largest: float) -> Arrow
     return Arrow(points, action.colour, _HEAD * size)
 
 
-def actions_of(frames: Frames) -> tuple[list[Action], list[Action]]:
+def actions_of(solution: Solution) -> tuple[list[Action], list[Action]]:
     """Reactions, efforts and loads: forces, and the moments of drives.
 
     Raises :class:`.DeclarationError` where the solution has none of them.
     """
-    frames = _moving(frames)
-    pushes, moments = list(_pushes(frames)), list(_turns(frames))
-    if not pushes and not moments:
+    found = [*_actions(solution, Poses.of(solution))]
+    if not found:
         raise DeclarationError(
-            f"{frames.solution.case}: there is no reaction, effort or load to be shown; want"
-            " reaction too"
+            f"{solution.case}: there is no reaction, effort or load to be shown; want reaction too"
         )
-    return pushes, moments
+    return [one for one in found if not one.moment], [one for one in found if one.moment]
 
 
 def largest_of(actions: Sequence[Action]) -> float:
@@ -122,69 +120,43 @@ def largest_of(actions: Sequence[Action]) -> float:
     return max((float(np.max(np.linalg.norm(one.vector, axis=1))) for one in actions), default=0.0)
 
 
-def _moving(frames: Frames) -> Frames:
-    """The frames with nothing for forces where a joint that rubs is at rest, and they are open."""
-    solution = frames.solution
+def moving(solution: Solution) -> Solution:
+    """The solution with nothing for forces that are open where a joint that rubs is at rest."""
     if not solution.resting.any():
-        return frames
+        return solution
     shown = {
         o: values if o in solution.indeterminate else np.nan_to_num(values)
         for o, values in solution.outputs.items()
     }
-    return replace(frames, solution=replace(solution, outputs=shown))
+    return replace(solution, outputs=shown)
 
 
-def _pushes(frames: Frames) -> Iterator[Action]:
-    """Forces: reactions, efforts along axes, and loads."""
-    solution = frames.solution
+def _actions(solution: Solution, poses: Poses) -> Iterator[Action]:
+    """Reactions and loads, and efforts along and about axes, as far as they are known."""
     for joint in solution.description.joints.values():
-        if (direction := _vector(frames, "reaction", joint.name)) is not None:
-            yield Action("reaction", joint.name, frames.poses.place(joint.child), direction)
+        place = poses.place(joint.child)
+        if (direction := _vector(solution, "reaction", joint.name)) is not None:
+            yield Action("reaction", joint.name, place, direction)
         for axis in joint.axes:
-            name = axis.coordinate
-            if axis.kind == "slide" and (effort := _effort(frames, name)) is not None:
-                along_axis = frames.poses.direction(joint.parent.body, axis.direction)
-                yield Action("effort", name, frames.poses.place(joint.child), effort * along_axis)
+            name, turns = axis.coordinate, axis.kind != "slide"
+            effort = solution.outputs.get(Output("effort", name))
+            if effort is not None and np.isfinite(effort).all():
+                way = poses.direction(joint.parent.body, axis.direction)
+                yield Action("effort", name, place, effort[:, None] * way, moment=turns)
     for name, load in solution.description.loads.items():
-        if (direction := _vector(frames, "load", name)) is not None:
-            yield Action("load", name, frames.poses.place(load.points[0]), direction)
+        if (direction := _vector(solution, "load", name)) is not None:
+            yield Action("load", name, poses.place(load.points[0]), direction)
 
 
-def _turns(frames: Frames) -> Iterator[Action]:
-    """Efforts about axes."""
-    for joint in frames.solution.description.joints.values():
-        for axis in joint.axes:
-            name = axis.coordinate
-            if axis.kind != "slide" and (effort := _effort(frames, name)) is not None:
-                direction = (
-                    np.array([axis.direction])
-                    if not frames.solution.description.space
-                    else frames.poses.direction(joint.parent.body, axis.direction)
-                )
-                yield Action(
-                    "effort", name, frames.poses.place(joint.child), effort * direction, moment=True
-                )
-
-
-def _vector(frames: Frames, group: str, name: str) -> Array | None:
+def _vector(solution: Solution, group: str, name: str) -> Array | None:
     """A force in ground axes (frames, 3) [N], or None where it is not known."""
     outputs = [Output(group, name, member) for member in ("fx", "fy", "fz")]
-    columns = [frames.solution.outputs.get(output) for output in outputs]
+    columns = [solution.outputs.get(output) for output in outputs]
     if all(column is None for column in columns):
         return None
-    found = frames.at(
-        np.column_stack(
-            [np.zeros_like(frames.solution.t) if column is None else column for column in columns]
-        )
-    )
+    nothing = np.zeros_like(solution.t)
+    found = np.column_stack([nothing if column is None else column for column in columns])
     return found if np.isfinite(found).all() else None
-
-
-def _effort(frames: Frames, name: str) -> Array | None:
-    values = frames.solution.outputs.get(Output("effort", name))
-    if values is None or not np.isfinite(values).all():
-        return None
-    return frames.at(values)[:, None]
 
 
 def _laws(solution: Solution, force: str) -> list[str]:
@@ -206,15 +178,15 @@ def _laws(solution: Solution, force: str) -> list[str]:
     return links
 
 
-def _ribbon(frames: Frames, link: str, force: str, scale: float) -> Iterator[Line]:
+def _ribbon(
+    solution: Solution, poses: Poses, link: str, force: str, scale: float
+) -> Iterator[Line]:
     """A section force along a link: the ordinates of each sign beside the axis."""
-    law, xi = frames.solution.section(link).law, np.linspace(0.0, 1.0, _RATIOS)
-    poses = frames.poses
-    base, tip = (poses.place(Place(link, (at, 0.0, 0.0)))[:, None] for at in (0.0, law.length))
-    axis = base + xi[:, None] * (tip - base)
+    law, xi = solution.section(link).law, np.linspace(0.0, 1.0, _RATIOS)
+    axis = poses.along(link, [(x, 0.0, 0.0) for x in (law.length * xi).tolist()])
     local = (0.0, 0.0, 1.0) if force in ("shear_z", "bending_y") else (0.0, 1.0, 0.0)
     side = poses.direction(link, local)[:, None]
-    values = scale * frames.at(law.on_grid(force, xi))[..., None]
+    values = scale * law.on_grid(force, xi)[..., None]
     for edge, colour, opacity in (
         (np.maximum(values, 0.0), _POSITIVE, 0.4),
         (np.minimum(values, 0.0), _NEGATIVE, 0.3),

@@ -26,8 +26,8 @@ from ..shapes.poses import Poses, frame_along
 from ..shapes.primitives import colours_of, disc_axis, drawing, size_of
 from ..shapes.shapes import Shape, shapes
 from ..shapes.symbols import PATH
-from .film_frames import Frames, require_motion
-from .forces import LONGEST, actions_of, largest_of
+from .film_frames import require_motion
+from .forces import LONGEST, actions_of, largest_of, moving
 from .solids import Mesh, arrow, block, cylinder, prism, sphere, together
 
 _GIRTH = 0.013
@@ -51,18 +51,16 @@ def glb(solution: Solution, frames: int, seconds: float, *, forces: bool = False
     """
     require_motion(solution)
     t = solution.t
-    chosen = np.unique(np.linspace(0, t.size - 1, min(t.size, frames + 1)).round().astype(int))
-    before = np.minimum(chosen, t.size - 2)
-    whole = Poses.of(solution)
-    poses, share = whole.during(chosen.tolist()), (chosen - before).astype(float)
-    keyed = Frames(solution, whole, poses, before, share, closed=False)
-    size = size_of(drawing(whole))
-    keys = (t[chosen] - t[0]) / (t[chosen[-1]] - t[0]) * seconds
+    chosen = np.zeros(t.size, bool)
+    chosen[np.linspace(0, t.size - 1, min(t.size, frames + 1)).round().astype(int)] = True
+    shown, size = moving(solution).during(chosen), size_of(drawing(Poses.of(solution)))
+    poses = Poses.of(shown)
+    keys = (shown.t - t[0]) / (t[-1] - t[0]) * seconds
     file = _File()
     file.keys = file.array(keys)
-    parts = [*_bodies(file, keyed.poses, _GIRTH * size), *_still(file, keyed.poses, _GIRTH * size)]
+    parts = [*_bodies(file, poses, _GIRTH * size), *_still(file, poses, _GIRTH * size)]
     if forces:
-        parts += _actions(file, keyed, size)
+        parts += _actions(file, shown, size)
     turned: dict[str, Any] = {}
     if solution.description.space:
         right, away, up = upright(solution.description.gravity)
@@ -203,11 +201,11 @@ def _still(file: _File, poses: Poses, girth: float) -> Iterator[int]:
         yield file.node(f"way of {name}", mesh=mesh)
 
 
-def _actions(file: _File, frames: Frames, size: float) -> Iterator[int]:
+def _actions(file: _File, solution: Solution, size: float) -> Iterator[int]:
     """Reactions, efforts and loads as arrows of length 1, which are placed, turned and made as long
     as they are large.
     """
-    pushes, moments = actions_of(frames)
+    pushes, moments = actions_of(solution)
     for actions, unit, heads in ((pushes, "N", 1), (moments, "N m", 2)):
         largest = largest_of(actions)
         if not largest:

@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
 from ...base.arrays import Array
 from ...base.quantities import Output
@@ -51,16 +50,6 @@ class Poses:
         still = {"ground": np.zeros((count, 3))}, {"ground": np.tile(np.eye(3), (count, 1, 1))}
         return cls(description, {**still[0], **bases}, {**still[1], **axes})
 
-    def between(self, before: npt.NDArray[np.intp], share: Array) -> Poses:
-        """The poses at a ``share`` (frames,) of the way from instants ``before`` to the next ones,
-        where everything goes straight.
-        """
-        return replace(
-            self,
-            bases={body: blended(base, before, share) for body, base in self.bases.items()},
-            axes={body: blended(axes, before, share) for body, axes in self.axes.items()},
-        )
-
     def during(self, chosen: slice | list[int]) -> Poses:
         """The poses at some of the instants."""
         bases = {body: base[chosen] for body, base in self.bases.items()}
@@ -81,12 +70,6 @@ class Poses:
     def direction(self, body: str, local: Triple) -> Array:
         """A direction that a body carries, (t, 3) in ground axes."""
         return np.asarray(np.array(local, float) @ self.axes[body])
-
-
-def blended(values: Array, before: npt.NDArray[np.intp], share: Array) -> Array:
-    """Values (t, ...) at a ``share`` of the way from instants ``before`` to the next ones."""
-    part = share.reshape(-1, *[1] * (values.ndim - 1))
-    return np.asarray(values[before] * (1.0 - part) + values[before + 1] * part)
 
 
 def frame_along(direction: Array) -> Array:

@@ -78,7 +78,7 @@ def _drawn(line: Line, points: str, unit: float, moved: str = "") -> str:
     ink = f'fill="{fill}"{clear} stroke="{line.colour}" stroke-width="{width:.4g}"{dash}'
     if line.radius:
         return f'<circle r="{line.radius * unit:.4g}" {ink}/>'
-    return f'<{name} points="{points}" {ink}>{moved}</{name}>'
+    return f'<{name} points="{points}" {ink}' + (f">{moved}</{name}>" if moved else "/>")
 
 
 def _pairs(points: Array) -> str:
