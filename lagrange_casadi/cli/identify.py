@@ -17,7 +17,7 @@ from ..studies.identification import Comparison, Identification, read_measuremen
 from ..studies.identification import identify as estimate
 from ..studies.identification.identification_file import save_identification
 from ..views.charts.identification_chart import plot_identification
-from ..views.charts.identification_page import check_page, report_identification
+from ..views.charts.identification_page import ENDINGS, report_identification
 from ..views.shapes.picture_files import check_picture
 from .echo import echo
 from .options import HDF5, target
@@ -83,7 +83,7 @@ def identify(
     if figure is not None:
         check_picture(figure)
     if report is not None:
-        check_page(report)
+        check_picture(report, ENDINGS)
 
     turns = _turns(counts_per_turn)
     read = partial(read_measurements, names=names, noise=noise, counts_per_turn=turns)

@@ -10,12 +10,14 @@ from html import escape
 from pathlib import Path
 
 from ...base.arguments import public
-from ...base.files import check_writable, writing
-from ...errors import DeclarationError
+from ...base.files import writing
 from ...studies.identification.fit import Comparison
 from ...studies.identification.identification import Identification
 from ..shapes.index import document, html_table
+from ..shapes.picture_files import check_picture
 from .identification_chart import BESIDE, DIFFERENCE, chart
+
+ENDINGS = (".html",)
 
 _STYLE = """
 body { max-width: 1200px; }
@@ -55,23 +57,12 @@ def report_identification(
     PathError
         If the file cannot be written.
     """
-    target = check_page(path)
+    check_picture(path, ENDINGS)
     text = document(
         f"{found.name}: identification", found.name, "".join(_parts(found, validation)), _STYLE
     )
-    with writing(target) as file:
+    with writing(Path(path)) as file:
         file.write(text.encode())
-
-
-def check_page(path: str | os.PathLike[str]) -> Path:
-    """Return a path of a page; raise :class:`.DeclarationError` for another ending than .html, and
-    :class:`.PathError` where no file can be put.
-    """
-    target = Path(path)
-    if target.suffix != ".html":
-        raise DeclarationError(f"{target}: expected a name that ends in .html")
-    check_writable(target)
-    return target
 
 
 def _parts(found: Identification, validation: Comparison | None) -> Iterator[str]:

@@ -4,7 +4,7 @@ its natural frequency.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,12 +12,14 @@ from ...base.arrays import Array, every
 from ...results.elastic.deflection import Deflection
 from ...results.elastic.vibration import Vibration, vibration
 from ...results.solution import Solution
+from ..shapes.readable import Scale
+from .link_map import PIXELS, draw_map
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_PIXELS, _FLOOR = 1600, 1e-6
+_FLOOR = 1e-6
 _UNITS = {False: (1e3, "mm"), True: (1.0, "m")}
 _FROM = {"ends": "the line between its ends", "base": "its axis at the base"}
 
@@ -33,7 +35,8 @@ def draw_deflection(
     found, response = solution.deflection(link), vibration(solution, link)
     figure = Figure(figsize=(8.0, 7.0 if response.harmonics else 3.8), layout="constrained")
     subplots = list(figure.subplots(2 if response.harmonics else 1, 1, squeeze=False).flat)
-    _map(figure, subplots[0], found, along, label, *_UNITS[si])
+    _map(subplots[0], found, along, *_UNITS[si])
+    subplots[0].set_xlabel(label)
     if response.harmonics:
         _spectrum(subplots[1], response)
     figure.suptitle(
@@ -42,37 +45,24 @@ def draw_deflection(
     return figure
 
 
-def _map(
-    figure: Figure,
-    axes: Axes,
-    found: Deflection,
-    along: Array,
-    label: str,
-    factor: float,
-    unit: str,
-) -> None:
+def _map(axes: Axes, found: Deflection, along: Array, factor: float, unit: str) -> None:
     member = found.member
-    instants, ratios = (every(size, _PIXELS) for size in (member.t.size, member.xi.size))
+    instants, ratios = (every(size, PIXELS) for size in (member.t.size, member.xi.size))
     xi, peak = member.xi[ratios], found.peak()
     u = np.broadcast_to(xi, (member.t.size, xi.size))
     values = found.size(u)[instants] * factor
     most = abs(peak.value) * factor or 1.0
-    colours: dict[str, Any] = (
-        {"cmap": "viridis", "vmin": 0.0}
-        if member.space
-        else {"cmap": "RdBu_r", "vmin": -most, "vmax": most}
-    )
-    picture = axes.pcolormesh(
-        along[instants], xi, values.T, shading="nearest", rasterized=True, **colours
-    )
     place = float(along[int(np.argmin(np.abs(member.t - peak.t)))])
-    axes.plot(place, peak.xi, "k+", markersize=13, markeredgewidth=1.8, clip_on=False)
-    axes.set_title(
-        f"largest: {peak.value * factor:.4g} {unit}, " + rf"$\xi/l$ = {peak.xi:.3f}", fontsize=10
+    draw_map(
+        axes,
+        (along[instants], xi),
+        values,
+        (0.0, None) if member.space else (-most, most),
+        Scale(1.0, unit),
+        "deflection across the link",
+        f"largest: {peak.value * factor:.4g} {unit}, " + rf"$\xi/l$ = {peak.xi:.3f}",
+        (place, peak.xi),
     )
-    axes.set_xlabel(label)
-    axes.set_ylabel(r"$\xi/l$")
-    figure.colorbar(picture, ax=axes, label=f"deflection across the link [{unit}]")
 
 
 def _spectrum(axes: Axes, response: Vibration) -> None:

@@ -40,6 +40,7 @@ from ..shapes.picture_files import ending_of, one_at_a_time, save
 from ..shapes.readable import instant, number, scale_for
 from .deflection_plot import draw_deflection
 from .diagrams import draw_polar, draw_section_diagrams, polar_members
+from .link_map import PIXELS, draw_map
 from .mechanism_figure import draw_mechanism
 from .strength_plot import draw_strength, draw_utilisation
 
@@ -47,7 +48,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_PIXELS, _LABEL = 1600, 40
+_LABEL = 40
 
 
 _FILE = re.compile(r"[A-Za-z0-9_-]+")
@@ -274,7 +275,7 @@ def _maps(spec: SectionMaps, solution: Solution, si: bool) -> Figure:
     across = 1 if solution.table is PLANE else 2
     down = -(-len(names) // across)
     figure = Figure(figsize=(8.0 * across, 2.8 * down), layout="constrained")
-    instants, ratios = (every(size, _PIXELS) for size in (solution.t.size, solution.xi.size))
+    instants, ratios = (every(size, PIXELS) for size in (solution.t.size, solution.xi.size))
     law, xi = solution.section(spec.link).law.during(instants), solution.xi[ratios]
     places, along = _along(solution)
     basis = law.basis(xi)
@@ -285,31 +286,19 @@ def _maps(spec: SectionMaps, solution: Solution, si: bool) -> Figure:
         if nothing:
             values, peak = np.zeros_like(values), replace(peak, value=0.0)
         bound, signed = abs(peak.value) or 1.0, len(name.components(solution.table)) == 1
-        colours, least = ("RdBu_r", -bound) if signed else ("viridis", 0.0)
-        picture = axes.pcolormesh(
-            places[instants],
-            xi,
-            values.T,
-            cmap=colours,
-            vmin=least,
-            vmax=bound,
-            shading="nearest",
-            rasterized=True,
-        )
         scale = scale_for(peak.unit, abs(peak.value), si)
-        x, at = _place_of(peak, solution)
-        what = name.meant(solution.table).long_name
-        if nothing:
-            axes.set_title(f"{what}: zero everywhere", fontsize=10)
-        else:
-            axes.plot(x, peak.xi, "k+", markersize=13, markeredgewidth=1.8, clip_on=False)
-            axes.set_title(
-                rf"{what}: peak {scale.said(peak.value)} at {at}, $\xi/l$ = {peak.xi:.3f}",
-                fontsize=10,
-            )
-        axes.set_ylabel(r"$\xi/l$")
-        bar = figure.colorbar(picture, ax=axes, label=f"{what} [{scale.unit}]")
-        scale.put(bar.ax.yaxis)
+        (x, at), what = _place_of(peak, solution), name.meant(solution.table).long_name
+        said = rf"peak {scale.said(peak.value)} at {at}, $\xi/l$ = {peak.xi:.3f}"
+        draw_map(
+            axes,
+            (places[instants], xi),
+            values,
+            (-bound if signed else 0.0, bound),
+            scale,
+            what,
+            f"{what}: {'zero everywhere' if nothing else said}",
+            None if nothing else (x, peak.xi),
+        )
     for axes in plots[-across:]:
         axes.set_xlabel(along)
     for axes in plots[len(names) :]:

@@ -16,12 +16,13 @@ from ...results.strength.fatigue import Loaded, loaded, use_score, used
 from ...results.strength.fibres import sampled, worst
 from ...results.strength.stress import Stress
 from ..shapes.readable import Scale
+from .link_map import PIXELS, draw_map
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_MEGA, _PIXELS = 1e6, 1600
+_MEGA = 1e6
 
 
 def draw_strength(
@@ -41,7 +42,8 @@ def draw_strength(
     subplots = list(figure.subplots(2 if fatigue else 1, 1, squeeze=False).flat)
     # What is drawn is in MPa.
     unit = Scale(_MEGA, "Pa") if si else Scale(1.0, "MPa")
-    _map(figure, subplots[0], stress, along, label, unit)
+    _map(subplots[0], stress, along, unit)
+    subplots[0].set_xlabel(label)
     if fatigue:
         _goodman(subplots[1], stress, unit)
     figure.suptitle(
@@ -78,25 +80,22 @@ def draw_utilisation(solution: Solution, parts: Sequence[str]) -> Figure:
     return figure
 
 
-def _map(figure: Figure, axes: Axes, stress: Stress, along: Array, label: str, unit: Scale) -> None:
-    instants, ratios = (
-        every(size, _PIXELS) for size in (stress.member.t.size, stress.member.xi.size)
+def _map(axes: Axes, stress: Stress, along: Array, unit: Scale) -> None:
+    member = stress.member
+    instants, ratios = (every(size, PIXELS) for size in (member.t.size, member.xi.size))
+    xi, peak = member.xi[ratios], stress.peak("von_mises")
+    place = float(along[int(np.argmin(np.abs(member.t - peak.t)))])
+    said = f"von Mises: peak {unit.said(peak.value / _MEGA)} at {peak.fibre}, "
+    draw_map(
+        axes,
+        (along[instants], xi),
+        Stress(member.during(instants)).grid("von_mises", xi) / _MEGA,
+        (0.0, None),
+        unit,
+        "von Mises",
+        said + rf"$\xi/l$ = {peak.xi:.3f}",
+        (place, peak.xi),
     )
-    xi, peak = stress.member.xi[ratios], stress.peak("von_mises")
-    values = Stress(stress.member.during(instants)).grid("von_mises", xi) / _MEGA
-    picture = axes.pcolormesh(
-        along[instants], xi, values.T, cmap="viridis", vmin=0.0, shading="nearest", rasterized=True
-    )
-    place = float(along[int(np.argmin(np.abs(stress.member.t - peak.t)))])
-    axes.plot(place, peak.xi, "k+", markersize=13, markeredgewidth=1.8, clip_on=False)
-    axes.set_title(
-        f"von Mises: peak {unit.said(peak.value / _MEGA)} at {peak.fibre}, "
-        rf"$\xi/l$ = {peak.xi:.3f}",
-        fontsize=10,
-    )
-    axes.set_xlabel(label)
-    axes.set_ylabel(r"$\xi/l$")
-    unit.put(figure.colorbar(picture, ax=axes, label=f"von Mises [{unit.unit}]").ax.yaxis)
 
 
 def _goodman(axes: Axes, stress: Stress, unit: Scale) -> None:
