@@ -93,19 +93,12 @@ def write_animation(
                 f"animation {target}: a .glb has no section forces; they are in"
                 f" {', '.join(ENDINGS[:-1])}"
             )
-        solid = glb(
-            solution, max(2, round(film.rate * film.seconds)), film.seconds, forces=film.forces
-        )
-        with writing(target) as file:
-            file.write(solid)
-        return Animation(target)
-    shown = picture_of(solution, film)
-    if ending == ".mp4":
-        data = mp4(shown, shown.frames / film.seconds)
-    elif ending == ".gif":
-        data = gif(shown, film.seconds)
+        frames = max(2, round(film.rate * film.seconds))
+        data = glb(solution, frames, film.seconds, forces=film.forces)
+    elif ending == ".svg":
+        data = svg(picture_of(solution, film), film.seconds).encode()
     else:
-        data = svg(shown, film.seconds).encode()
+        data = (gif if ending == ".gif" else mp4)(picture_of(solution, film), film.seconds)
     with writing(target) as file:
         file.write(data)
     return Animation(target)

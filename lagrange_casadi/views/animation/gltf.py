@@ -23,7 +23,7 @@ from ...results.solution import Solution
 from ...version import __version__
 from ..shapes.orthographic import upright
 from ..shapes.poses import Poses, frame_along
-from ..shapes.primitives import colours_of, disc_axis, drawing, size_of
+from ..shapes.primitives import disc_axis, drawing, size_of
 from ..shapes.shapes import Shape, shapes
 from ..shapes.symbols import PATH
 from .film_frames import require_motion
@@ -160,7 +160,6 @@ class _File:
 def _bodies(file: _File, poses: Poses, girth: float) -> Iterator[int]:
     """The bodies, each with its joints' pins."""
     description = poses.description
-    colours = colours_of(description.bodies)
     for shape in shapes(description):
         pins = [
             file.node(name, mesh=file.mesh(name, _pin(joint, poses, girth), _METAL))
@@ -168,7 +167,7 @@ def _bodies(file: _File, poses: Poses, girth: float) -> Iterator[int]:
             if joint.child.body == shape.name
         ]
         solid = together(list(_solids(shape, poses, girth)))
-        mesh = file.mesh(shape.name, solid, colours[shape.name])
+        mesh = file.mesh(shape.name, solid, poses.colours[shape.name])
         moves = {"translation": poses.bases[shape.name]}
         if shape.kind != "point":
             moves["rotation"] = _quaternions(poses.axes[shape.name].transpose(0, 2, 1))

@@ -64,13 +64,13 @@ def find_ffmpeg() -> str:
     return found
 
 
-def mp4(picture: Picture, rate: float) -> bytes:
-    """A film of H.264, with so many frames a second.
+def mp4(picture: Picture, seconds: float) -> bytes:
+    """A film of H.264, a cycle of so many seconds.
 
     Raises :class:`.StoreError` where ffmpeg fails.
     """
-    size = f"{picture.width}x{picture.height}"
-    taken = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", size, "-r", f"{rate:.17g}", "-i", "-"]
+    size, rate = f"{picture.width}x{picture.height}", f"{picture.frames / seconds:.17g}"
+    taken = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", size, "-r", rate, "-i", "-"]
     made = [
         "-an",
         "-c:v",

@@ -5,10 +5,10 @@ or into axes of a figure that shows other things too.
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from ..shapes.marks import ground_axes
 from ..shapes.orthographic import View, page, views
 from ..shapes.picture_sheet import LETTER, view_of, written
 from ..shapes.poses import Poses
-from ..shapes.primitives import cloud, colours_of, drawing, seen, size_of
+from ..shapes.primitives import cloud, drawing, seen, size_of
 from ..shapes.readable import Scale, instant, scale_for
 from ..shapes.symbols import GROUND, Line, Name, Primitive, Symbol, edge, outlines
 from .stills import stills
@@ -44,17 +44,6 @@ _ROW, _IN_ROW = 0.21, 6
 """The height of a row of the legend [inch], and bodies in a row beside other pictures."""
 
 
-class _Panel(NamedTuple):
-    """A picture of a figure: the direction from which it shows the mechanism, instants of which the
-    first is strong, the title, and whether names are written.
-    """
-
-    view: View
-    instants: Sequence[int]
-    title: str
-    named: bool = True
-
-
 def draw_mechanism(solution: Solution, spec: MechanismDrawing, si: bool = False) -> Figure:
     """The mechanism at some instants, with the ways of its declared points over the whole time.
 
@@ -68,14 +57,14 @@ def draw_mechanism(solution: Solution, spec: MechanismDrawing, si: bool = False)
     thin = Poses.of(solution.during(every(solution.t.size, _THINNED)))
     everything, poses = drawing(thin), Poses.of(solution)
     size = size_of(everything)
-    panels = [*_panels(solution, spec, chosen)]
+    panels = _panels(solution, spec, chosen)
     space = solution.description.space
     words = f"{solution.case}: {_instants(solution, chosen)}; orthographic, all views to one scale"
-    ends = [_ends(everything, panel.view, size) for panel in panels]
+    ends = [_ends(everything, view, size) for view, _ in panels]
     wide, high = ends[0][1] - ends[0][0]
-    entries = _entries(solution)
+    entries = _entries(poses)
     widest = max(0.62 + _LETTER * len(name) for name, _ in entries)
-    titles = [panel.title.split("\n") for panel in panels]
+    titles = [view.title.split("\n") for view, _ in panels]
     laid_out = partial(
         page,
         ends,
@@ -83,21 +72,22 @@ def draw_mechanism(solution: Solution, spec: MechanismDrawing, si: bool = False)
         title=0.15 + 0.17 * max(map(len, titles)),
         least=_LETTER * max(len(line) for title in titles for line in title),
     )
-    across = laid_out(head=0.0, foot=0.0).size[0]
+    (across, _), *_ = laid_out(head=0.0, foot=0.0)
     head = textwrap.wrap(words, int(across / (1.15 * _LETTER))) if space else []
     columns = max(1, min(len(entries), int(across / widest)))
     foot = 0.1 + _ROW * -(-len(entries) // columns)
-    sheet = laid_out(head=0.1 + _ROW * len(head), foot=foot)
-    figure = Figure(figsize=sheet.size)
-    for panel, place, box in zip(panels, sheet.places, sheet.boxes, strict=True):
-        axes, view = figure.add_axes(tuple(np.array(place) / (sheet.size * 2))), panel.view
+    sheet, places, boxes = laid_out(head=0.1 + _ROW * len(head), foot=foot)
+    figure = Figure(figsize=sheet)
+    for (view, instants), place, box in zip(panels, places, boxes, strict=True):
+        axes = figure.add_axes(tuple(np.array(place) / (sheet * 2)))
         _frame(axes, view, box, place[2:], scale_for("m", size, si))
-        axes.set_title(panel.title, fontsize=10)
+        axes.set_title(view.title, fontsize=10)
         point = (box[1] - box[0]) / (72.0 * place[2])
-        for k in reversed(panel.instants[1:]):
+        for k in reversed(instants[1:]):
             other = seen(drawing(poses.during([k]), thin, {}), view)
             _painted(axes, other, point, strong=False)
-        _show(axes, view, poses.during([panel.instants[0]]), thin, box, point, panel.named)
+        named = not space or view is panels[1][0]
+        _show(axes, view, poses.during([instants[0]]), thin, box, point, named)
     names, handles = zip(*entries, strict=True)
     figure.legend(
         handles,
@@ -109,7 +99,7 @@ def draw_mechanism(solution: Solution, spec: MechanismDrawing, si: bool = False)
         labelspacing=0.35,
         handler_map={Symbol: _Legend()},
     )
-    figure.suptitle("\n".join(head), fontsize=11, y=1.0 - 0.1 / sheet.size[1], va="top")
+    figure.suptitle("\n".join(head), fontsize=11, y=1.0 - 0.1 / sheet[1], va="top")
     return figure
 
 
@@ -127,7 +117,7 @@ def draw_into(axes: Axes, solution: Solution) -> None:
     axes.set_aspect("equal")
     if description.space:
         axes.set_xlabel(one.title, fontsize=8)
-    bodies = [entry for entry in _entries(solution) if entry[0] in description.bodies]
+    bodies = [entry for entry in _entries(whole) if entry[0] in description.bodies]
     figure: Any = axes.figure
     if not figure.legends:
         names, handles = zip(*bodies, strict=True)
@@ -200,16 +190,20 @@ def _painted(
             )
 
 
-def _panels(solution: Solution, spec: MechanismDrawing, chosen: Sequence[int]) -> Iterator[_Panel]:
-    """The pictures of a figure."""
+def _panels(
+    solution: Solution, spec: MechanismDrawing, chosen: Sequence[int]
+) -> list[tuple[View, Sequence[int]]]:
+    """The pictures of a figure: the direction from which each shows the mechanism, with its title,
+    and instants of which the first is strong.
+    """
     description = solution.description
     if description.space:
-        for k, one in enumerate(views(description.gravity, spec.azimuth, spec.elevation)):
-            yield _Panel(one, chosen, one.title, k == 1)
-        return
-    for instants in [chosen] if spec.overlay else [[k] for k in chosen]:
-        title = "\n".join(textwrap.wrap(_instants(solution, instants), 46))
-        yield _Panel(view_of(description), instants, title)
+        seen_from = views(description.gravity, spec.azimuth, spec.elevation)
+        return [(one, chosen) for one in seen_from]
+    each = [chosen] if spec.overlay else [[k] for k in chosen]
+    titles = ("\n".join(textwrap.wrap(_instants(solution, some), 46)) for some in each)
+    plane = view_of(description)
+    return [(replace(plane, title=title), some) for title, some in zip(titles, each, strict=True)]
 
 
 class _Legend:
@@ -243,7 +237,7 @@ def _frame(
     axes: Axes, one: View, box: Sequence[float], size: Sequence[float], scale: Scale
 ) -> None:
     """Range of a picture, and its scales, with as many numbers as fit its ``size`` [inch]."""
-    from matplotlib.ticker import FuncFormatter, MaxNLocator
+    from matplotlib.ticker import MaxNLocator
 
     axes.set(xlim=box[:2], ylim=box[2:])
     axes.set_axisbelow(True)
@@ -256,23 +250,19 @@ def _frame(
     ):
         axis.set_major_locator(MaxNLocator(max(1, min(6, int(most)))))
         axis.set_label_text(f"{name[-1]} [{scale.unit}]")
-        if name.startswith("-"):
-            axis.set_major_formatter(FuncFormatter(lambda value, _: scale.label(0.0 - value)))
-        else:
-            scale.put(axis)
+        Scale(-scale.factor if name.startswith("-") else scale.factor, scale.unit).put(axis)
     axes.tick_params(labelsize=8)
 
 
-def _entries(solution: Solution) -> list[tuple[str, Any]]:
+def _entries(poses: Poses) -> list[tuple[str, Any]]:
     """The legend: bodies by their colours, in space kinds of joints by their symbols, and declared
     points.
     """
     from matplotlib.lines import Line2D
 
-    description = solution.description
+    description = poses.description
     found: list[tuple[str, Any]] = [
-        (body, Line2D([], [], color=colour, linewidth=3))
-        for body, colour in colours_of(description.bodies).items()
+        (body, Line2D([], [], color=colour, linewidth=3)) for body, colour in poses.colours.items()
     ]
     if description.space:
         nowhere = np.zeros((1, 1, 2))

@@ -150,10 +150,10 @@ def assembled(
     ``others`` are digests of scripts that pages within it run.
     """
     data = json.dumps(content, allow_nan=False, separators=(",", ":"), ensure_ascii=True)
-    return Template(_asset("page.html")).substitute(
+    return Template(asset("page.html")).substitute(
         title=html.escape(title),
         policy=policy(scripts, wasm=wasm, connect=connect, others=others),
-        style=_asset("page.css"),
+        style=asset("page.css"),
         script=_whole(scripts),
         # No text in JSON can end the element that holds it, or begin a comment.
         data=data.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026"),
@@ -187,7 +187,7 @@ def viewer(live: bool) -> list[str]:
 
 def script(name: str) -> str:
     """A source of the viewer."""
-    return _asset(f"{name}.js")
+    return asset(f"{name}.js")
 
 
 def _whole(scripts: Sequence[str]) -> str:
@@ -198,10 +198,9 @@ def _digest(text: str) -> str:
     return base64.b64encode(hashlib.sha256(text.encode()).digest()).decode("ascii")
 
 
-def _asset(name: str) -> str:
-    return (
-        resources.files(__package__).joinpath("assets").joinpath(name).read_text(encoding="utf-8")
-    )
+def asset(name: str, package: str = __package__) -> str:
+    """A file of the viewer, or of another package's page."""
+    return resources.files(package).joinpath("assets").joinpath(name).read_text(encoding="utf-8")
 
 
 def scene_report(

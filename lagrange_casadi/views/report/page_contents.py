@@ -24,7 +24,7 @@ from ...results.verification.certificate import failure, summary
 from ..shapes.curves import patterns
 from ..shapes.orthographic import upright
 from ..shapes.poses import Poses, require_poses
-from ..shapes.primitives import carried, colours_of, disc_axis, drawing, size_of
+from ..shapes.primitives import carried, disc_axis, drawing, size_of
 from ..shapes.shapes import named_spots, shapes
 from ..shapes.symbols import BODY, FOOT, INK, PAPER, PATH, STAND, SYMBOLS, Line
 from .array_block import Arrays, finite
@@ -114,7 +114,6 @@ def _bodies(
     space a place, and three axes one by one.
     """
     poses = Poses.of(solution)
-    colours = colours_of(solution.description.bodies)
     for shape in shapes(solution.description):
         values = np.hstack([poses.bases[shape.name], poses.axes[shape.name].reshape(-1, 9)]).T
         if not solution.description.space:
@@ -122,7 +121,7 @@ def _bodies(
             values = np.stack([*values[:2], 0.0 * values[0] if angle is None else angle])
         axis = disc_axis(poses, shape)
         yield asdict(shape) | {
-            "colour": colours[shape.name],
+            "colour": poses.colours[shape.name],
             "around": None if axis is None else axis.tolist(),
             "pose": [arrays.add(column[chosen]) for column in values],
         }

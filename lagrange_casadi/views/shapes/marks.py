@@ -21,7 +21,6 @@ from ...model.stated import Entry, LoadLaw
 from .curves import around
 from .orthographic import View
 from .poses import Poses, frame_along
-from .primitives import colours_of
 from .readable import scale_for
 from .shapes import shapes
 from .symbols import AXES, PINS, Arrow, Line, Name, Primitive
@@ -99,10 +98,9 @@ def load_marks(
 
 def body_names(poses: Poses) -> Iterator[Name]:
     """The names of bodies beside their middles, in their colours."""
-    colours = colours_of(poses.description.bodies)
     for shape in shapes(poses.description):
         middle = Place(shape.name, shape.centre or ((shape.length or 0.0) / 2, 0.0, 0.0))
-        yield Name(poses.place(middle)[:, None], shape.name, colour=colours[shape.name])
+        yield Name(poses.place(middle)[:, None], shape.name, colour=poses.colours[shape.name])
 
 
 def ground_axes(view: View, points: Array, size: float) -> Iterator[Primitive]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
@@ -16,6 +17,8 @@ _WIDE, _HIGH, _LARGE = 9.6, 7.6, 6.4
 
 _LEFT, _BETWEEN, _RIGHT, _BELOW = 0.75, 0.8, 0.25, 0.6
 """Room for the scales of pictures and around all of them [inch]."""
+
+Quad: TypeAlias = tuple[float, float, float, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,28 +79,13 @@ def views(
     in third-angle projection.
     """
     axes = upright(gravity)
-    right, away, up = (_named(axis) for axis in axes)
-    front = away.removeprefix("-") if away.startswith("-") else f"-{away}"
+    up, front, right = (_named(axis) for axis in (axes[2], -axes[1], axes[0]))
     return (
         view(axes, -90.0, 90.0, f"from above ({_signed(up)})"),
         view(axes, azimuth, elevation),
         view(axes, -90.0, 0.0, f"from the front ({_signed(front)})"),
         view(axes, 0.0, 0.0, f"from the right ({_signed(right)})"),
     )
-
-
-@dataclass(frozen=True)
-class Page:
-    """A page of pictures in rows: its size [inch], and of each its place on the page and what it
-    shows, all to one scale.
-
-    ``places`` are left, bottom, width and height [inch], ``boxes`` are left, right, bottom and top
-    [m].
-    """
-
-    size: tuple[float, float]
-    places: tuple[tuple[float, float, float, float], ...]
-    boxes: tuple[tuple[float, float, float, float], ...]
 
 
 def page(
@@ -108,9 +96,10 @@ def page(
     title: float,
     foot: float,
     least: float = 0.0,
-) -> Page:
+) -> tuple[tuple[float, float], list[Quad], list[Quad]]:
     """A page of pictures that show the ranges between their ``ends``, lower left and upper right
-    [m], so many ``across``.
+    [m], so many ``across``, in rows, all to one scale: its size [inch]; of each picture left,
+    bottom, width and height [inch]; and left, right, bottom and top of what it shows [m].
 
     ``head``, ``title`` above each picture and ``foot`` are heights, ``least`` the width of each
     picture at least [inch].
@@ -125,7 +114,7 @@ def page(
     lefts = _LEFT + np.cumsum([0.0, *(scale * columns[:-1] + _BETWEEN)])
     step = _BELOW + title
     bottoms = foot + _BELOW + np.cumsum([0.0, *(scale * rows[:0:-1] + step)])[::-1]
-    places, boxes = [], []
+    places, boxes = list[Quad](), list[Quad]()
     for k, (low, high) in enumerate(ends):
         row, column = divmod(k, across)
         half, middle = np.array([columns[column], rows[row]]) / 2, (low + high) / 2
@@ -133,7 +122,7 @@ def page(
         boxes.append((left, right, bottom, top))
         places.append((lefts[column], bottoms[row], scale * columns[column], scale * rows[row]))
     size = (lefts[-1] + scale * columns[-1] + _RIGHT, bottoms[0] + scale * rows[0] + title + head)
-    return Page(size, tuple(places), tuple(boxes))
+    return size, places, boxes
 
 
 def _named(direction: Array) -> str:

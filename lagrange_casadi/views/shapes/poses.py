@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -13,6 +14,11 @@ from ...errors import DeclarationError
 from ...model.description import Description, Place, Triple
 from ...results.solution import Solution
 from ...results.views import Pose
+
+COLOURS = (
+    *("#1f4e79", "#b3541e", "#2e7d4f", "#7a3b8f", "#8a6d1a", "#3c6e71", "#9c2f4a", "#555555"),
+    *("#6fa3d8", "#eba277", "#7cc79a", "#b98acb", "#d4b95c", "#86bcc0", "#dd8aa0", "#a9a9a9"),
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,6 +32,11 @@ class Poses:
     description: Description
     bases: Mapping[str, Array]
     axes: Mapping[str, Array]
+
+    @cached_property
+    def colours(self) -> dict[str, str]:
+        """The colours of the bodies, by their order."""
+        return {name: COLOURS[k % len(COLOURS)] for k, name in enumerate(self.description.bodies)}
 
     @classmethod
     def of(cls, solution: Solution) -> Poses:

@@ -38,11 +38,6 @@ from .symbols import (
     Symbol,
 )
 
-COLOURS = (
-    *("#1f4e79", "#b3541e", "#2e7d4f", "#7a3b8f", "#8a6d1a", "#3c6e71", "#9c2f4a", "#555555"),
-    *("#6fa3d8", "#eba277", "#7cc79a", "#b98acb", "#d4b95c", "#86bcc0", "#dd8aa0", "#a9a9a9"),
-)
-
 _SLIDES = ("prismatic", "cylindrical", "screw", "slot")
 _UNSUPPORTED = ("free", "prismatic", "slot", "cylindrical", "screw", "planar")
 """Joints below which the ground has no symbol."""
@@ -68,9 +63,8 @@ def drawing(
     whole = whole or poses
     description = poses.description
     joints = list(description.joints.values())
-    colours = colours_of(description.bodies)
     parts = [*shapes(description)]
-    bodies = [one for shape in parts for one in _body(poses, shape, colours)]
+    bodies = [one for shape in parts for one in _body(poses, shape)]
     spots = [Line(whole.place(spot), PATH, 0.0) for spot in spots_of(description)]
     size = size_of([*bodies, *spots])
 
@@ -93,7 +87,7 @@ def drawing(
         if ground and joint.kind not in _UNSUPPORTED:
             found.append(symbol("stand", ground[0], GROUND))
         if joint.kind in _SLIDES:
-            found += [_guide(poses, whole, joint, size), _block(poses, joint, masses, colours)]
+            found += [_guide(poses, whole, joint, size), _block(poses, joint, masses)]
         else:
             found.append(symbol(joint.kind, joint.child, PINS))
             if description.space:
@@ -114,7 +108,6 @@ def carried(poses: Poses, whole: Poses, size: float) -> Iterator[tuple[str, Line
     coils, pitch circles, belts, racks, and drums.
     """
     description = poses.description
-    colours = colours_of(description.bodies)
     joints = description.joints.values()
     for load in description.loads.values():
         if load.kind == "torque" and load.symbols:
@@ -134,15 +127,10 @@ def carried(poses: Poses, whole: Poses, size: float) -> Iterator[tuple[str, Line
         ring = around(poses.place(Place(carrier, at)), way, radius * ROUND)
         yield carrier, Line(ring, _PITCH, 1.2, closed=True, dashed=not belted, level=AXES)
     for pitch in pitches:
-        yield from _meshing(poses, whole, pitch, colours)
+        yield from _meshing(poses, whole, pitch)
     for track in description.tracks.values():
-        for line in _drum(poses, track, colours):
+        for line in _drum(poses, track):
             yield line.body, line
-
-
-def colours_of(bodies: Iterable[str]) -> dict[str, str]:
-    """The colours of bodies, by their order."""
-    return {body: COLOURS[k % len(COLOURS)] for k, body in enumerate(bodies)}
 
 
 def cloud(primitives: Iterable[Primitive]) -> Array:
@@ -178,9 +166,9 @@ def seen(primitives: Iterable[Primitive], view: View) -> list[Line | Symbol | Na
     return found
 
 
-def _body(poses: Poses, shape: Shape, colours: Mapping[str, str]) -> Iterator[Primitive]:
+def _body(poses: Poses, shape: Shape) -> Iterator[Primitive]:
     """A body: its plates, disc with a spoke by which one sees it turn, axis and arms."""
-    colour, name = colours[shape.name], shape.name
+    colour, name = poses.colours[shape.name], shape.name
 
     along = partial(poses.along, name)
     for plate in shape.plates:
@@ -232,16 +220,16 @@ def _guide(poses: Poses, whole: Poses, joint: JointNumbers, size: float) -> Line
     return Line(np.stack(ends, axis=1), "#888888", 1.2, dashed=True, level=GROUND)
 
 
-def _block(
-    poses: Poses, joint: JointNumbers, masses: set[str], colours: Mapping[str, str]
-) -> Symbol:
+def _block(poses: Poses, joint: JointNumbers, masses: set[str]) -> Symbol:
     """The part that slides: in the colour of its body, larger if the part is a point mass."""
     body = joint.parent.body if joint.child.body == "ground" else joint.child.body
     mass = body in masses
     spot = Place(body, (0.0, 0.0, 0.0)) if mass else joint.child
     along = poses.direction(joint.parent.body, joint.triad[0])
     kind = "sliding mass" if mass else joint.kind
-    return Symbol(kind, poses.place(spot)[:, None], along, colours.get(body, "#ffffff"), BLOCKS)
+    return Symbol(
+        kind, poses.place(spot)[:, None], along, poses.colours.get(body, "#ffffff"), BLOCKS
+    )
 
 
 def _axes(poses: Poses, joint: JointNumbers, size: float) -> Iterator[Line]:
@@ -255,9 +243,7 @@ def _axes(poses: Poses, joint: JointNumbers, size: float) -> Iterator[Line]:
         yield Line(np.stack([middle - half, middle + half], axis=1), "#222222", 2.0, level=AXES)
 
 
-def _meshing(
-    poses: Poses, whole: Poses, pitch: PitchCircles, colours: Mapping[str, str]
-) -> Iterator[tuple[str, Line]]:
+def _meshing(poses: Poses, whole: Poses, pitch: PitchCircles) -> Iterator[tuple[str, Line]]:
     """The belt around two pitch circles, or a rack as long as its gear ever needs."""
     carrier, radius = pitch.carrier, pitch.radii[0]
     middles = [poses.place(Place(carrier, at)) for at in pitch.centres]
@@ -271,11 +257,11 @@ def _meshing(
         reach = np.sum(away * whole.direction(carrier, pitch.axes[1]), axis=1)
         ends = float(reach.min()) - 1.2 * radius, float(reach.max()) + 1.2 * radius
         points = rack(spot, ways[1], middles[0], radius, ends)
-        colour, body = colours.get(pitch.rack.body, _METAL), pitch.rack.body
+        colour, body = poses.colours.get(pitch.rack.body, _METAL), pitch.rack.body
         yield body, Line(points, colour, 2.0, closed=True, opacity=0.25, body=body)
 
 
-def _drum(poses: Poses, track: Track, colours: Mapping[str, str]) -> Iterator[Line]:
+def _drum(poses: Poses, track: Track) -> Iterator[Line]:
     """A drum with the flanks of its groove, and the roller in that."""
     body, radius = track.centre.body, track.radius
     way: Array = np.array(track.way)
@@ -285,7 +271,7 @@ def _drum(poses: Poses, track: Track, colours: Mapping[str, str]) -> Iterator[Li
     size = np.linalg.norm(outward, axis=1)
     across = np.cross(outward, np.roll(way, -1, axis=0) - np.roll(way, 1, axis=0))
     across *= radius / np.linalg.norm(across, axis=1, keepdims=True)
-    colour, edge_of = colours[body], 2.0 * radius or 0.2 * size.max()
+    colour, edge_of = poses.colours[body], 2.0 * radius or 0.2 * size.max()
     for end in (high.min() - edge_of, high.max() + edge_of):
         ring = around((centre + end * axis)[None], axis[None], size.max() * ROUND)[0]
         yield Line(
@@ -299,7 +285,7 @@ def _drum(poses: Poses, track: Track, colours: Mapping[str, str]) -> Iterator[Li
     seat = seat - np.sum(seat * about, axis=1, keepdims=True) * about
     held = track.held.body
     ring = around(middle, seat, radius * ROUND)
-    yield Line(ring, colours[held], 2.0, closed=True, opacity=0.25, level=POINTS, body=held)
+    yield Line(ring, poses.colours[held], 2.0, closed=True, opacity=0.25, level=POINTS, body=held)
 
 
 def _arrow(arrow: Arrow, points: Array) -> Iterator[Line]:

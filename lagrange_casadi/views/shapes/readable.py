@@ -21,6 +21,7 @@ STEPS = (
     (1e-4, "m", 1e3),
     (0.0, "µ", 1e6),
 )
+LENGTHS = ((1.0, "", 1.0), (1e-3, "m", 1e3), (0.0, "µ", 1e6))
 PREFIXED = ("N", "N m", "Pa", "W", "J", "N/m", "N s/m")
 
 
@@ -60,17 +61,8 @@ def instant(solution: Solution, i: int) -> str:
 
 def scale_for(unit: str, size: float, si: bool = False) -> Scale:
     """Scale of values of a unit, of which the largest has a ``size``; SI if ``si`` is asked for."""
-    if si or not size > 0.0:
-        return Scale(1.0, unit)
-    if unit == "m":
-        return (
-            Scale(1.0, "m")
-            if size >= 1.0
-            else Scale(1e3, "mm")
-            if size >= 1e-3
-            else Scale(1e6, "µm")
-        )
-    if unit in PREFIXED:
-        prefix, factor = next((prefix, factor) for least, prefix, factor in STEPS if size >= least)
-        return Scale(factor, prefix + unit)
-    return Scale(1.0, unit)
+    steps = LENGTHS if unit == "m" else STEPS if unit in PREFIXED else ()
+    asked = () if si or not size > 0.0 else steps
+    reached = ((factor, prefix) for least, prefix, factor in asked if size >= least)
+    factor, prefix = next(reached, (1.0, ""))
+    return Scale(factor, prefix + unit)

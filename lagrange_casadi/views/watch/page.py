@@ -4,9 +4,7 @@ stays as its reader has it.
 
 from __future__ import annotations
 
-from importlib import resources
-
-from ..report.page import assembled, policy, script, viewer
+from ..report.page import assembled, asset, policy, script, viewer
 
 
 def page(title: str) -> tuple[str, str]:
@@ -14,15 +12,9 @@ def page(title: str) -> tuple[str, str]:
     scripts = [
         *(script("dom"), "function viewer(before) {\n"),
         *viewer(live=True),
-        *(_asset("kept.js"), "}\n", _asset("watch.js")),
+        *(asset("kept.js", __package__), "}\n", asset("watch.js", __package__)),
     ]
     text = assembled(title, {}, scripts, wasm=True, connect=True)
-    text = text.replace("</style>", f"{_asset('watch.css')}</style>", 1)
+    text = text.replace("</style>", f"{asset('watch.css', __package__)}</style>", 1)
     asked = policy(scripts, wasm=True, connect=True)
     return text, f"{asked}; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
-
-
-def _asset(name: str) -> str:
-    return (
-        resources.files(__package__).joinpath("assets").joinpath(name).read_text(encoding="utf-8")
-    )
