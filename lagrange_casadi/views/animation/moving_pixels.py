@@ -70,38 +70,13 @@ def mp4(picture: Picture, seconds: float) -> bytes:
     Raises :class:`.StoreError` where ffmpeg fails.
     """
     size, rate = f"{picture.width}x{picture.height}", f"{picture.frames / seconds:.17g}"
-    taken = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", size, "-r", rate, "-i", "-"]
-    made = [
-        "-an",
-        "-c:v",
-        "libx264",
-        "-crf",
-        "18",
-        "-pix_fmt",
-        "yuv420p",
-        "-movflags",
-        "+faststart",
-    ]
-    plain = [
-        "-threads",
-        "1",
-        "-map_metadata",
-        "-1",
-        "-fflags",
-        "+bitexact",
-        "-flags:v",
-        "+bitexact",
-    ]  # the same bytes
     command = [
-        find_ffmpeg(),
-        "-v",
-        "error",
-        "-y",
-        *taken,
-        *made,
-        *plain,
-        "-f",
-        "mp4",
+        *(find_ffmpeg(), "-v", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24"),
+        *("-s", size, "-r", rate, "-i", "-", "-an", "-c:v", "libx264", "-crf", "18"),
+        *("-pix_fmt", "yuv420p", "-movflags", "+faststart"),
+        # The same bytes each time.
+        *("-threads", "1", "-map_metadata", "-1", "-fflags", "+bitexact", "-flags:v", "+bitexact"),
+        *("-f", "mp4"),
     ]
     with tempfile.TemporaryFile() as words, tempfile.TemporaryDirectory() as work:
         path = Path(work) / "film.mp4"

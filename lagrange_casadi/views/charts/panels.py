@@ -267,8 +267,7 @@ def scale(values: Array, signed: bool = False) -> tuple[Any, str, str]:
     sizes = np.sort(np.abs(there) if signed else there)
     # Of a few values, the least and the largest are never in the middle.
     ends = -(-sizes.size // 20) if sizes.size > 3 else 0
-    inner = sizes[ends : sizes.size - ends]
-    near, middle, far = inner[0], np.median(inner), inner[-1]
+    near, middle, far = sizes[ends], np.median(sizes), sizes[-1 - ends]
     least, most = float(sizes[0]), float(sizes[-1])
     near = max(near, middle / 20.0) if signed else near  # some sizes are zero, or rounding
     log = far > 5.0 * near > 0.0 and middle - least < 0.2 * (most - least)

@@ -223,19 +223,10 @@ def _time(spec: TimePlot, solution: Solution, si: bool) -> Figure:
     for axes, names in zip(subplots, units.values(), strict=True):
         for name in names:
             _draw_time(spec, axes, solution, name)
-        first, last = axes is subplots[0], axes is subplots[-1]
-        title = (spec.title or spec.quantities[0]) if first else ""
-        _finish(
-            figure,
-            axes,
-            solution,
-            names,
-            title,
-            spec.note if last else "",
-            _along(solution)[1] if last else "",
-            si,
-        )
-    return figure
+        _finish(axes, solution, names, si)
+    subplots[0].set_title(spec.title or spec.quantities[0], fontsize=11)
+    subplots[-1].set_xlabel(_along(solution)[1])
+    return _noted(figure, spec.note)
 
 
 def _draw_time(spec: TimePlot, axes: Axes, solution: Solution, name: str) -> None:
@@ -262,9 +253,10 @@ def _span(spec: SpanPlot, solution: Solution, si: bool) -> Figure:
     )
     axes.plot(solution.xi, (0.0 if vanishes(solution, output) else spec.factor) * values[0])
     at = instant(solution, i)
-    title = f"{spec.title}, {at}" if spec.title else at
-    _finish(figure, axes, solution, [spec.quantity], title, spec.note, r"$\xi/l$", si)
-    return figure
+    _finish(axes, solution, [spec.quantity], si)
+    axes.set_title(f"{spec.title}, {at}" if spec.title else at, fontsize=11)
+    axes.set_xlabel(r"$\xi/l$")
+    return _noted(figure, spec.note)
 
 
 def _maps(spec: SectionMaps, solution: Solution, si: bool) -> Figure:
@@ -349,17 +341,15 @@ def _figure(subplots: int = 1) -> tuple[Figure, list[Axes]]:
     return figure, list(figure.subplots(subplots, 1, sharex=True, squeeze=False).flat)
 
 
-def _finish(
-    figure: Figure,
-    axes: Axes,
-    solution: Solution,
-    names: Sequence[str],
-    title: str,
-    note: str,
-    along: str,
-    si: bool,
-) -> None:
-    axes.set_xlabel(along)
+def _noted(figure: Figure, note: str) -> Figure:
+    """A figure with a note below it."""
+    if note:
+        figure.supxlabel(note, fontsize=8, color="0.35")
+    return figure
+
+
+def _finish(axes: Axes, solution: Solution, names: Sequence[str], si: bool) -> None:
+    """Name and scale the axis of curves of one unit."""
     shown = map(Output.of, names)
     words = [
         o.part if o.group == "output" else o.meant(solution.table).long_name.partition(":")[0]
@@ -376,11 +366,8 @@ def _finish(
     )
     scale.put(axes.yaxis)
     axes.set_ylabel("\n".join(textwrap.wrap(f"{', '.join(words)} [{scale.unit}]", _LABEL)))
-    axes.set_title(title, fontsize=11)
     axes.axhline(0.0, color="0.6", linewidth=0.8, zorder=0)
     axes.grid(True, color="0.9")
     axes.margins(x=0.0)
     if axes.get_legend_handles_labels()[0]:
         axes.legend(frameon=False)
-    if note:
-        figure.supxlabel(note, fontsize=8, color="0.35")

@@ -8,7 +8,6 @@ from .notebook import scene_summary, summary, view
 from .page import (
     ENDINGS,
     assembled,
-    digest,
     page,
     scene_report,
     with_motion,
@@ -20,7 +19,6 @@ __all__ = [
     "ENDINGS",
     "Live",
     "assembled",
-    "digest",
     "page",
     "scene_report",
     "scene_summary",

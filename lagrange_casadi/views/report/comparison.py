@@ -19,7 +19,7 @@ from ...results.ordering import error_of, ordered
 from ...results.solution import Solution
 from .array_block import Arrays
 from .instants import drive_entry, shown_instants
-from .page import COMPARISON_SCRIPTS, assembled, digest, page, script, write_page
+from .page import COMPARISON_SCRIPTS, assembled, page, script, viewer, write_page
 from .page_contents import series_of
 from .words import GROUPS, what
 
@@ -84,7 +84,7 @@ def _page(solutions: tuple[Solution, Solution], names: Sequence[str]) -> str:
         f"{cases}: two runs",
         content,
         [script(name) for name in COMPARISON_SCRIPTS],
-        others=[digest(live=False)],
+        others=[viewer(live=False)],
     )
 
 

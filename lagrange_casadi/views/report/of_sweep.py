@@ -30,10 +30,10 @@ from ...studies.sweep.meanings import STATUS
 from ...studies.sweep.reading import Sweep
 from ..charts.panels import varied
 from ..charts.usual_designs import usual_pair
-from . import Live, assembled, digest, page, with_motion, write_page
+from . import Live, assembled, page, with_motion, write_page
 from .array_block import Arrays
 from .live import run_of
-from .page import SWEEP_SCRIPTS, script
+from .page import SWEEP_SCRIPTS, script, viewer
 
 MOST = 300_000
 """Numbers that a page holds at most: 8 bytes each, 11 in the page."""
@@ -135,7 +135,7 @@ def _page(sweep: Sweep, scene: Scene | None, command: str) -> str:
         "status": arrays.add(values[STATUS]),
     }
     content |= {"arrays": arrays.places, "numbers": arrays.block()}
-    others = [digest(live=True)] if scene is not None else []
+    others = [viewer(live=True)] if scene is not None else []
     scripts = [script(name) for name in SWEEP_SCRIPTS]
     return assembled(
         f"{sweep.case}: a sweep", content, scripts, wasm=scene is not None, others=others

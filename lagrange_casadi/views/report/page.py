@@ -142,12 +142,12 @@ def assembled(
     *,
     wasm: bool = False,
     connect: bool = False,
-    others: Sequence[str] = (),
+    others: Sequence[Sequence[str]] = (),
 ) -> str:
     """A page with ``content`` as JSON, which runs ``scripts``; with ``wasm`` it may compile that,
     and with ``connect`` ask its server.
 
-    ``others`` are digests of scripts that pages within it run.
+    ``others`` are the scripts that pages within it run.
     """
     data = json.dumps(content, allow_nan=False, separators=(",", ":"), ensure_ascii=True)
     return Template(asset("page.html")).substitute(
@@ -161,10 +161,14 @@ def assembled(
 
 
 def policy(
-    scripts: Sequence[str], *, wasm: bool = False, connect: bool = False, others: Sequence[str] = ()
+    scripts: Sequence[str],
+    *,
+    wasm: bool = False,
+    connect: bool = False,
+    others: Sequence[Sequence[str]] = (),
 ) -> str:
     """The policy of content of a page that runs ``scripts``: see :func:`assembled`."""
-    run = [f"'sha256-{one}'" for one in (_digest(_whole(scripts)), *others)]
+    run = [f"'sha256-{one}'" for one in map(_digest, (scripts, *others))]
     # A browser compiles WebAssembly only where a page says so.
     run += ["'wasm-unsafe-eval'"] if wasm else []
     asked = "; connect-src 'self'" if connect else ""
@@ -172,11 +176,6 @@ def policy(
         f"default-src 'none'; script-src {' '.join(run)}; style-src 'unsafe-inline'; img-src data:"
         f"{asked}"
     )
-
-
-def digest(live: bool) -> str:
-    """The digest of the script of a page, of a live one or another."""
-    return _digest(_whole(viewer(live)))
 
 
 def viewer(live: bool) -> list[str]:
@@ -194,8 +193,8 @@ def _whole(scripts: Sequence[str]) -> str:
     return "".join(["(() => {\n'use strict';\n", *scripts, "})();\n"])
 
 
-def _digest(text: str) -> str:
-    return base64.b64encode(hashlib.sha256(text.encode()).digest()).decode("ascii")
+def _digest(scripts: Sequence[str]) -> str:
+    return base64.b64encode(hashlib.sha256(_whole(scripts).encode()).digest()).decode("ascii")
 
 
 def asset(name: str, package: str = __package__) -> str:

@@ -113,13 +113,7 @@ def require_poses(solution: Solution, what: str = "a report") -> None:
 
 def _axes(pose: Pose) -> Array:
     """The axes (t, 3, 3) of a pose; those that a body does not have complete the others."""
-    found = np.tile(np.eye(3), (pose.x.size, 1, 1))
-    if pose.angle is not None:
-        found[:, 0, 0] = found[:, 1, 1] = np.cos(pose.angle)
-        found[:, 0, 1] = np.sin(pose.angle)
-        found[:, 1, 0] = -found[:, 0, 1]
-    elif pose.axes is not None:
-        found = pose.axes
-        if np.isnan(found).any():
-            found = frame_along(found[:, 0])
-    return found
+    if pose.axes is not None:
+        return frame_along(pose.axes[:, 0]) if np.isnan(pose.axes).any() else pose.axes
+    angle = np.zeros_like(pose.x) if pose.angle is None else pose.angle
+    return frame_along(np.stack([np.cos(angle), np.sin(angle), 0.0 * angle], axis=1))
