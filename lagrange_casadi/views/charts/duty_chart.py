@@ -10,7 +10,7 @@ import numpy as np
 from ...base.arguments import public
 from ...studies.actuators.duty import Duty
 from ...studies.actuators.motor import Motor
-from ..shapes.picture_files import check_picture, one_at_a_time, put_figure
+from ..shapes.picture_files import check_picture, one_at_a_time, put_figure, subplots
 
 
 @public
@@ -35,11 +35,8 @@ def plot_duty(duty: Duty, path: str | Path, motor: Motor | None = None) -> None:
         For another ending.
     """
     check_picture(path)
-    from matplotlib.figure import Figure
-
     per_minute = 1.0 if duty.linear else 60.0 / math.tau
-    figure = Figure(figsize=(7.0, 5.0), layout="constrained")
-    axes = figure.subplots()
+    figure, (axes,) = subplots((7.0, 5.0))
     axes.plot(
         per_minute * np.abs(duty.speed),
         np.abs(duty.torque),

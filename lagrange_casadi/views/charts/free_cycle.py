@@ -12,7 +12,7 @@ import numpy as np
 from ...base.arguments import public
 from ...results.statistics import shares
 from ...studies.forward.free_motion import FreeMotion
-from ..shapes.picture_files import check_picture, one_at_a_time, put_figure
+from ..shapes.picture_files import check_picture, one_at_a_time, put_figure, subplots
 
 
 @public
@@ -40,14 +40,11 @@ def plot_cycle(motion: FreeMotion, path: str | Path) -> None:
     and the torque of the drive are the energy that changes the speed.
     """
     check_picture(path)
-    from matplotlib.figure import Figure
-
     angle = motion.unit == "rad"
     x = np.degrees(motion.angle) if angle else motion.angle
     resisting = motion.resisting
     mean = float(resisting @ shares(motion.angle))
-    figure = Figure(figsize=(7.0, 6.0), layout="constrained")
-    upper, lower = figure.subplots(2, 1, sharex=True)
+    figure, (upper, lower) = subplots((7.0, 6.0), 2, sharex=True)
     upper.fill_between(x, resisting, mean, where=resisting > mean, color="#f2c9b8", lw=0.0)
     upper.fill_between(x, resisting, mean, where=resisting <= mean, color="#c9dff2", lw=0.0)
     upper.plot(x, resisting, color="#1f4e79", lw=1.0, label="needed")

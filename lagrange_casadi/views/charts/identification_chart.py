@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from ...base.arguments import public
 from ...studies.identification.fit import Comparison
-from ..shapes.picture_files import check_picture, one_at_a_time, put_figure, save
+from ..shapes.picture_files import check_picture, one_at_a_time, put_figure, save, subplots
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -40,19 +40,16 @@ def plot_identification(compared: Comparison, path: str | os.PathLike[str]) -> N
         If the file cannot be written.
     """
     check_picture(path)
-    from matplotlib.figure import Figure
-
     names = list(compared.measured)
-    figure = Figure(figsize=(9.0, 2.2 * len(names) + 0.6), layout="constrained")
-    axes = figure.subplots(len(names), 2, squeeze=False, sharex=True)
-    for name, (left, right) in zip(names, axes, strict=True):
+    figure, axes = subplots((9.0, 2.2 * len(names) + 0.6), len(names), 2, sharex=True)
+    for name, left, right in zip(names, axes[::2], axes[1::2], strict=True):
         _draw(left, compared, name, BESIDE)
         _draw(right, compared, name, DIFFERENCE)
         left.set_ylabel(f"{name} [{compared.units[name]}]", fontsize=8)
         right.set_title(f"{100 * compared.relative[name]:.3g} % of measured", fontsize=8)
-    for one in axes[-1]:
+    for one in axes[-2:]:
         one.set_xlabel("t [s]")
-    handles = [line for one in axes[0] for line in one.get_legend_handles_labels()[0]]
+    handles = [line for one in axes[:2] for line in one.get_legend_handles_labels()[0]]
     figure.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False, fontsize=9)
     put_figure(figure, path)
 
@@ -60,10 +57,7 @@ def plot_identification(compared: Comparison, path: str | os.PathLike[str]) -> N
 @one_at_a_time()
 def chart(compared: Comparison, name: str, curves: Sequence[str]) -> bytes:
     """Return a picture of some curves of a quantity, as SVG."""
-    from matplotlib.figure import Figure
-
-    figure, file = Figure(figsize=(5.6, 2.6), layout="constrained"), io.BytesIO()
-    axes = figure.subplots()
+    (figure, (axes,)), file = subplots((5.6, 2.6)), io.BytesIO()
     _draw(axes, compared, name, curves)
     axes.set_xlabel("t [s]")
     axes.set_ylabel(f"{name} [{compared.units[name]}]")

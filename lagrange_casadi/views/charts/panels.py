@@ -18,6 +18,7 @@ from ...model.wanted_names import SENSITIVITY
 from ...studies.sweep.axes import DESIGN
 from ...studies.sweep.meanings import KINDS, STATUS, Kind
 from ...studies.sweep.reading import Sweep
+from ..shapes.picture_files import subplots
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -115,13 +116,10 @@ class Panels:
     @classmethod
     def of(cls, count: int, columns: int = 0, **share: Any) -> Panels:
         """Panels row by row: one in a report's column, more over a page's width."""
-        from matplotlib.figure import Figure
-
         columns = columns or (count if count <= 3 else 2 if count == 4 else 3)
         rows = -(-count // columns)
         size = _ALONE if count == 1 else (_PAGE, _HEIGHT * rows)
-        figure = Figure(size, layout="constrained")
-        axes = figure.subplots(rows, columns, squeeze=False, **share).ravel().tolist()
+        figure, axes = subplots(size, rows, columns, **share)
         for one in axes[count:]:
             one.set_axis_off()
         return cls(figure, axes[:count], columns)

@@ -12,6 +12,7 @@ from ...base.arrays import Array, every
 from ...results.elastic.deflection import Deflection
 from ...results.elastic.vibration import Vibration, vibration
 from ...results.solution import Solution
+from ..shapes.picture_files import subplots
 from ..shapes.readable import Scale
 from .link_map import PIXELS, draw_map
 
@@ -30,15 +31,13 @@ def draw_deflection(
     """The deflection of a link across it as a map, and where its span is a cycle the harmonics of
     its bending.
     """
-    from matplotlib.figure import Figure
-
     found, response = solution.deflection(link), vibration(solution, link)
-    figure = Figure(figsize=(8.0, 7.0 if response.harmonics else 3.8), layout="constrained")
-    subplots = list(figure.subplots(2 if response.harmonics else 1, 1, squeeze=False).flat)
-    _map(subplots[0], found, along, *_UNITS[si])
-    subplots[0].set_xlabel(label)
-    if response.harmonics:
-        _spectrum(subplots[1], response)
+    down = 2 if response.harmonics else 1
+    figure, (upper, *lower) = subplots((8.0, 7.0 if response.harmonics else 3.8), down)
+    _map(upper, found, along, *_UNITS[si])
+    upper.set_xlabel(label)
+    for axes in lower:
+        _spectrum(axes, response)
     figure.suptitle(
         f"{solution.case}: deflection of {link} from {_FROM[found.against]}", fontsize=11
     )

@@ -4,7 +4,8 @@ the front of two terms.
 
 from __future__ import annotations
 
-from typing import BinaryIO
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, BinaryIO
 
 import numpy as np
 
@@ -14,6 +15,9 @@ from ...studies.optimise.front import Front
 from ...studies.optimise.optimum import Optimum
 from ..shapes.picture_files import one_at_a_time, save
 from .mechanism_figure import draw_into
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _TEXT = 40
 
@@ -29,12 +33,7 @@ def draw_optimum(scene: Scene, optimum: Optimum, file: BinaryIO, ending: str) ->
     before = dict(optimum.parameters) | dict(optimum.start.values)
     for column, (title, values) in enumerate((("start", before), ("optimum", optimum.parameters))):
         axes = figure.add_subplot(grid[0, column])
-        draw_into(
-            axes,
-            evaluate(scene, parameters=values, wanted=["motion"], backend="vm", certificate=False),
-        )
-        values_text = ", ".join(f"{name} = {values[name]:.5g}" for name in optimum.values)
-        axes.set_title(f"{title}: {values_text}", fontsize=10)
+        _draw_design(axes, scene, values, f"{title}: ", optimum, 10)
     axes = figure.add_subplot(grid[1, 0])
     history = optimum.history
     for number in np.unique(history[:, 0]):
@@ -102,19 +101,24 @@ def draw_front(scene: Scene, front: Front, file: BinaryIO, ending: str) -> None:
     for column, k in enumerate(shown):
         axes = figure.add_subplot(below[0, column])
         optimum = front.points[k].optimum
-        draw_into(
-            axes,
-            evaluate(
-                scene,
-                parameters=optimum.parameters,
-                wanted=["motion"],
-                backend="vm",
-                certificate=False,
-            ),
-        )
-        axes.set_title(
-            f"{k + 1}:"
-            f" {', '.join(f'{name} = {value:.5g}' for name, value in optimum.values.items())}",
-            fontsize=9,
-        )
+        _draw_design(axes, scene, optimum.parameters, f"{k + 1}: ", optimum, 9)
     save(figure, file, ending)
+
+
+def _draw_design(
+    axes: Axes,
+    scene: Scene,
+    parameters: Mapping[str, float],
+    title: str,
+    optimum: Optimum,
+    size: float,
+) -> None:
+    """The mechanism with some values of the parameters that an optimum has found, which the title
+    names.
+    """
+    values = ", ".join(f"{name} = {parameters[name]:.5g}" for name in optimum.values)
+    axes.set_title(title + values, fontsize=size)
+    draw_into(
+        axes,
+        evaluate(scene, parameters=parameters, wanted=["motion"], backend="vm", certificate=False),
+    )

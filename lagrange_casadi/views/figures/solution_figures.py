@@ -36,7 +36,7 @@ from ...results.store.specs import (
     UtilisationPlot,
 )
 from ...results.strength.all_parts import NEEDED, fitted_in, strong_of
-from ..shapes.picture_files import ending_of, one_at_a_time, save
+from ..shapes.picture_files import ending_of, one_at_a_time, save, subplots
 from ..shapes.readable import instant, number, scale_for
 from .deflection_plot import draw_deflection
 from .diagrams import draw_polar, draw_section_diagrams, polar_members
@@ -219,13 +219,14 @@ def _time(spec: TimePlot, solution: Solution, si: bool) -> Figure:
     units: dict[str, list[str]] = {}
     for name in spec.quantities:
         units.setdefault(solution.unit(name), []).append(name)
-    figure, subplots = _figure(len(units))
-    for axes, names in zip(subplots, units.values(), strict=True):
+    tall = 4.2 if len(units) == 1 else 2.8 * len(units) + 0.6
+    figure, plots = subplots((7.0, tall), len(units), sharex=True)
+    for axes, names in zip(plots, units.values(), strict=True):
         for name in names:
             _draw_time(spec, axes, solution, name)
         _finish(axes, solution, names, si)
-    subplots[0].set_title(spec.title or spec.quantities[0], fontsize=11)
-    subplots[-1].set_xlabel(_along(solution)[1])
+    plots[0].set_title(spec.title or spec.quantities[0], fontsize=11)
+    plots[-1].set_xlabel(_along(solution)[1])
     return _noted(figure, spec.note)
 
 
@@ -243,7 +244,7 @@ def _draw_time(spec: TimePlot, axes: Axes, solution: Solution, name: str) -> Non
 
 
 def _span(spec: SpanPlot, solution: Solution, si: bool) -> Figure:
-    figure, (axes,) = _figure()
+    figure, (axes,) = subplots((7.0, 4.2))
     i = int(np.argmin(np.abs(solution.t - spec.t)))
     output = Output.of(spec.quantity)
     values = (
@@ -260,18 +261,15 @@ def _span(spec: SpanPlot, solution: Solution, si: bool) -> Figure:
 
 
 def _maps(spec: SectionMaps, solution: Solution, si: bool) -> Figure:
-    from matplotlib.figure import Figure
-
     names = [Output("section", spec.link, force) for force in solution.table.forces]
     names = [name for name in names if solution.determined(name)]
     across = 1 if solution.table is PLANE else 2
     down = -(-len(names) // across)
-    figure = Figure(figsize=(8.0 * across, 2.8 * down), layout="constrained")
     instants, ratios = (every(size, PIXELS) for size in (solution.t.size, solution.xi.size))
     law, xi = solution.section(spec.link).law.during(instants), solution.xi[ratios]
     places, along = _along(solution)
     basis = law.basis(xi)
-    plots = list(figure.subplots(down, across, sharex=True, squeeze=False).flat)
+    figure, plots = subplots((8.0 * across, 2.8 * down), down, across, sharex=True)
     for axes, name in zip(plots, names, strict=False):
         values, peak = law.on_grid(name.member, basis), solution.peak(name)
         nothing = vanishes(solution, name)
@@ -329,16 +327,6 @@ def _place_of(peak: Peak, solution: Solution) -> tuple[float, str]:
     if solution.over is None or peak.over is None:
         return peak.t, f"t = {number(peak.t)} s"
     return float(solution.over.drawn(peak.over)), solution.over.shown(peak.over)
-
-
-def _figure(subplots: int = 1) -> tuple[Figure, list[Axes]]:
-    """A figure, and its axes, one above the other."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(
-        figsize=(7.0, 4.2 if subplots == 1 else 2.8 * subplots + 0.6), layout="constrained"
-    )
-    return figure, list(figure.subplots(subplots, 1, sharex=True, squeeze=False).flat)
 
 
 def _noted(figure: Figure, note: str) -> Figure:

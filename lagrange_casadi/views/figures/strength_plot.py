@@ -15,6 +15,7 @@ from ...results.solution import Solution
 from ...results.strength.fatigue import Loaded, loaded, use_score, used
 from ...results.strength.fibres import sampled, worst
 from ...results.strength.stress import Stress
+from ..shapes.picture_files import subplots
 from ..shapes.readable import Scale
 from .link_map import PIXELS, draw_map
 
@@ -31,21 +32,18 @@ def draw_strength(
     """Von Mises' stress of a link as a map, and where its material has an endurance limit its
     swings in Goodman's diagram.
     """
-    from matplotlib.figure import Figure
-
     stress = solution.stress(link)
     fatigue = (
         stress.member.beam.material.endurance is not None
         and stress.member.beam.material.ultimate is not None
     )
-    figure = Figure(figsize=(8.0, 7.6 if fatigue else 3.8), layout="constrained")
-    subplots = list(figure.subplots(2 if fatigue else 1, 1, squeeze=False).flat)
+    figure, (upper, *lower) = subplots((8.0, 7.6 if fatigue else 3.8), 2 if fatigue else 1)
     # What is drawn is in MPa.
     unit = Scale(_MEGA, "Pa") if si else Scale(1.0, "MPa")
-    _map(subplots[0], stress, along, unit)
-    subplots[0].set_xlabel(label)
-    if fatigue:
-        _goodman(subplots[1], stress, unit)
+    _map(upper, stress, along, unit)
+    upper.set_xlabel(label)
+    for axes in lower:
+        _goodman(axes, stress, unit)
     figure.suptitle(
         f"{solution.case}: strength of {link}, {stress.member.beam.material.name}", fontsize=11
     )
@@ -56,16 +54,13 @@ def draw_utilisation(solution: Solution, parts: Sequence[str]) -> Figure:
     """Draw the utilisation of every link and joint for each mode of failure: one over the factor of
     safety.
     """
-    from matplotlib.figure import Figure
-
     found = {part: solution.safety(part) for part in parts}
     rows = [
         (f"{part}, {v.against}", 1.0 / v.factor, v is safety.governs)
         for part, safety in found.items()
         for v in safety.verdicts
     ]
-    figure = Figure(figsize=(7.0, 0.32 * len(rows) + 1.4), layout="constrained")
-    axes = figure.subplots()
+    figure, (axes,) = subplots((7.0, 0.32 * len(rows) + 1.4))
     places = np.arange(len(rows))[::-1]
     axes.barh(
         places,

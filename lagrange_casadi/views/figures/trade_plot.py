@@ -7,7 +7,7 @@ from __future__ import annotations
 from typing import BinaryIO
 
 from ...studies.trade import Trade
-from ..shapes.picture_files import one_at_a_time, save
+from ..shapes.picture_files import one_at_a_time, save, subplots
 
 _OFFSETS = ((0, 6), (0, -14), (0, 17), (0, -25))
 _LEAST = 1e-17
@@ -16,10 +16,7 @@ _LEAST = 1e-17
 @one_at_a_time()
 def draw_trade(trade: Trade, file: BinaryIO, ending: str) -> None:
     """Write the picture into a file; its kind follows from the ending of the name."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(12, 6.5), layout="constrained")
-    axes, key = figure.subplots(1, 2, width_ratios=(3, 2))
+    figure, (axes, key) = subplots((12.0, 6.5), 1, 2, width_ratios=(3, 2))
     front = trade.front
     places = {one: (1e9 * one.seconds, max(one.largest, _LEAST)) for one in trade.measurements}
     axes.step(

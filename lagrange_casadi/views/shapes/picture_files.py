@@ -54,6 +54,16 @@ def one_at_a_time(settings: Any = None) -> Iterator[None]:
         yield
 
 
+def subplots(
+    size: tuple[float, float], down: int = 1, across: int = 1, **more: Any
+) -> tuple[Figure, list[Any]]:
+    """A figure of a size [inch], and its axes row by row."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=size, layout="constrained")
+    return figure, figure.subplots(down, across, squeeze=False, **more).ravel().tolist()
+
+
 def save(
     figure: Figure, file: BinaryIO | str | os.PathLike[str], ending: str = ".png", dpi: int = 150
 ) -> None:
