@@ -108,8 +108,15 @@ def _drawn(
 
     def shown(unit: int) -> Picture:
         """The picture, with so many pixels for a point."""
-        size: dict[str, Any] = {"tallest": _TALLEST, "unit": unit, "words": "\n".join(lines)}
-        return picture(placement.declared.name, things, view, _WIDE * unit, **size)
+        return picture(
+            placement.declared.name,
+            things,
+            view,
+            _WIDE * unit,
+            tallest=_TALLEST,
+            unit=unit,
+            words="\n".join(lines),
+        )
 
     still = shown(1)
     if path is not None:

@@ -15,7 +15,7 @@ from ..shapes.poses import Poses
 from ..shapes.primitives import drawing, size_of
 from ..shapes.shapes import named_spots
 from ..shapes.vector import svg
-from .film_frames import frames_of
+from .film_frames import frames_of, require_motion
 from .forces import drawn_forces, moving
 from .gltf import glb
 from .moving_pixels import find_ffmpeg, gif, mp4
@@ -110,13 +110,16 @@ def picture_of(solution: Solution, film: Film) -> Picture:
     Raises :class:`.DeclarationError` for motion or forces that the solution lacks.
     """
     solution = moving(solution)
-    shown, closed = frames_of(solution, max(2, round(film.rate * film.seconds)))
+    require_motion(solution)
+    whole = Poses.of(solution)
+    shown, closed = frames_of(solution, whole, max(2, round(film.rate * film.seconds)))
     description = solution.description
-    named = named_spots(description) if film.names else {}
-    joints = {name: spot for name, spot in named.items() if name in description.joints}
-    lines = drawing(Poses.of(shown), Poses.of(solution), joints)
+    spots = named_spots(description).items() if film.names else ()
+    joints = {name: spot for name, spot in spots if name in description.joints}
+    poses = Poses.of(shown)
+    lines = drawing(poses, whole, joints)
     forces, words = drawn_forces(
-        shown, solution, size_of(lines), arrows=film.forces, section=film.section
+        shown, poses, solution, size_of(lines), arrows=film.forces, section=film.section
     )
     return picture(
         solution.case,

@@ -28,15 +28,12 @@ def require_motion(solution: Solution) -> None:
         )
 
 
-def frames_of(solution: Solution, count: int) -> tuple[Solution, bool]:
+def frames_of(solution: Solution, whole: Poses, count: int) -> tuple[Solution, bool]:
     """The outputs at ``count`` frames, or at no more than there are instants, between which all of
-    them go straight; and whether the first frame follows the last one.
-
-    Raises as :func:`require_motion` does.
+    them go straight; and whether the first frame follows the last one. The poses are those of the
+    ``whole`` motion.
     """
-    require_motion(solution)
     t = solution.t
-    whole = Poses.of(solution)
     ends = [
         one.points
         for one in drawing(whole.during([0, -1]), whole)

@@ -57,7 +57,7 @@ class Action:
 
 
 def drawn_forces(
-    shown: Solution, whole: Solution, size: float, *, arrows: bool, section: str
+    shown: Solution, poses: Poses, whole: Solution, size: float, *, arrows: bool, section: str
 ) -> tuple[tuple[Primitive, ...], str]:
     """The forces of a mechanism of a ``size`` [m] at the instants that are ``shown``, and the
     largest ones in words: arrows of reactions, efforts and loads, and ribbons of one section force
@@ -68,7 +68,7 @@ def drawn_forces(
     found: list[Primitive] = []
     words: list[str] = []
     if arrows:
-        pushes, moments = actions_of(shown)
+        pushes, moments = actions_of(shown, poses)
         for actions, unit, what in ((pushes, "N", "arrows"), (moments, "N m", "drive torques")):
             largest = largest_of(actions)
             found += [_arrow(one, shown.description.space, size, largest or 1.0) for one in actions]
@@ -76,7 +76,7 @@ def drawn_forces(
                 [f"{what}: up to {scale_for(unit, largest).said(largest, 3)}"] if actions else []
             )
     if section:
-        laws, poses = _laws(whole, section), Poses.of(shown)
+        laws = _laws(whole, section)
         peaks = [whole.peak(Output("section", link, section)) for link in laws]
         largest = max(abs(peak.value) for peak in peaks)
         scale = _WIDEST * size / (largest or 1.0)
@@ -102,12 +102,12 @@ def _arrow(action: Action, space: bool, size: float, largest: float) -> Arrow:
     return Arrow(points, action.colour, _HEAD * size)
 
 
-def actions_of(solution: Solution) -> tuple[list[Action], list[Action]]:
+def actions_of(solution: Solution, poses: Poses) -> tuple[list[Action], list[Action]]:
     """Reactions, efforts and loads: forces, and the moments of drives.
 
     Raises :class:`.DeclarationError` where the solution has none of them.
     """
-    found = [*_actions(solution, Poses.of(solution))]
+    found = [*_actions(solution, poses)]
     if not found:
         raise DeclarationError(
             f"{solution.case}: there is no reaction, effort or load to be shown; want reaction too"

@@ -60,7 +60,7 @@ def glb(solution: Solution, frames: int, seconds: float, *, forces: bool = False
     file.keys = file.array(keys)
     parts = [*_bodies(file, poses, _GIRTH * size), *_still(file, poses, _GIRTH * size)]
     if forces:
-        parts += _actions(file, shown, size)
+        parts += _actions(file, shown, poses, size)
     turned: dict[str, Any] = {}
     if solution.description.space:
         right, away, up = upright(solution.description.gravity)
@@ -200,11 +200,11 @@ def _still(file: _File, poses: Poses, girth: float) -> Iterator[int]:
         yield file.node(f"way of {name}", mesh=mesh)
 
 
-def _actions(file: _File, solution: Solution, size: float) -> Iterator[int]:
+def _actions(file: _File, solution: Solution, poses: Poses, size: float) -> Iterator[int]:
     """Reactions, efforts and loads as arrows of length 1, which are placed, turned and made as long
     as they are large.
     """
-    pushes, moments = actions_of(solution)
+    pushes, moments = actions_of(solution, poses)
     for actions, unit, heads in ((pushes, "N", 1), (moments, "N m", 2)):
         largest = largest_of(actions)
         if not largest:

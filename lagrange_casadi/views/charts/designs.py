@@ -20,7 +20,7 @@ from ...studies.sweep.axes import DESIGN
 from ...studies.sweep.best import best, chosen, size
 from ...studies.sweep.reading import Sweep
 from ...studies.sweep.selection import near
-from ..shapes.picture_files import ending_of, one_at_a_time, save
+from ..shapes.picture_files import one_at_a_time, save
 from .panels import (
     DOTS,
     LINES,
@@ -223,7 +223,7 @@ def draw_sweep(
     """Draw into an existing folder, one by one, as PNG or as SVG: the file, and where it is not
     drawn, why.
     """
-    ending = ending_of(svg)
+    ending = ".svg" if svg else ".png"
     for spec in specs:
         path = folder / f"{spec.name}{ending}"
         why = ""

@@ -140,8 +140,13 @@ class Panels:
 
         sides = (cells(axes, axis, x) for axis, x in zip("xy", over, strict=True))
         norm, extend, note = scale(values, signed)
-        colours = "RdBu_r" if signed else "viridis"
-        mesh = axes.pcolormesh(*sides, values.T, cmap=colours, norm=norm, rasterized=True)
+        mesh = axes.pcolormesh(
+            *sides,
+            values.T,
+            cmap="RdBu_r" if signed else "viridis",
+            norm=norm,
+            rasterized=True,
+        )
         few = AsinhLocator(norm.linear_width, numticks=5) if isinstance(norm, AsinhNorm) else None
         style: dict[str, Any] = {"location": "top", "extend": extend, "aspect": 25, "pad": 0.02}
         self.figure.colorbar(mesh, ax=axes, label=text + note, ticks=few, **style)

@@ -21,10 +21,11 @@ from ..shapes.picture_sheet import LETTER, view_of, written
 from ..shapes.poses import Poses
 from ..shapes.primitives import cloud, drawing, seen, size_of
 from ..shapes.readable import Scale, instant, scale_for
-from ..shapes.symbols import GROUND, Line, Name, Primitive, Symbol, edge, outlines
+from ..shapes.symbols import GROUND, Line, Name, Primitive, Symbol, outlines
 from .stills import stills
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -121,8 +122,14 @@ def draw_into(axes: Axes, solution: Solution) -> None:
     figure: Any = axes.figure
     if not figure.legends:
         names, handles = zip(*bodies, strict=True)
-        place = "outside lower center"
-        figure.legend(handles, names, loc=place, ncols=_IN_ROW, frameon=False, fontsize=8)
+        figure.legend(
+            handles,
+            names,
+            loc="outside lower center",
+            ncols=_IN_ROW,
+            frameon=False,
+            fontsize=8,
+        )
     # How large a point is on the page is known when that is laid out.
     figure.draw_without_rendering()
     point = (right - left) / (72.0 * axes.bbox.width / figure.dpi)
@@ -159,7 +166,6 @@ def _painted(
     """
     from matplotlib.patheffects import withStroke
 
-    alpha = 1.0 if strong else _FAINT
     for order, thing in enumerate(things):
         if isinstance(thing, Name):
             x, y = thing.points[0, 0]
@@ -169,25 +175,28 @@ def _painted(
             continue
         if thing.level <= GROUND and not strong:
             continue
-        style: dict[str, Any] = {"zorder": 2.0 + strong + 1e-4 * order}
-        for line in outlines(thing, np.full(2, _UNIT * point)):
-            if line.opacity:
-                face: dict[str, Any] = {
-                    "facecolor": line.fill or line.colour,
-                    "alpha": line.opacity * alpha,
-                }
-                axes.fill(*line.points.T, linewidth=0.0, **face, **style)
-            axes.plot(
-                *edge(line).T,
-                color=line.colour,
-                linewidth=_UNIT * line.width,
-                linestyle=(0, (6, 4)) if line.dashed else "-",
-                solid_capstyle="round",
-                solid_joinstyle="round",
-                label=line.body if line.body and strong else "_",
-                alpha=alpha,
-                **style,
-            )
+        for line, points in outlines(thing, np.full(2, _UNIT * point)):
+            artist = _artist(line, points, 1.0 if strong else _FAINT)
+            label = line.body if line.body and strong else "_"
+            artist.set(zorder=2.0 + strong + 1e-4 * order, label=label)
+            axes.add_artist(artist)
+
+
+def _artist(line: Line, points: Array, alpha: float = 1.0) -> Artist:
+    """A line through points (n, 2) for matplotlib."""
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Polygon
+
+    style: dict[str, Any] = {
+        "linewidth": _UNIT * line.width,
+        "linestyle": (0, (6, 4)) if line.dashed else "-",
+    }
+    if not line.closed:
+        found = Line2D(*points.T, color=line.colour, alpha=alpha, **style)
+        found.set(solid_capstyle="round", solid_joinstyle="round")
+        return found
+    face, rim = (line.fill or line.colour, alpha * line.opacity), (line.colour, alpha)
+    return Polygon(points, facecolor=face, edgecolor=rim, joinstyle="round", **style)
 
 
 def _panels(
@@ -211,14 +220,10 @@ class _Legend:
 
     def legend_artist(self, _: object, symbol: Symbol, size: float, box: Any) -> None:
         """Paint a symbol for letters of a ``size`` [pt]."""
-        from matplotlib.patches import Polygon
-
         middle = [box.width / 2 - box.xdescent, box.height / 2 - box.ydescent]
         here = replace(symbol, points=np.array([[middle]]))
-        for line in outlines(here, np.full(2, 0.08 * _UNIT * size)):
-            style: dict[str, Any] = {"edgecolor": line.colour, "linewidth": _UNIT * line.width}
-            face = line.fill or "none"
-            box.add_artist(Polygon(line.points, closed=line.closed, facecolor=face, **style))
+        for line, points in outlines(here, np.full(2, 0.08 * _UNIT * size)):
+            box.add_artist(_artist(line, points))
 
 
 def _ends(things: Sequence[Primitive], one: View, size: float) -> tuple[Array, Array]:

@@ -36,7 +36,7 @@ from ...results.store.specs import (
     UtilisationPlot,
 )
 from ...results.strength.all_parts import NEEDED, fitted_in, strong_of
-from ..shapes.picture_files import ending_of, one_at_a_time, save, subplots
+from ..shapes.picture_files import one_at_a_time, save, subplots
 from ..shapes.readable import instant, number, scale_for
 from .deflection_plot import draw_deflection
 from .diagrams import draw_polar, draw_section_diagrams, polar_members
@@ -166,7 +166,7 @@ def draw(
         If the folder does not exist.
     """
     chosen, folder = specs or default_figures(solution), Path(folder)
-    ending = ending_of(svg)
+    ending = ".svg" if svg else ".png"
     for spec in chosen:
         if not isinstance(spec, Spec):
             raise DeclarationError(f"expected specs of lagrange_casadi.figures, got {spec!r}")
@@ -338,10 +338,9 @@ def _noted(figure: Figure, note: str) -> Figure:
 
 def _finish(axes: Axes, solution: Solution, names: Sequence[str], si: bool) -> None:
     """Name and scale the axis of curves of one unit."""
-    shown = map(Output.of, names)
     words = [
         o.part if o.group == "output" else o.meant(solution.table).long_name.partition(":")[0]
-        for o in shown
+        for o in map(Output.of, names)
     ]
     curves = axes.get_lines()
     if len(curves) > 1:

@@ -22,14 +22,10 @@ def summary(sweep: Sweep) -> str:
     """A table of the smallest and the largest value of each column with one value for each design:
     as HTML.
     """
-    counts = [
-        (sweep.statuses[status][1] if status else "", count)
+    counts_text = "; ".join(
+        f"{count} without: {sweep.statuses[status][1]}" if status else f"{count} with a result"
         for status, count in sweep.counts().items()
         if count
-    ]
-    counts_text = "; ".join(
-        f"{count} without: {words}" if words else f"{count} with a result"
-        for words, count in counts
     )
     head = (
         f"<p><b>{escape(sweep.case)}</b>: {counted(sweep.size)} over"

@@ -29,9 +29,6 @@ def placed(
     ``things`` (m, 2) are points of what is drawn, ``boxes`` are left, bottom, right and top of the
     picture for each name. Names are placed one after the other, those first that have least room.
     """
-    anchors, sizes, things = (
-        np.asarray(values, float).reshape(-1, 2) for values in (anchors, sizes, things)
-    )
     found = np.full(anchors.shape, np.nan)
     near = np.sum(
         np.hypot(*np.moveaxis(anchors[:, None] - anchors[None], 2, 0)) < _REACHES[-1], axis=1

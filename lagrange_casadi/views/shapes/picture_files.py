@@ -25,11 +25,6 @@ gives the same bytes: programs, clocks.
 """
 
 
-def ending_of(svg: bool) -> str:
-    """Return the ending of a figure's name in a folder of figures."""
-    return ".svg" if svg else ".png"
-
-
 def check_picture(path: str | os.PathLike[str], endings: Collection[str] = tuple(PICTURES)) -> None:
     """Raise :class:`.DeclarationError` for a name with none of some endings, and
     :class:`.PathError`.

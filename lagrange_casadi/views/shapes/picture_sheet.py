@@ -122,7 +122,7 @@ def sheet(title: str, pictures: Sequence[Picture], across: int, lines: Sequence[
 
 
 def written(
-    things: Iterable[Line | Symbol | Name],
+    things: Sequence[Line | Symbol | Name],
     point: Array,
     corners: tuple[tuple[float, float], tuple[float, float]],
 ) -> list[Line | Symbol | Name]:
@@ -133,17 +133,17 @@ def written(
     ``point`` (2,) is a point of paper to the right and up, ``corners`` are the lower left and the
     upper right one.
     """
-    painted: list[Line | Symbol | Name] = []
-    names, hidden = list[Name](), [np.zeros((0, 2))]
-    for thing in things:
-        if isinstance(thing, Name):
-            names.append(thing)
-            continue
-        painted.append(thing)
-        for line in outlines(thing, point):
-            along = _spread(line) / point
-            hidden += [along + line.width / 2 * side for side in _SIDES]
-    names = _together(names, _CLOSE * float(point[0]))
+    painted: list[Line | Symbol | Name] = [one for one in things if not isinstance(one, Name)]
+    names = _together((one for one in things if isinstance(one, Name)), _CLOSE * float(point[0]))
+    if not names:
+        return painted
+    hidden = [np.zeros((0, 2))]
+    for thing in painted:
+        if isinstance(thing, Line):
+            along = _spread(thing, thing.points[0]) / point
+            hidden += [along + thing.width / 2 * side for side in _SIDES]
+        elif isinstance(thing, Symbol):
+            hidden += [corners / point for _, corners in outlines(thing, point)]
     ways = [one.points[:, 0] / point for one in names]
     anchors = np.array([way[0] for way in ways])
     sizes = np.array([(_WIDE * LETTER * len(one.text), 1.1 * LETTER) for one in names])
@@ -170,9 +170,9 @@ def _words(x: float, y: float, text: str) -> Name:
     return Name(np.array([[[x, y]]]), text)
 
 
-def _spread(line: Line) -> Array:
+def _spread(line: Line, points: Array) -> Array:
     """Points along a line, as things that a name may hide."""
-    ends = edge(line)
+    ends = edge(line, points)
     shares = np.linspace(0.0, 1.0, max(2, 80 // len(ends)))[:, None, None]
     return np.asarray(ends[:-1] + shares * np.diff(ends, axis=0)).reshape(-1, 2)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -38,15 +38,22 @@ def frames(picture: Picture, chosen: Iterable[int] | None = None) -> Iterator[Im
         for thing in picture.things:
             if isinstance(thing, Name):
                 place = _FINE * frame(thing.points, k)[0]
-                style: dict[str, Any] = {"stroke_width": round(1.5 * unit), "stroke_fill": PAPER}
-                brush.text((place[0], place[1]), thing.text, thing.colour, font, "ls", **style)
+                brush.text(
+                    (place[0], place[1]),
+                    thing.text,
+                    thing.colour,
+                    font,
+                    "ls",
+                    stroke_width=round(1.5 * unit),
+                    stroke_fill=PAPER,
+                )
                 continue
-            for line in outlines(thing, picture.unit * np.array([1.0, -1.0]), k):
+            for line, points in outlines(thing, picture.unit * np.array([1.0, -1.0]), k):
                 if line.opacity:
                     fill = f"{line.fill or line.colour}{round(255 * line.opacity):02x}"
-                    brush.polygon([*(_FINE * line.points).ravel()], fill)
-                points = _FINE * edge(line)
-                for part in _dashes(points, _DASH * unit) if line.dashed else [points]:
+                    brush.polygon([*(_FINE * points).ravel()], fill)
+                way = _FINE * edge(line, points)
+                for part in _dashes(way, _DASH * unit) if line.dashed else [way]:
                     _stroke(brush, part, line.colour, line.width * unit)
         yield sheet.resize(size, Image.Resampling.BOX)
 

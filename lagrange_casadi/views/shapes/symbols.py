@@ -1,11 +1,11 @@
-"""What pictures are made of: lines, arrows and names, and symbols of joints, masses, places and the
+"""Lines, arrows and names that pictures are made of, and symbols of joints, masses, places and the
 ground, which are as large as the paper says, not the mechanism.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
@@ -98,26 +98,25 @@ def turn(symbol: Symbol, k: int) -> float:
     return math.atan2(y, x)
 
 
-def edge(line: Line) -> Array:
+def edge(line: Line, points: Array) -> Array:
     """The points (n, 2) of a polyline; of a closed polygon, and the first again."""
-    return np.vstack([line.points, line.points[:1]]) if line.closed else line.points
+    return np.vstack([points, points[:1]]) if line.closed else points
 
 
-def outlines(thing: Line | Symbol, point: Array, k: int = 0) -> list[Line]:
-    """The polylines and polygons (n, 2) that a thing on a page is at a frame; ``point`` (2,) is a
-    point of paper to the right and up.
+def outlines(thing: Line | Symbol, point: Array, k: int = 0) -> Iterator[tuple[Line, Array]]:
+    """The polylines and polygons that a thing on a page is, each with its points (n, 2) at a frame;
+    ``point`` (2,) is a point of paper to the right and up.
     """
     here = frame(thing.points, k)
     if isinstance(thing, Line):
-        return [replace(thing, points=here)]
+        yield thing, here
+        return
     angle = turn(thing, k)
     c, s = math.cos(angle), math.sin(angle)
     turned = np.array([[c, s], [-s, c]]) * point
-    fills = {BODY: thing.colour}
-    return [
-        replace(one, points=here + one.points @ turned, fill=fills.get(one.fill, one.fill))
-        for one in SYMBOLS[thing.kind]
-    ]
+    for one in SYMBOLS[thing.kind]:
+        filled = replace(one, fill=thing.colour) if one.fill == BODY else one
+        yield filled, here + one.points @ turned
 
 
 def _line(start: tuple[float, float], stop: tuple[float, float], colour: str = INK) -> Line:

@@ -64,8 +64,8 @@ def _element(
     rotated = _animated("rotate", turns, picture, seconds)
     yield f'<g transform="translate({places[0]})">{moved}<g{turned}>{rotated}'
     still = replace(thing, points=np.zeros((1, 1, 2)), along=None)
-    for line in outlines(still, picture.unit * np.array([1.0, -1.0])):
-        yield _drawn(line, _pairs(line.points), picture.unit)
+    for line, corners in outlines(still, picture.unit * np.array([1.0, -1.0])):
+        yield _drawn(line, _pairs(corners), picture.unit)
     yield "</g></g>"
 
 
