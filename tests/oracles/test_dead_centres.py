@@ -193,8 +193,9 @@ def check(name, backend, many, seed, compared):
                 what,
             )
     for row, status in zip(p[:compared], found, strict=False):
-        evaluated, _ = run(engine.program, engine.t, row, method)
-        why = refusal(engine.program, evaluated, engine.t, row, method)
+        t = engine.times.default[0]
+        evaluated, _ = run(engine.program, t, row, method)
+        why = refusal(engine.program, evaluated, t, row, method)
         assert status in (why.status if why else Status.OK, Status.PEAK_NOT_TOLD), values(
             scene, row
         )

@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.arrays import Array
-from ...base.quantities import Output, compared
+from ...base.quantities import Output
 from ...base.space import cores, require
 from ...base.status import Status
 from ...base.symbolic import symbolic_property
@@ -156,12 +156,6 @@ class DesignEngine:
         return self.kept.units
 
     @cached_property
-    def _units(self) -> npt.NDArray[np.bool_]:
-        """True for two quantities (q, q) of one unit."""
-        numbers = np.array(compared(self.units), np.intp)
-        return np.asarray(numbers[:, None] == numbers)
-
-    @cached_property
     def efforts(self) -> tuple[str, ...]:
         """The names of the efforts that have means."""
         return tuple(map(str, self.kept.efforts))
@@ -197,13 +191,6 @@ class DesignEngine:
     def outputs(self) -> tuple[Output, ...]:
         """The outputs that histories have."""
         return tuple(self.program.outputs)
-
-    @property
-    def t(self) -> Array:
-        """The instants (t,) [s] of the parameters' defaults; those of all designs, where these have
-        them in common.
-        """
-        return self.times.default[0]
 
     @property
     def count(self) -> int:
@@ -246,7 +233,7 @@ class DesignEngine:
         columns = empty("the histories of the designs", history) if histories else None
         found, times = (
             self._results(n, columns),
-            np.empty((n, self.count)) if histories and not self.shared else None,
+            np.empty((n, self.count)) if histories and not self.times.timing.shared else None,
         )
         # What all have in common is not cut: it is made once.
         many = len(self.program.columns) if self.watch.columns else 1
@@ -292,13 +279,6 @@ class DesignEngine:
         self._refuse_motions(p, t, found)
         return History(outcome_of(found), t[0], columns[0], found["iterated"][0], tops[0])
 
-    def reported(self, out: Array, p: Array) -> dict[Output, Array]:
-        """The series (t,) of one design, which are among its columns ``out`` (columns, t): what is
-        open is NaN, angles go on.
-        """
-        self.finish(out, p)
-        return {output: out[k] for output, k in self.program.outputs.items()}
-
     def finish(self, out: Array, p: Array) -> None:
         """Put NaN into the columns (columns, t) of a design for what is open, and let angles go
         on.
@@ -318,20 +298,10 @@ class DesignEngine:
                 ]
             ] = np.nan
 
-    @property
-    def plain(self) -> bool:
-        """True if :meth:`finish` changes nothing of the columns."""
-        return not self.program.loop_angles and not self.program.indeterminate
-
     @cached_property
     def watch(self) -> Watch:
         """Conditions on designs between their instants, if there are any."""
         return Watch(self.program)
-
-    @property
-    def shared(self) -> bool:
-        """True if all designs have the same instants, defined by times."""
-        return self.times.timing.shared
 
     def _results(self, n: int, columns: Array | None) -> Results:
         """Arrays for what is kept of n designs, and the columns that histories are made of."""
@@ -450,8 +420,9 @@ class DesignEngine:
 
     def _faint(self, value: Array) -> npt.NDArray[np.bool_]:
         """Return which peaks are zero within rounding, relative to the largest of their unit."""
-        sizes = np.where(np.isfinite(value), np.abs(value), 0.0)
-        return faint(value, np.where(self._units, sizes, 0.0).max(axis=1, initial=0.0))
+        sizes, units = np.where(np.isfinite(value), np.abs(value), 0.0), self.kept.reduction.units
+        same = np.equal.outer(units, units)
+        return faint(value, np.where(same, sizes, 0.0).max(axis=1, initial=0.0))
 
     def mean_slopes(self, p: Array) -> MeanSlopes:
         """Derivatives by all parameters of the means of :attr:`efforts` over time, and of their

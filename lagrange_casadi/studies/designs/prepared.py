@@ -162,33 +162,24 @@ class _Answers(threading.local):
         self.rows = {
             str(output): self.history[0, program.outputs[output]] for output in engine.outputs
         }
-        places = {
+        self.places = {
             name: np.empty((1, quantities if k < 3 else efforts)) for k, name in enumerate(KEPT)
         }
         if engine.sampled:
-            places["error"] = np.empty((1, quantities))
-        self.kept_peaks = Peaks(*(array[0] for array in places.values()))
-        self.fill: tuple[Callable[[], None], Callable[[], None]] | None = None
+            self.places["error"] = np.empty((1, quantities))
+        self.kept_peaks = Peaks(*(array[0] for array in self.places.values()))
+        self.near = engine.near(1)
         # Where nothing but the values changes from call to call, all that remains is the call
         # itself.
-        if engine.times.common:
-            even, asked = self.instants = engine.times.of(self.p)
-            bind = partial(engine.library.bound, p=self.p)
-            nowhere = np.zeros((1, 0), bool)
-            self.near = engine.near(1)
-            common = {"status": self.status, "near": self.near}
-            self.fill = (
-                bind(
-                    asked,
-                    nowhere,
-                    results={**common, **dict.fromkeys(KEPT), "history": self.history},
-                ),
-                bind(
-                    even,
-                    engine.bent(self.p, even),
-                    results={**common, **places, "history": None},
-                ),
-            )
+        self.calls = [self.call(engine, peaks) for peaks in (0, 1)] if engine.times.common else None
+
+    def call(self, engine: DesignEngine, peaks: int) -> tuple[Callable[[], None], Array]:
+        """A call that evaluates series, or if 1 ``peaks``, and the instants (1, t)."""
+        t = engine.times.of(self.p, asked=not peaks)[1 - peaks]
+        bent = engine.bent(self.p, t) if peaks else np.zeros((1, 0), bool)
+        kept = {**self.places, "history": None} if peaks else dict.fromkeys(KEPT)
+        results = {"status": self.status, "near": self.near, "history": self.history, **kept}
+        return engine.library.bound(t, bent, self.p, results), t
 
 
 class Prepared:
@@ -261,17 +252,10 @@ class Prepared:
         :class:`UnknownNameError` and :class:`ParameterError` for what is no parameter, or out of
         range, and :class:`AssemblyError` where there is no result.
         """
-        engine, p = self._engine, self._set(values, named)
-        answers = self._answers
-        fill = answers.fill
-        if fill is None:
-            found = engine.history(p[0])
-            self._refuse(found.outcome.status[0], p)
-            return {str(o): row for o, row in engine.reported(found.columns, p[0]).items()}
-        fill[0]()
-        self._refuse(self._watched(answers.instants[1]), p)
-        if not engine.plain:
-            engine.finish(answers.history[0], p[0])
+        p, answers, program = self._set(values, named), self._answers, self._engine.program
+        self._evaluate(0)
+        if program.loop_angles or program.indeterminate:
+            self._engine.finish(answers.history[0], p[0])
         return answers.rows
 
     def peaks(self, /, *values: _Values, **named: Number) -> Peaks:
@@ -302,7 +286,8 @@ class Prepared:
         AssemblyError
             If there is no result, or a peak cannot be located.
         """
-        return self._peaks(self._set(values, named))
+        self._set(values, named)
+        return self._evaluate(1)
 
     def gradient(self, /, *values: _Values, **named: Number) -> Gradient:
         """Return the peaks and their derivatives by all parameters.
@@ -409,18 +394,18 @@ class Prepared:
         """
         return self._engine.evaluate(p, threads=threads, histories=histories)
 
-    def _peaks(self, p: Array) -> Peaks:
+    def _evaluate(self, peaks: int) -> Peaks:
+        """Evaluate this thread's parameters: series, or if 1 ``peaks``."""
         engine, answers = self._engine, self._answers
-        fill = answers.fill
-        if fill is None:
-            found = engine.evaluate(p, threads=1)
-            self._refuse(found.status[0], p)
-            kept = (found.value, found.t, found.xi, found.mean, found.rms)
-            value, at, xi, mean, rms = (array[0] for array in kept)
-            error = None if found.error is None else found.error[0]
-            return Peaks(value, at, xi, mean, rms, error)
-        fill[1]()
-        self._refuse(self._watched(answers.instants[0]), p)
+        call, t = answers.calls[peaks] if answers.calls else answers.call(engine, peaks)
+        call()
+        status = int(answers.status[0])
+        if answers.near is not None:  # a motion may have a corner though all have numbers
+            status = int(engine.statuses(answers.p, t, answers.status, answers.near)[0])
+        if status != Status.OK:
+            # It says where, and why.
+            self._explain(dict(zip(self.parameters, answers.p[0].tolist(), strict=True)))
+            raise AssemblyError(f"no result: {Status(status).meaning}")
         return answers.kept_peaks
 
     def _kept_peaks(
@@ -430,7 +415,7 @@ class Prepared:
         copies that stay.
         """
         p = self._set(values, named)
-        peaks = self._peaks(p)
+        peaks = self._evaluate(1)
         return p[0].copy(), peaks.value.copy(), peaks.t.copy(), peaks.xi.copy()
 
     def _set(self, values: Sequence[_Values], named: Mapping[str, Number]) -> Array:
@@ -453,21 +438,6 @@ class Prepared:
                     parameter.check(value)
                 row[self._place[name]] = value if type(value) is float else parameter.number(value)
         return p
-
-    def _watched(self, t: Array) -> int:
-        """The status of this thread's evaluation at instants (1, t); its motion may have a corner
-        though all have numbers.
-        """
-        engine, answers = self._engine, self._answers
-        if answers.near is None:
-            return int(answers.status[0])
-        return int(engine.statuses(answers.p, t, answers.status, answers.near)[0])
-
-    def _refuse(self, status: int, p: Array) -> None:
-        if status != Status.OK:
-            # It says where, and why.
-            self._explain(dict(zip(self.parameters, p[0].tolist(), strict=True)))
-            raise AssemblyError(f"no result: {Status(status).meaning}")
 
 
 @public
