@@ -431,22 +431,6 @@ class DesignEngine:
         chosen = np.array([self.quantities.index(name) for name in self.efforts], np.intc)
         return self.moving(p).means(chosen)
 
-    def mean_slopes_at(self, p: Array, found: Outcome) -> Array:
-        """Derivatives for designs, (n, 2, e, parameters), the means first; NaN without a result."""
-        slopes = np.full((len(p), 2, len(self.efforts), len(self.parameters)), np.nan)
-        for k in np.flatnonzero(found.status == Status.OK):
-            slopes[k] = np.where(np.isnan(found.mean[k])[:, None], np.nan, self.mean_slopes(p[k]))
-        return slopes
-
-    def slopes_at(self, p: Array, found: Outcome) -> Array:
-        """The derivatives of the peaks of designs by all parameters, (n, q, parameters); NaN where
-        there is none.
-        """
-        slopes = np.full((*found.value.shape, len(self.parameters)), np.nan)
-        for k in np.flatnonzero(found.status == Status.OK):
-            slopes[k] = self.gradient(p[k], found.value[k], found.t[k], found.xi[k]).slopes
-        return slopes
-
     def failures(self, p: Array, whole: Program) -> dict[str, float]:
         """Failures of one design that has a result, (parameters,), by a graph of all outputs: see
         :mod:`.spot_check`.

@@ -62,29 +62,25 @@ def failures(
     has all outputs.
     """
     some = np.unique(np.linspace(0, t.size - 1, min(t.size, INSTANTS)).astype(int))
-    followed = t if program.newton is not None else t[some]
-    table, provenance = run(program, followed, p, EvaluationMethod("vm", newton=method.newton))
-    rows = table.out[:, some] if program.newton is not None else table.out
-    within = phases(program, rows, t[some], p)
+    # Iterated loops are followed from instant to instant.
+    t, kept = (t, some) if program.newton is not None else (t[some], np.arange(some.size))
+    table, provenance = run(program, t, p, EvaluationMethod("vm", newton=method.newton))
+    t, rows = t[kept], table.out[:, kept]
+    within = phases(program, rows, t, p)
     found_there, description = outputs_of(program, rows), program.described(p, rows)
-    whole = Histories(program.data.name, t[some], np.zeros(0), found_there, description, provenance)
+    whole = Histories(program.data.name, t, np.zeros(0), found_there, description, provenance)
     limit = tolerance(whole) if method.newton is None else COARSE
-    found = {
-        name: float(np.max(gaps))
-        for name, gaps in residuals_of(whole, program, rows, p, within).items()
-    }
-    failed = {name: gap for name, gap in found.items() if not gap <= limit}
+    residuals = residuals_of(whole, program, rows, p, within).items()
+    failed = {name: gap for name, gaps in residuals if not (gap := float(np.max(gaps))) <= limit}
     allowed = max(_AGREES, limit) if method.precision == "double" else COARSE
     compiled = dict(zip(outputs, out[:, some], strict=True))
     agreement = _agreement(whole, compiled, {})
     if not agreement <= allowed:
         # What is nothing but rounding has no size of its own to be compared with.
-        looked_at = table
-        if program.newton is not None:
-            looked_at = replace(
-                table, out=rows, status=table.status[some], iterated=table.iterated[:, some]
-            )
-        rounded = estimate(program, looked_at, whole, p)
+        there = replace(
+            table, out=rows, status=table.status[kept], iterated=table.iterated[:, kept]
+        )
+        rounded = estimate(program, there, whole, p)
         coarser = ROUNDING[method.precision] / ROUNDING["double"]
         agreement = _agreement(
             whole,

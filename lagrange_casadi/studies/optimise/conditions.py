@@ -28,7 +28,7 @@ _STEP = 1e-5
 
 DOWN = -1e-6
 """Curvature, of the objective over the square of the bounds, from which it is negative beyond
-rounding.
+rounding: the objective falls to the second order, within all limits, at a saddle or a maximum.
 """
 
 
@@ -47,13 +47,6 @@ class Conditions:
     curvature: float
     least: float
     direction: Array
-
-    @property
-    def turns_down(self) -> bool:
-        """True if the objective falls from here to the second order, within all limits: at a
-        saddle, or a maximum.
-        """
-        return self.least < DOWN
 
 
 def conditions(

@@ -11,11 +11,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ...errors import AssemblyError
-from .nonlinear_program import Found, Held, NonlinearProgram
-from .problem import Box, Problem
+from .conditions import DOWN
+from .nonlinear_program import Found, Held
 from .sampled_design import KEEP, EvaluatedDesign, Point
 from .search_run import CONVERGED, HOLDS, STOPPED, SearchRun, rounded
-from .term_evaluator import TermEvaluator
+from .solver import SearchTask, Solver
 from .terms import tired_link
 
 _ROUNDS, _HALVINGS = 40, 12
@@ -60,23 +60,24 @@ class _Iterate:
 
 @dataclass(eq=False)
 class Descent:
-    """A way from a start.
+    """A way from the start of a ``task``.
 
     Nothing of it depends on other ways, so that it is the same wherever it is gone.
     """
 
-    evaluator: TermEvaluator
-    program: NonlinearProgram
-    box: Box
-    problem: Problem
-    scales: tuple[float, ...]
+    solver: Solver
+    task: SearchTask
     progress: Progress
     history: list[tuple[float, ...]] = field(default_factory=list)
     iterates: list[_Iterate] = field(default_factory=list)
 
-    def go(self, first: EvaluatedDesign) -> SearchRun:
-        """Go from a design to the best near it; after an interrupt, as far as it went."""
-        before, stopped = self.evaluator.evaluations, False
+    def go(self) -> SearchRun:
+        """Go from the start, which has a result, to the best near it; after an interrupt, as far as
+        it went.
+        """
+        evaluator, stopped = self.solver.evaluator, False
+        first = evaluator.evaluate(np.array(self.task.start))
+        before = evaluator.evaluations
         try:
             self._descend(first)
         except KeyboardInterrupt:
@@ -88,16 +89,16 @@ class Descent:
         return SearchRun(
             start=tuple(first.p.tolist()),
             end=tuple(best.evaluated.p.tolist()),
-            objective=best.evaluated.value(self.problem.objective),
-            excess=self.problem.excess(best.evaluated),
-            scale=self.scales[0],
+            objective=best.evaluated.values[self.task.problem.objective],
+            excess=self.task.problem.excess(best.evaluated),
+            scale=self.task.scales[0],
             ending=STOPPED if stopped else best.ending,
             history=tuple(self.history),
             multipliers=found.multipliers if found else (),
             bounds=tuple(found.bounds.tolist()) if found else (),
             residual=found.conditions.residual if found else math.nan,
             curvature=found.conditions.curvature if found else math.nan,
-            evaluations=self.evaluator.evaluations - before,
+            evaluations=evaluator.evaluations - before,
         )
 
     def _best(self) -> _Iterate:
@@ -111,11 +112,11 @@ class Descent:
                 # Another one may seem better by a violation that passes as none.
                 gains = sum(
                     abs(gain) * scale
-                    for gain, scale in zip(one.by.multipliers, self.scales[1:], strict=True)
+                    for gain, scale in zip(one.by.multipliers, self.task.scales[1:], strict=True)
                 )
                 if self._merit(one.evaluated) <= (
                     excess,
-                    objective + HOLDS * (self.scales[0] + gains),
+                    objective + HOLDS * (self.task.scales[0] + gains),
                 ):
                     return one
         return best
@@ -124,17 +125,20 @@ class Descent:
         """A merit less its last digits, so that of designs as good the
         one that converged is taken.
         """
-        excess, objective = self.problem.merit(evaluated)
-        return excess, rounded(objective, self.scales[0])
+        excess, objective = self.task.problem.merit(evaluated)
+        return excess, rounded(objective, self.task.scales[0])
 
     def _note(self, evaluated: EvaluatedDesign) -> None:
         """Keep a design in the history, and report it."""
-        objective, excess = evaluated.value(self.problem.objective), self.problem.excess(evaluated)
+        objective, excess = (
+            evaluated.values[self.task.problem.objective],
+            self.task.problem.excess(evaluated),
+        )
         row = (
             objective,
             excess,
             float(evaluated.has_result),
-            *evaluated.p[list(self.box.places)].tolist(),
+            *evaluated.p[list(self.solver.question.box.places)].tolist(),
         )
         self.history.append(row)
         self.progress(objective, excess)
@@ -145,17 +149,19 @@ class Descent:
         if (
             not self.iterates
             or converged
-            or self.problem.merit(evaluated) <= self.problem.merit(self.iterates[-1].evaluated)
+            or self.task.problem.merit(evaluated)
+            <= self.task.problem.merit(self.iterates[-1].evaluated)
         ):
             self.iterates.append(_Iterate(evaluated, by, ending))
 
     def _descend(self, first: EvaluatedDesign) -> None:
         self._note(first)
         self._better(first, None, "start")
-        sampled, box = first.sampled, self.box
+        sampled, box, problem = first.sampled, self.solver.question.box, self.task.problem
+        program = self.solver.program(problem)
         assert sampled is not None
-        held = [Held(self.problem.objective, None, self.scales[0])]
-        for constraint, scale in zip(self.problem.constraints, self.scales[1:], strict=True):
+        held = [Held(problem.objective, None, self.task.scales[0])]
+        for constraint, scale in zip(problem.constraints, self.task.scales[1:], strict=True):
             held.append(Held(constraint.term, constraint.limit, scale, constraint.least))
         numbers = np.unique(np.linspace(0, sampled.t.size - 1, _CLOSED).astype(int)).tolist()
         closures = [sampled.instant(k) for k in numbers]
@@ -163,11 +169,9 @@ class Descent:
         current, tried = first, 0
         for _ in range(_ROUNDS):
             every = (
-                current.sampled.instants
-                if self.program.averaged and current.sampled is not None
-                else []
+                current.sampled.instants if program.averaged and current.sampled is not None else []
             )
-            found = self.program.solve(box.share(current.p), held, closures, every)
+            found = program.solve(box.share(current.p), held, closures, every)
             x = found.x
             if not np.isfinite(x).all():
                 self._better(
@@ -176,7 +180,7 @@ class Descent:
                     "the program has no solution: a derivative is missing at an evaluated point",
                 )
                 return
-            following = self.evaluator.evaluate(box.all(x))
+            following = self.solver.evaluator.evaluate(box.all(x))
             self._note(following)
             back = 0
             while following.sampled is None and back < _HALVINGS:
@@ -184,7 +188,7 @@ class Descent:
                 # is one, and look there from then on.
                 back += 1
                 x = (x + box.share(current.p)) / 2
-                following = self.evaluator.evaluate(box.all(x))
+                following = self.solver.evaluator.evaluate(box.all(x))
             if following.sampled is None:
                 why = following.status.meaning if following.status else "loops do not close"
                 self._better(current, None, f"a design beside it fails: {why}")
@@ -192,15 +196,16 @@ class Descent:
             added = self._learn(held, closures, following, everything=back > 0)
             done = not back and self._settled(found, following)
             moved = float(np.abs(box.share(following.p) - box.share(current.p)).max())
-            if done and found.conditions.turns_down and (lower := self._lower(found, following)):
+            if done and found.conditions.least < DOWN and (lower := self._lower(found, following)):
                 self._note(lower)
                 self._better(lower, None, "beyond a saddle")
                 self._learn(held, closures, lower, everything=True)
                 current = lower
                 continue
-            self._better(
-                following, found if not back else None, CONVERGED if done else _unsettled(found)
-            )
+            unsettled = f"IPOPT: {found.status}"
+            if found.status == _SOLVED:
+                unsettled = "the peaks of its last design are not those of the program"
+            self._better(following, None if back else found, CONVERGED if done else unsettled)
             if done and found.status == _SOLVED:
                 return
             tried = tried + 1 if moved <= 1e-9 and not added else 0
@@ -218,8 +223,8 @@ class Descent:
         direction = found.conditions.direction / (np.abs(found.conditions.direction).max() or 1.0)
         excess, objective = self._merit(evaluated)
         for step in (share * sign for share in _STEPS for sign in (1.0, -1.0)):
-            tried = self.evaluator.evaluate(
-                self.box.all(np.clip(found.x + step * direction, 0.0, 1.0))
+            tried = self.solver.evaluator.evaluate(
+                self.solver.question.box.all(np.clip(found.x + step * direction, 0.0, 1.0))
             )
             if self._merit(tried) < (excess, objective):
                 return tried
@@ -229,10 +234,10 @@ class Descent:
         """Return whether a program's solution holds with all peaks, also those that the program did
         not include.
         """
-        value = evaluated.value(self.problem.objective)
+        value = evaluated.values[self.task.problem.objective]
         gap = abs(value - found.objective) / (abs(value) or 1.0)
         return (
-            self.problem.excess(evaluated) <= HOLDS
+            self.task.problem.excess(evaluated) <= HOLDS
             and gap <= HOLDS
             and found.conditions.residual <= _CONDITIONS
         )
@@ -260,7 +265,7 @@ class Descent:
                 level = largest if k == 0 else term.bound
                 least = max(least, level - _NEAR * term.scale)
             high = [(point, sign) for point, sign in points if sign * point.value >= least]
-            found = self.evaluator.following(term.term, high or points[:1], sampled)
+            found = self.solver.evaluator.following(term.term, high or points[:1], sampled)
             first, sign = found[0]
             if (
                 term.term.kind == "peak"
@@ -269,7 +274,12 @@ class Descent:
                 and 0.0 < first.share < 1.0
             ):
                 # Where it is, a kink has no derivative; along its way it has one.
-                found[0] = self.evaluator.drifting(term.term, first, evaluated.p, self.box), sign
+                found[0] = (
+                    self.solver.evaluator.drifting(
+                        term.term, first, evaluated.p, self.solver.question.box
+                    ),
+                    sign,
+                )
             for point, sign in found if high else ():
                 added |= term.add(point, sign, near)
             if not term.points:
@@ -277,18 +287,9 @@ class Descent:
         for row in sampled.closures():
             k = int(np.argmin(row))
             point = sampled.instant(k)
-            if row[k] < 4 * self.program.least_closure and all(
+            if row[k] < 4 * self.solver.evaluator.least_closure and all(
                 abs(point.share - other.share) > near for other in closures
             ):
                 closures.append(point)
                 added = True
         return added
-
-
-def _unsettled(found: Found) -> str:
-    """Reason why a program's solution is none of the problem."""
-    return (
-        "the peaks of its last design are not those of the program"
-        if found.status == _SOLVED
-        else f"IPOPT: {found.status}"
-    )

@@ -85,11 +85,6 @@ class Front(Brief):
         return bool(self.points) and all(point.optimum.converged for point in self.points)
 
 
-def front_of(search: Search, count: int) -> Front:
-    """A front of so many points, or fewer where it has not as many."""
-    return _Fronts(search, count).front()
-
-
 @dataclass(eq=False)
 class _Found:
     """A point as it is found."""
@@ -99,7 +94,9 @@ class _Found:
     values: Array
 
 
-class _Fronts:
+class FrontSearch:
+    """A search for a front of ``count`` points, or fewer where it has not as many."""
+
     def __init__(self, search: Search, count: int) -> None:
         self.search, self.count = search, count
         question = search.solver.question
@@ -249,8 +246,8 @@ class _Fronts:
                 ):
                     starts = [*starts, one]
         optimum = self.search.solve(problem, starts)
-        evaluated = self.search.evaluate(tuple(optimum.parameters.values()))
-        return _Found(optimum, evaluated, np.array([evaluated.value(term) for term in self.terms]))
+        evaluated = self.search.solver.evaluator.evaluate(np.array([*optimum.parameters.values()]))
+        return _Found(optimum, evaluated, np.array([evaluated.values[term] for term in self.terms]))
 
     def _front_point(self, one: _Found) -> FrontPoint:
         # Where the first objective is the limit it is at its least: nothing is gained any more.

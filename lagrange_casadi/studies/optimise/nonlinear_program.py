@@ -202,7 +202,7 @@ class NonlinearProgram:
                     1,
                 )
             ]
-            * self.closed
+            * (self.closures is not None)
             + [np.array([point.guess for point in averages]).ravel()] * bool(self.averaged)
         )
         n = x.size
@@ -237,11 +237,6 @@ class NonlinearProgram:
         above.
         """
         return self.objective.kind in ("peak", "max")
-
-    @property
-    def closed(self) -> bool:
-        """True if there are loops."""
-        return self.closures is not None
 
     @property
     def averaged(self) -> bool:

@@ -124,7 +124,7 @@ def optimum_of(
     limits = []
     multipliers = best.multipliers or (math.nan,) * len(problem.constraints)
     for constraint, multiplier in zip(problem.constraints, multipliers, strict=True):
-        value = evaluated.value(constraint.term)
+        value = evaluated.values[constraint.term]
         near = abs(constraint.excess(value)) <= _NEAR * constraint.scale(value)
         limits.append(Limit(constraint, value, bool(near), float(multiplier) if near else 0.0))
     bounds = dict.fromkeys(box.names, math.nan)
@@ -141,7 +141,7 @@ def optimum_of(
         unit=problem.objective.unit(solver.engine.program.data),
         values={name: everything[name] for name in box.names},
         parameters=everything,
-        objective=evaluated.value(problem.objective),
+        objective=evaluated.values[problem.objective],
         start=_start(solver, best),
         starts=tuple(_start(solver, run) for run in runs),
         optima=_optima(solver, runs),
@@ -195,7 +195,7 @@ def _notes(solver: Solver, problem: Problem, evaluated: EvaluatedDesign) -> Iter
     values = [
         None,
         *(
-            c.excess(evaluated.value(c.term)) / c.scale(evaluated.value(c.term))
+            c.excess(evaluated.values[c.term]) / c.scale(evaluated.values[c.term])
             for c in problem.constraints
         ),
     ]

@@ -93,11 +93,6 @@ class Box:
         p[list(self.places)] = np.clip(self.low + x * (self.high - self.low), self.low, self.high)
         return p
 
-    def holds(self, name: str, value: float) -> bool:
-        """Return whether a value of a parameter that is chosen is within its bounds."""
-        k = self.names.index(name)
-        return bool(self.low[k] <= value <= self.high[k])
-
     def share(self, p: Array) -> Array:
         """The shares for values of all parameters."""
         return np.asarray((p[list(self.places)] - self.low) / (self.high - self.low))
@@ -119,7 +114,7 @@ class Problem:
         """Excess of the worst limit, over its scale; NaN without a result."""
         excess = evaluated.closing
         for constraint in self.constraints:
-            value = evaluated.value(constraint.term)
+            value = evaluated.values[constraint.term]
             excess = max(excess, constraint.excess(value) / constraint.scale(value))
         return excess if evaluated.has_result else math.nan
 
@@ -128,12 +123,12 @@ class Problem:
         if not evaluated.has_result:
             return math.inf, math.inf
         excess = self.excess(evaluated)
-        return (excess if excess > HOLDS else 0.0), evaluated.value(self.objective)
+        return (excess if excess > HOLDS else 0.0), evaluated.values[self.objective]
 
     def scales(self, evaluated: EvaluatedDesign) -> tuple[float, ...]:
         """Scales of the terms, objective first."""
-        objective = abs(evaluated.value(self.objective)) or 1.0
-        return (objective, *(c.scale(evaluated.value(c.term)) for c in self.constraints))
+        objective = abs(evaluated.values[self.objective]) or 1.0
+        return (objective, *(c.scale(evaluated.values[c.term]) for c in self.constraints))
 
 
 @dataclass(frozen=True, eq=False)

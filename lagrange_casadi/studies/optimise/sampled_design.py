@@ -178,10 +178,6 @@ class EvaluatedDesign:
     closing: float = -math.inf
     points: Mapping[Term, tuple[Signed, ...]] = field(default_factory=dict)
 
-    def value(self, term: Term) -> float:
-        """Value of a term."""
-        return self.values[term]
-
     @property
     def has_result(self) -> bool:
         """True if there is a result."""

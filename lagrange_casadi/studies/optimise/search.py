@@ -20,7 +20,7 @@ from ...results.store.runs import check_target
 from ..case import Case, scene_of
 from ..checkpoint import Checkpoint, check_resuming
 from ..sweep.workers import Executor
-from .front import Front, front_of
+from .front import Front, FrontSearch
 from .optimum import Optimum
 from .problem import Problem, Question
 from .search_file import save
@@ -209,7 +209,7 @@ def optimise(
             problem = Problem(question.objectives[0], question.constraints)
             found = search.solve(problem, search.begin(problem))
         else:
-            found = front_of(search, points)
+            found = FrontSearch(search, points).front()
         if parts is not None:
             try:
                 with uninterrupted():

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 HOLDS = 1e-7
 """Violation of a constraint, relative to its limit, that is allowed."""
@@ -37,12 +35,6 @@ class SearchRun:
     residual: float
     curvature: float
     evaluations: int
-
-    @classmethod
-    def read(cls, words: Mapping[str, Any]) -> SearchRun:
-        """A run from its fields, as JSON has them."""
-        lists = {name: tuple(words[name]) for name in ("start", "end", "multipliers", "bounds")}
-        return cls(**{**words, **lists, "history": tuple(map(tuple, words["history"]))})
 
     @property
     def merit(self) -> tuple[float, float]:

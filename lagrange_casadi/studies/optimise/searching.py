@@ -16,10 +16,12 @@ from ...base.files import digest
 from ...base.interrupts import uninterrupted
 from ...engine.program import Program
 from ...errors import ClusterError, NoDesignError
+from ...results.store.untrusted import parsed
 from ..checkpoint import Checkpoint
 from ..designs.engine import DesignEngine
 from ..sweep.design_blocks import Queue
 from ..sweep.workers import Asked, Executor, by_workers, check_same, made, making
+from .descent import Descent
 from .optimum import Optimum, optimum_of
 from .problem import Problem, Question
 from .sampled_design import EvaluatedDesign
@@ -48,7 +50,7 @@ def one_by_one(
 ) -> Iterator[tuple[int, SearchRun]]:
     """The runs of tasks, in this process."""
     for number, task in enumerate(tasks):
-        yield number, solver.descend(task, partial(progress, number))
+        yield number, Descent(solver, task, partial(progress, number)).go()
 
 
 def by_executor(executor: Executor) -> Runs:
@@ -82,7 +84,7 @@ def _descend(call: bytes, words: Mapping[str, Json], task: SearchTask) -> Search
     with making:
         solver: Solver = made(call)
         check_same(words, solver.question.words(solver.engine))
-        run = solver.descend(task, lambda *_: None)
+        run = Descent(solver, task, lambda *_: None).go()
     if run.ending == STOPPED:
         raise ClusterError("a worker was interrupted")
     return run
@@ -136,7 +138,7 @@ class Search:
                 self.solver,
                 problem,
                 runs,
-                self.evaluate(best.end),
+                self.solver.evaluator.evaluate(np.array(best.end)),
                 self.evaluations,
                 stopped=stopped,
             )
@@ -156,10 +158,6 @@ class Search:
             if not found:
                 raise
         return found[0]
-
-    def evaluate(self, p: Sequence[float]) -> EvaluatedDesign:
-        """A design, looked at closely."""
-        return self.solver.evaluator.evaluate(np.array(p))
 
     def _ways(self, problem: Problem, starts: Sequence[EvaluatedDesign]) -> list[SearchRun]:
         """The ways from starts, in their order; after an interrupt those that were begun."""
@@ -190,7 +188,7 @@ class Search:
     def _known(self, task: SearchTask) -> SearchRun | None:
         """The run of a task that was finished before."""
         words = self.parts and self.parts.read(_name(task))
-        return SearchRun.read(json.loads(words)) if words else None
+        return parsed(words, SearchRun) if words else None
 
 
 def _name(task: SearchTask) -> str:

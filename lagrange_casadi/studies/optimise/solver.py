@@ -1,21 +1,14 @@
-"""Solver of a search: an engine, and programs made when they are first needed.
-
-Ways from starts are gone here.
-"""
+"""Solver of a search: an engine, and programs made when they are first needed."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
-
 from ...errors import DeclarationError
 from ..designs.engine import DesignEngine
-from .descent import Descent, Progress
 from .nonlinear_program import NonlinearProgram
 from .problem import Problem, Question
-from .search_run import SearchRun
 from .term_evaluator import TermEvaluator
 from .values import PointValues
 
@@ -85,15 +78,3 @@ class Solver:
                 self.engine, evaluator.values, box, problem, evaluator.least_closure
             )
         return self.programs[known]
-
-    def descend(self, task: SearchTask, progress: Progress) -> SearchRun:
-        """Go the way of an errand. Its start has a result."""
-        first = self.evaluator.evaluate(np.array(task.start))
-        return Descent(
-            self.evaluator,
-            self.program(task.problem),
-            self.question.box,
-            task.problem,
-            task.scales,
-            progress,
-        ).go(first)

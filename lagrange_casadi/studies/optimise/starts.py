@@ -30,16 +30,16 @@ def named(solver: Solver, starts: Sequence[Mapping[str, float]]) -> list[Evaluat
     Raises :class:`UnknownNameError` and :class:`DeclarationError` for what is not chosen or not
     within bounds, and :class:`NoDesignError` where none has a result.
     """
-    box, declared = solver.question.box, solver.engine.parameters
-    rows = []
+    box, rows = solver.question.box, []
     for values in starts:
         p = box.p.copy()
         for name, value in values.items():
             if name not in box.names:
                 raise UnknownNameError("parameter that is chosen", name, box.names)
-            if not box.holds(name, value):
+            k = box.names.index(name)
+            if not box.low[k] <= value <= box.high[k]:
                 raise DeclarationError(f"starts: {name} = {value!r} is not within its bounds")
-            p[declared.index(name)] = value
+            p[box.places[k]] = value
         rows.append(box.all(np.clip(box.share(p), 0.0, 1.0)))
     return _with_results(solver, found := [solver.evaluator.evaluate(p) for p in rows], found)
 

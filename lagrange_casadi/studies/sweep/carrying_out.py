@@ -111,7 +111,7 @@ def _fill(
     queue = Queue((start, stop) for start, stop, _ in plan.slabs() if start not in stops)
     with (
         reporting(folder.target),
-        closing(workers.results(plan, queue)) as blocks,
+        closing(workers(plan, queue)) as blocks,
         writing(folder.target, hdf5=True, within=folder.path) as bytes_,
     ):
         size = sum(folder.path_of(name_of(*block)).stat().st_size for block in stops.items())
@@ -144,7 +144,7 @@ def _fill(
                 except KeyboardInterrupt:
                     if not queue.stopped:
                         progress("stopping", done, plan.size)
-                    queue.stop()
+                    queue.stopped = True
             breathe()
             append = append or stack.enter_context(joining(plan, bytes_, breathe))
             for here, after in _following(stops, joined):

@@ -13,12 +13,12 @@ from ...base.status import Status
 from ...errors import one_line
 from ...model.even_points import points
 from ...results.store.attributes import described
-from ...results.store.dataset_words import unlike, unlike_conventions
+from ...results.store.dataset_words import unlike, unlike_conventions, without_scale
 from ...results.store.untrusted import check_chunks, parsed, reported_as, structured
 from ..checkpoint import Checkpoint
 from .axes import are_described, counted, grouped, size_of
 from .design_blocks import designs_in, slabs
-from .meanings import CYCLE, OVER, STATUS, Column, Meanings
+from .meanings import STATUS, Column, Meanings
 from .plan import Identity
 from .reading import Sweep
 
@@ -94,8 +94,7 @@ def _meanings(sweep: Sweep) -> Meanings:
     times = sweep.identity["t"]
     joint = times[3] if len(times) > 3 else ""
     shared = not joint and not any(isinstance(bound, str) for bound in times[:2])
-    axis = next((name for name in (OVER, CYCLE) if name in sweep.axes), "t" if shared else CYCLE)
-    return Meanings.of(sweep.description, axis, joint)
+    return Meanings(sweep.description, joint, shared)
 
 
 def _check_scales(file: h5py.File, sweep: Sweep, meanings: Meanings) -> list[str]:
@@ -142,10 +141,7 @@ def _check_asked(file: h5py.File, sweep: Sweep) -> Iterator[str]:
 
 def _check_column(file: h5py.File, sweep: Sweep, kept: Column, meanings: Meanings) -> Iterator[str]:
     dataset, status = file[kept.place], file[STATUS]
-    names = (*sweep.dimensions, *kept.axes)
-    for axis, name in enumerate(names):
-        if file[name] not in dataset.dims[axis].values():
-            yield f"{kept.name}: axis {axis} has no scale {name}"
+    yield from without_scale(dataset, (*sweep.dimensions, *kept.axes))
     check_chunks(dataset)
     yield from unlike(dataset, *meanings.of_column(kept.name, sweep.columns))
     dims = tuple(sweep.dimensions.values())

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 import zlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import Any
@@ -30,7 +30,6 @@ from ...engine.model_data import ModelData
 from ...engine.program import Program
 from ...errors import DeclarationError, UnknownNameError
 from ...model.even_points import EvenPoints, points
-from ...model.link_density import Density
 from ...model.times import Timing
 from ...model.wanted_names import SENSITIVITY
 from ...results.section_laws import SectionLaw, law_of
@@ -182,7 +181,7 @@ class Harvest:
         found: dict[str, tuple[tuple[str, ...], str, tuple[int, ...]]] = {
             STATUS: ((), "states", ())
         }
-        for k, quantity in enumerate(self._quantities):
+        for k, quantity in enumerate(map(Output.of, engine.quantities)):
             for kind in self._of_peaks(quantity):
                 found[f"{kind}:{quantity}"] = (), _PEAKS[kind], (k,)
         for k, name in enumerate(engine.efforts):
@@ -214,15 +213,7 @@ class Harvest:
     @property
     def meanings(self) -> Meanings:
         """Meanings of columns and axes."""
-        units = {name: parameter.unit for name, parameter in self.data.parameters.items()}
-        return Meanings(
-            table_of(self.data.space),
-            self.data.kinds,
-            units,
-            self.axis.name,
-            self.axis.joint,
-            self.axis.drive_unit,
-        )
+        return Meanings(self.data.content, self.axis.joint, self.task.timing.shared)
 
     @property
     def block(self) -> int:
@@ -282,14 +273,7 @@ class Harvest:
     @cached_property
     def strength(self) -> Kept:
         """Strength results of links that are kept."""
-        engine, task = self.engine, self.task
-        indeterminate = {
-            output.part
-            for output in map(Output.of, engine.indeterminate)
-            if output.group == "section"
-        }
-        made = (engine.quantities, engine.columns)
-        return Kept(engine.program, task.safety, task.life, *made, indeterminate)
+        return Kept(self.engine, self.task.safety, self.task.life)
 
     @property
     def _histories(self) -> bool:
@@ -306,25 +290,17 @@ class Harvest:
         return max(1, capacity // (series + sum(column.width for column in self.columns)))
 
     @cached_property
-    def _quantities(self) -> tuple[Output, ...]:
-        return tuple(map(Output.of, self.engine.quantities))
-
-    @cached_property
     def _links(self) -> tuple[str, ...]:
-        return tuple(
-            dict.fromkeys(output.part for output in self._quantities if output.group == "section")
-        )
+        sections = (one for one in map(Output.of, self.engine.quantities) if one.group == "section")
+        return tuple(dict.fromkeys(one.part for one in sections))
 
     @cached_property
     def _series(self) -> tuple[str, ...]:
         """The engine's columns that are kept whole."""
         if self.task.keep == "peaks":
             return ()
-        return tuple(
-            name
-            for name in self.engine.columns
-            if self.task.keep == "histories" or Output.of(name).along
-        )
+        whole = self.task.keep == "histories"
+        return tuple(name for name in self.engine.columns if whole or Output.of(name).along)
 
     @property
     def _drives(self) -> tuple[Output, ...]:
@@ -368,27 +344,40 @@ class _Batch:
         return np.asarray(np.where(self._valid[:, None], self.outcome.times, np.nan))
 
     @cached_property
-    def fluctuations(self) -> list[Array]:
-        """The fluctuation of energy of each drive, (designs,)."""
-        found = []
-        for drive in self.harvest.engine.drives:
-            energy, column = DriveEnergy(self.harvest.engine, drive), np.full(len(self.p), np.nan)
-            for k in np.flatnonzero(self._valid):
-                column[k] = energy.fluctuation(self.p[k])
-            found.append(column)
-        return found
+    def fluctuations(self) -> Array:
+        """The fluctuation of energy of each drive, (drives, designs)."""
+        engine = self.harvest.engine
+        energies = [DriveEnergy(engine, drive) for drive in engine.drives]
+        return self._each(
+            (len(energies),), lambda k: [energy.fluctuation(self.p[k]) for energy in energies]
+        )
 
     @cached_property
     def slopes(self) -> Array:
         """Derivatives of peaks, (parameters, quantities, designs)."""
-        found = self.harvest.engine.slopes_at(self.p, self.outcome)
-        return np.moveaxis(found, (2, 0), (0, 2))
+        engine, p, found = self.harvest.engine, self.p, self.outcome
+        return self._each(
+            (p.shape[1], found.value.shape[1]),
+            lambda k: engine.gradient(p[k], found.value[k], found.t[k], found.xi[k]).slopes.T,
+        )
 
     @cached_property
     def mean_slopes(self) -> Array:
         """Derivatives of means and of root mean squares, (parameters, 2, efforts, designs)."""
-        found = self.harvest.engine.mean_slopes_at(self.p, self.outcome)
-        return np.moveaxis(found, (3, 0), (0, 3))
+        engine, mean = self.harvest.engine, self.outcome.mean
+        return self._each(
+            (self.p.shape[1], 2, mean.shape[1]),
+            lambda k: np.where(
+                np.isnan(mean[k]), np.nan, np.moveaxis(engine.mean_slopes(self.p[k]), 2, 0)
+            ),
+        )
+
+    def _each(self, size: tuple[int, ...], of: Callable[[int], npt.ArrayLike]) -> Array:
+        """An array (..., designs) of what is found ``of`` each design with a result, else NaN."""
+        found = np.full((len(self.p), *size), np.nan)
+        for k in np.flatnonzero(self._valid):
+            found[k] = of(k)
+        return np.moveaxis(found, 0, -1)
 
     @cached_property
     def strength(self) -> list[Array]:
@@ -406,24 +395,23 @@ class _Batch:
         assert series is not None
         largest, whole = [], []
         for link in harvest._links:
-            mass_properties = LinkProperties.of(harvest.data, link, engine.provenance.precision)
-            every = enumerate(map(Output.of, engine.columns))
-            rows = {output: k for k, output in every if output.along and output.part == link}
+            law = _law_of_designs(harvest.data, link, engine.provenance.precision)
+            rows = {
+                output: k
+                for k, output in enumerate(map(Output.of, engine.columns))
+                if output.along and output.part == link
+            }
             with np.errstate(all="ignore"):  # of designs that have no result
                 moving = of_counted(series[:, list(rows.values())])
-                laws = mass_properties.law(
-                    {output: moving[:, k] for k, output in enumerate(rows)}, p
-                )
+                laws = law({output: moving[:, k] for k, output in enumerate(rows)}, p)
                 basis = laws.basis(xi)
                 found = (laws.largest(force, basis) for force in forces)
                 largest += [np.where(self._valid[:, None], one, np.nan) for one in found]
             if harvest.task.keep == "histories":
                 grids = np.full((len(forces), len(p), harvest.axis.values.size, xi.size), np.nan)
                 for i in np.flatnonzero(self._valid):
-                    law = mass_properties.law(
-                        {output: series[i, k] for output, k in rows.items()}, p[i]
-                    )
-                    law.on_grids(forces, xi, grids[:, i], threads=1)
+                    alone = law({output: series[i, k] for output, k in rows.items()}, p[i])
+                    alone.on_grids(forces, xi, grids[:, i], threads=1)
                 whole += list(grids)
         return largest, whole
 
@@ -433,37 +421,22 @@ class _Batch:
         return np.asarray(self.outcome.status == Status.OK)
 
 
-@dataclass(frozen=True, eq=False)
-class LinkProperties:
-    """A link's length and density over the parameters, without deriving either anew for each
-    design.
+def _law_of_designs(
+    data: ModelData, link: str, precision: str
+) -> Callable[[Mapping[Output, Array], Array], SectionLaw]:
+    """``law(members, p)`` of a link, from its coefficients and loads, (t,), evaluated in a
+    precision, of a design (parameters,): its length and density are derived once for all designs.
 
-    Laws are made of what was evaluated in a ``precision``.
+    Or the laws of n designs: members are (n, t), length and density (n, 1).
     """
+    size, whole = data.mass_properties(link, data.symbols)
+    every = column([size, *(c for cell in whole.cells for c in cell)])
+    numbers = ca.Function("matter", [data.symbols], [ca.densify(every)])
 
-    link: str
-    density: Density
-    numbers: Any
-    precision: str
+    def law(members: Mapping[Output, Array], p: Array) -> SectionLaw:
+        found: Any = numbers(p.T).full()
+        length, *rest = found[..., None] if p.ndim > 1 else found.ravel().tolist()
+        cells = iter(rest)
+        return law_of(link, members, length, whole.at(lambda _: next(cells), length), precision)
 
-    @classmethod
-    def of(cls, data: ModelData, name: str, precision: str) -> LinkProperties:
-        """Make it for a link."""
-        length, density = data.mass_properties(name, data.symbols)
-        cells = [c for cell in density.cells for c in cell]
-        numbers = ca.Function("matter", [data.symbols], [ca.densify(column([length, *cells]))])
-        return cls(name, density, numbers, precision)
-
-    def law(self, members: Mapping[Output, Array], p: Array) -> SectionLaw:
-        """The law from its coefficients and loads, (t,), of a design (parameters,).
-
-        Or the laws of n designs: members are (n, t), length and density (n, 1).
-        """
-        length, *cells = (
-            self.numbers(p.T).full()[..., None]
-            if p.ndim > 1
-            else self.numbers(p).full().ravel().tolist()
-        )
-        rest = iter(cells)
-        density = self.density.at(lambda _: next(rest), length)
-        return law_of(self.link, members, length, density, self.precision)
+    return law

@@ -7,6 +7,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -62,17 +63,13 @@ def designs_in(names: Iterable[str]) -> int:
     return sum(stop - start for start, stop in blocks_in(names).items())
 
 
+@dataclass
 class Queue:
-    """Blocks that are still to be done, handed out one by one until it is stopped."""
+    """Blocks that are still to be done, handed out one by one until it is ``stopped``."""
 
-    def __init__(self, blocks: Iterable[tuple[int, int]]) -> None:
-        self._blocks = iter(blocks)
-        self.stopped = False
+    blocks: Iterator[tuple[int, int]]
+    stopped: bool = False
 
     def take(self) -> tuple[int, int] | None:
         """The next block, from and to before; None where nothing is left."""
-        return None if self.stopped else next(self._blocks, None)
-
-    def stop(self) -> None:
-        """Hand out no more."""
-        self.stopped = True
+        return None if self.stopped else next(self.blocks, None)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...base.arrays import Array
-from ...base.quantities import Kinds, Output, quotient
+from ...base.quantities import Output, quotient
 from ...base.status import Status
 from ...base.tables import ANGLE, LENGTH, Table, table_of
 from ...engine.model_data import ModelData
@@ -120,21 +120,18 @@ class InstantAxis:
     name: str
     values: Array
     joint: str = ""
-    drive_unit: str = ""
 
     @classmethod
     def of(cls, data: ModelData, timing: Timing) -> InstantAxis:
         """Axis of a mechanism's designs."""
         if timing.shared:
             return cls("t", instants_of(data.laws, timing, data.values(data.defaults)).t)
-        joint = timing.joint
-        unit = timing.unit if joint else ""
-        if joint and timing.fixed:
+        if timing.joint and timing.fixed:
             start, stop, _ = timing.bounds(np.zeros((1, 0)))
             coordinates = points((float(start[0]), float(stop[0]), timing.count))
-            return cls(OVER, coordinates, joint, unit)
+            return cls(OVER, coordinates, timing.joint)
         places = points((0.0, 1.0, timing.count)) if timing.count > 1 else np.zeros(1)
-        return cls(CYCLE, places, joint, unit)
+        return cls(CYCLE, places, timing.joint)
 
 
 @dataclass(frozen=True)
@@ -168,40 +165,30 @@ class Column:
 
 @dataclass(frozen=True)
 class Meanings:
-    """Meanings of columns and axes in a mechanism.
-
-    Its outputs are those of a ``table``, in units by ``kinds``; ``parameters`` are the units of its
-    parameters. Instants are along an ``axis``, asked for by a ``joint``, whose coordinate has the
-    unit ``drive_unit``, or by time.
+    """Meanings of columns and axes in a described mechanism, whose instants are asked for by a
+    ``joint``, or by time; ``shared`` says that all designs have the same.
     """
 
-    table: Table
-    kinds: Kinds
-    parameters: Mapping[str, str]
-    axis: str
-    joint: str = ""
-    drive_unit: str = ""
+    description: Description
+    joint: str
+    shared: bool
 
-    @classmethod
-    def of(cls, description: Description, axis: str, joint: str) -> Meanings:
-        """Make them for a described mechanism."""
-        units = {name: parameter.unit for name, parameter in description.parameters.items()}
-        drive_unit = "" if not joint else LENGTH if description.driven[joint] == "slide" else ANGLE
-        return cls(
-            table_of(description.space),
-            description.kinds,
-            units,
-            axis,
-            joint,
-            drive_unit,
-        )
+    @property
+    def table(self) -> Table:
+        """The table of its outputs."""
+        return table_of(self.description.space)
+
+    @property
+    def drive_unit(self) -> str:
+        """Unit of the joint's coordinate."""
+        return LENGTH if self.description.driven[self.joint] == "slide" else ANGLE
 
     def of_column(self, name: str, among: Collection[str] = ()) -> Meaning:
         """The meaning of a column by its full name, ``among`` the names of all.
 
         Raises ``KeyError`` for a name that is none.
         """
-        kind, _, rest = name.partition(":")
+        kinds, (kind, _, rest) = self.description.kinds, name.partition(":")
         if name == STATUS:
             return "1", self._of_status()
         if name == TIMES:
@@ -215,39 +202,38 @@ class Meanings:
                 f"derivative by {parameter} of the {SLOPES_OF[of]}:"
                 f" {output.meant(self.table).long_name}"
             )
-            return quotient(output.unit(self.kinds), self.parameters[parameter]), {
-                "long_name": what,
-                "missing": NO_SLOPE,
-            }
+            unit = quotient(output.unit(kinds), self.description.parameters[parameter].unit)
+            return unit, {"long_name": what, "missing": NO_SLOPE}
         output = Output.of(rest)
         words = output.meant(self.table).attributes
         if KINDS[kind].sign:
             sampled = kind == "peak" and f"{ERROR}:{rest}" in among
             begin = KINDS["peak_at" if sampled else kind].words
-            return output.unit(self.kinds), words | {"long_name": begin + words["long_name"]}
+            return output.unit(kinds), words | {"long_name": begin + words["long_name"]}
         if kind == "peak_over":
             return self.drive_unit, {
                 "long_name": f"coordinate of joint '{self.joint}' at the peak: {words['long_name']}"
             }
-        unit = KINDS[kind].unit or output.unit(self.kinds)
+        unit = KINDS[kind].unit or output.unit(kinds)
         return unit, {"long_name": KINDS[kind].words + words["long_name"]}
 
     def of_axis(self, name: str) -> Meaning:
         """The meaning of an axis: one that every sweep may have, or that of a parameter."""
+        if name == OVER:
+            return self.drive_unit, {"long_name": f"coordinate of joint '{self.joint}'"}
         unit, long_name = {
             "t": ("s", "time"),
             "xi": ("1", "position along a link, ratio xi/l"),
-            OVER: (self.drive_unit, f"coordinate of joint '{self.joint}'"),
             CYCLE: ("1", "fraction of the cycle, from the first instant of a design to its last"),
             DESIGN: ("1", "number of the design"),
-        }.get(name) or (self.parameters[name], f"parameter {name}")
+        }.get(name) or (self.description.parameters[name].unit, f"parameter {name}")
         return unit, {"long_name": long_name}
 
     def _of_status(self) -> dict[str, str]:
         words_by_number = {
             number: words
             for number, words in STATUSES.items()
-            if self.axis != "t" or number != Status.NO_INSTANTS
+            if not self.shared or number != Status.NO_INSTANTS
         }
         return {
             "long_name": "status: validity of the result, or the reason why there is none",

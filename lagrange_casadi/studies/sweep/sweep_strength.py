@@ -7,7 +7,7 @@ histories, as of a solution (:mod:`.strength.fibres`).
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
@@ -18,13 +18,13 @@ import numpy.typing as npt
 from ...base.arrays import Array
 from ...base.quantities import Output
 from ...engine.model_data import ModelData
-from ...engine.program import Program
 from ...engine.section_function import SectionInputs
 from ...model.mass_properties import ALL
 from ...results.statistics import counted
 from ...results.strength.fatigue import Score, damage_score, lacking, use_score
 from ...results.strength.fibres import maxima
 from ...results.strength.member import Member
+from ..designs.engine import DesignEngine
 from .meanings import LEAST, LIFE, MASS, WAYS
 
 _ENDLESS = 0.999
@@ -38,23 +38,18 @@ the link: their stresses stay near a processor.
 
 @dataclass(frozen=True, eq=False)
 class Kept:
-    """Links with strength results: those whose ``safety`` is wanted, and those whose ``life`` is.
-
-    ``series`` names what is evaluated over time; ``indeterminate`` the links that lack it for some
-    designs.
+    """Links with strength results by an ``engine``: those whose ``safety`` is wanted, and those
+    whose ``life`` is.
     """
 
-    program: Program
+    engine: DesignEngine
     safety: tuple[str, ...]
     life: tuple[str, ...]
-    quantities: tuple[str, ...]
-    series: tuple[str, ...]
-    indeterminate: Collection[str] = ()
 
     @property
     def data(self) -> ModelData:
         """Data of the program."""
-        return self.program.data
+        return self.engine.program.data
 
     @property
     def histories(self) -> bool:
@@ -73,12 +68,14 @@ class Kept:
         """The names of the columns, in the order of :meth:`evaluate`, and which may lack numbers
         where there is a result.
         """
+        outputs = map(Output.of, self.engine.indeterminate)
+        indeterminate = {output.part for output in outputs if output.group == "section"}
         found = {
-            f"{LEAST}:{mode}:{link}": link in self.indeterminate
+            f"{LEAST}:{mode}:{link}": link in indeterminate
             for link in self._rated
             for mode in ("safety", *self._ways(link))
         }
-        found |= {f"{LIFE}:{link}": link in self.indeterminate for link in self._lives}
+        found |= {f"{LIFE}:{link}": link in indeterminate for link in self._lives}
         return found | {f"{MASS}:{part}": False for part in (*self.links, ALL) if self.links}
 
     def evaluate(
@@ -98,7 +95,7 @@ class Kept:
         found: list[Array] = []
         for link in self._rated:
             kept = [f"utilisation:{link}:{mode}" for mode in self._ways(link) if mode != "fatigue"]
-            shares = [np.abs(value[:, self.quantities.index(name)]) for name in kept]
+            shares = [np.abs(value[:, self.engine.quantities.index(name)]) for name in kept]
             shares += [tired[link][0]] if link in tired else []
             with np.errstate(divide="ignore"):
                 found.append(1.0 / np.max(shares, axis=0))
@@ -108,7 +105,9 @@ class Kept:
         return found + [np.where(status == 0, row, np.nan) for row in masses]
 
     def _ways(self, link: str) -> list[str]:
-        known = [mode for mode in WAYS[:2] if f"utilisation:{link}:{mode}" in self.quantities]
+        known = [
+            mode for mode in WAYS[:2] if f"utilisation:{link}:{mode}" in self.engine.quantities
+        ]
         return known + (["fatigue"] if self._tires(link) else [])
 
     @property
@@ -150,8 +149,9 @@ class Kept:
 
     def _law(self, link: str) -> dict[Output, int]:
         """The outputs that the section law of a link is made of, and their places in ``series``."""
-        outputs = SectionInputs.of(self.program.outputs, link)
-        return {one: self.series.index(str(one)) for one in (*outputs.law, *outputs.acting)}
+        engine = self.engine
+        outputs = SectionInputs.of(engine.program.outputs, link)
+        return {one: engine.outputs.index(one) for one in (*outputs.law, *outputs.acting)}
 
     def _largest(
         self,

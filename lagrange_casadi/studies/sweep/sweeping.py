@@ -8,6 +8,7 @@ import tempfile
 import weakref
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -23,7 +24,7 @@ from .axes import DesignsLike, designs_of
 from .carrying_out import Progress, carry_out
 from .plan import Plan
 from .reading import Sweep, opened_sweep
-from .workers import Executor, Sent, Threads
+from .workers import Executor, by_executor, by_threads
 
 
 @public
@@ -139,7 +140,11 @@ def sweep(
     target = keeper.path / "sweep.h5" if keeper else Path(out or "")
     if isinstance(scene, Case) and not keeper:
         plan = replace(plan, case_file=reference(scene, target.parent))
-    workforce = Threads(workers) if executor is None else Sent(executor, workers)
+    workforce = (
+        partial(by_threads, workers)
+        if executor is None
+        else partial(by_executor, executor, workers)
+    )
     verified = carry_out(
         plan, target, workforce, resume=resume, force=force, progress=progress or (lambda *_: None)
     )

@@ -49,33 +49,24 @@ class Executor(Protocol):
         """The future of a call."""
 
 
-class Workers(Protocol):
-    """Who evaluates blocks."""
-
-    def results(self, plan: Plan, queue: Queue) -> Blocks:
-        """Evaluate what is in the queue, in any order; what was begun when it is stopped is given
-        if it ends within patience.
-        """
+Workers = Callable[[Plan, Queue], Blocks]
+"""Who evaluates what is in a queue, in any order; what was begun when it is stopped is given if it
+ends within patience.
+"""
 
 
-@dataclass(frozen=True)
-class Threads:
-    """Threads of this process, by default one a core, each at a block of its own; fewer where
-    memory does not hold as many.
+def by_threads(count: int | None, plan: Plan, queue: Queue) -> Blocks:
+    """Evaluate a queue by threads of this process, by default one a core, each at a block of its
+    own; fewer where memory does not hold as many.
     """
+    most = memory() / max(1, plan.harvest.engine.capacity)
+    many = max(1, int(min(count or cores(), most)))
+    free = threading.Semaphore(many)
 
-    count: int | None = None
+    def submit(start: int, stop: int) -> Future[list[bytes]]:
+        return _aside(free, plan.harvest.chunks, plan.block(start, stop), plan.capacity)
 
-    def results(self, plan: Plan, queue: Queue) -> Blocks:
-        """Evaluate what is in the queue."""
-        most = memory() / max(1, plan.harvest.engine.capacity)
-        count = max(1, int(min(self.count or cores(), most)))
-        free = threading.Semaphore(count)
-
-        def submit(start: int, stop: int) -> Future[list[bytes]]:
-            return _aside(free, plan.harvest.chunks, plan.block(start, stop), plan.capacity)
-
-        yield from handed(submit, queue, count + 1)
+    yield from handed(submit, queue, many + 1)
 
 
 def _aside(free: threading.Semaphore, call: Callable[..., Any], *arguments: object) -> Future[Any]:
@@ -96,25 +87,18 @@ def _aside(free: threading.Semaphore, call: Callable[..., Any], *arguments: obje
     return future
 
 
-@dataclass(frozen=True)
-class Sent:
-    """Workers of an executor, which has ``count`` blocks at a time."""
+def by_executor(executor: Executor, count: int | None, plan: Plan, queue: Queue) -> Blocks:
+    """Evaluate a queue by the workers of an executor, which has ``count`` blocks at a time."""
+    harvest = plan.harvest
+    made = pickle.dumps(
+        functools.partial(harvest.task.harvest, harvest.engine.program, harvest.whole)
+    )
 
-    executor: Executor
-    count: int | None = None
+    def asked(start: int, stop: int) -> Asked:
+        designs = plan.block(start, stop)
+        return Asked(_evaluate, (made, harvest.signature, designs, plan.capacity))
 
-    def results(self, plan: Plan, queue: Queue) -> Blocks:
-        """Evaluate what is in the queue."""
-        harvest = plan.harvest
-        made = pickle.dumps(
-            functools.partial(harvest.task.harvest, harvest.engine.program, harvest.whole)
-        )
-
-        def asked(start: int, stop: int) -> Asked:
-            designs = plan.block(start, stop)
-            return Asked(_evaluate, (made, harvest.signature, designs, plan.capacity))
-
-        yield from by_workers(self.executor, asked, queue, self.count)
+    yield from by_workers(executor, asked, queue, count)
 
 
 @dataclass(frozen=True)
