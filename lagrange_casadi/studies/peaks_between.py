@@ -39,7 +39,8 @@ from ..results.ordering import ordered
 from ..results.section_laws import SectionLaw
 from ..results.signals import Quantity, SectionForce, Signals
 from ..results.solution import Solution
-from ..results.vector_sizes import size_of
+from ..results.vector_sizes import most, size_of
+from ..results.verification.accuracy import by_unit
 from .evaluate import evaluate
 
 _SAME = 1e-6
@@ -309,18 +310,13 @@ class ContinuousSolution(Brief):
         moving = np.flatnonzero(solution.resting.all() | ~solution.resting)
         some = moving[[0, moving.size // 2, -1]]
         out = self.interpreter.columns(solution.t[some], self.p, self.z[:, some])
-        units = [solution.unit(output) for output in outputs]
-        sizes = dict.fromkeys(units, 0.0)
-        for output, unit in zip(outputs, units, strict=True):
-            sizes[unit] = max(sizes[unit], float(np.fmax.reduce(np.abs(solution.outputs[output]))))
+        sizes = by_unit(solution)
         rounding = _NOTHING * max(sizes.values(), default=0.0)
-        gaps = [
-            np.abs(out[self.rows[output]] - solution.outputs[output][some]) for output in outputs
-        ]
-        limits = [_SAME * sizes[unit] + rounding for unit in units]
-        return bool(
-            np.all([~(gap > limit) for gap, limit in zip(gaps, limits, strict=True)], axis=0).any()
-        )
+        found = np.ones(some.size, bool)
+        for output in outputs:
+            gaps = np.abs(out[self.rows[output]] - solution.outputs[output][some])
+            found &= ~(gaps > _SAME * sizes[solution.unit(output)] + rounding)
+        return bool(found.any())
 
     def in_equal_steps(self, *wanted: str) -> ContinuousSolution:
         """The same, or what is ``wanted``, from as many instants in equal steps of time, between
@@ -343,18 +339,12 @@ class ContinuousSolution(Brief):
         peaks, tops = (self if are_even(self.solution.t) else self.in_equal_steps()).searched(
             sampled, listed
         )
-        return (
-            peaks if over is None else [self.at_the_drive(peak, over.joint) for peak in peaks]
-        ), tops
-
-    def at_the_drive(self, peak: Peak, joint: str) -> Peak:
-        """A peak with the coordinate of a drive at its time."""
-        d = self.program.motion(peak.t, self.p)[0]
-        return replace(peak, over=float(d[self.program.driven.index(joint)]))
-
-    def peaks(self, sampled: Sequence[Peak]) -> list[Peak]:
-        """The peaks over all times, of quantities whose peaks over some instants are known."""
-        return self.searched(sampled)[0]
+        if over is not None:
+            row, p = self.program.driven.index(over.joint), self.p
+            peaks = [
+                replace(peak, over=float(self.program.motion(peak.t, p)[0][row])) for peak in peaks
+            ]
+        return peaks, tops
 
     def searched(
         self, sampled: Sequence[Peak], listed: Listed | None = None
@@ -429,9 +419,7 @@ class ContinuousSolution(Brief):
         scales = [0.0] * (max(units[: len(names)]) + 1)
         for output, k in zip(others, units[len(names) :], strict=True):
             if k < len(scales):
-                scales[k] = max(
-                    scales[k], float(np.fmax.reduce(np.abs(solution.outputs[output]), initial=0.0))
-                )
+                scales[k] = max(scales[k], most(solution.outputs[output]))
         return units[: len(names)], scales
 
     def timed(

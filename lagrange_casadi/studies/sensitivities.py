@@ -203,7 +203,8 @@ class Sensitivities:
         values, t = np.array([peak.value for peak in found]), np.array([peak.t for peak in found])
         xi = np.array([np.nan if peak.xi is None else peak.xi for peak in found])
         chosen = np.array([self.slopes.numbers[output] for output in outputs], np.intc)
-        nothing = faint(values, np.array([self._largest(peak.unit) for peak in found]))
+        units, scales = self.continuous.scales(outputs)
+        nothing = faint(values, np.array(scales)[units])
         moving = MovingPeaks(
             self.slopes, Ends(self.slopes.program.laws, None, self.solution.t, self.p)
         )
@@ -216,16 +217,6 @@ class Sensitivities:
             Changes(value, self._named(slopes), PeakKind(kind), two)
             for value, slopes, kind, two in every
         ]
-
-    def _largest(self, unit: str) -> float:
-        """The largest size over the instants among the series of a unit."""
-        solution = self.solution
-        same = (
-            o
-            for o in solution.quantities()
-            if o.group != "section" and solution.determined(o) and solution.unit(o) == unit
-        )
-        return max((float(np.abs(solution.array(o)).max()) for o in same), default=0.0)
 
     @cached_property
     def _iterated(self) -> Array:

@@ -15,7 +15,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import partial
-from typing import TypeVar
+from typing import TypeAlias, TypeVar
 
 import numpy as np
 
@@ -48,6 +48,10 @@ QUIET, LONGEST = 40, 20.0
 """Rounds of samples that no least time falls in any more, and seconds that all rounds take."""
 
 _Way = TypeVar("_Way")
+_Work: TypeAlias = tuple[Callable[[int], Callable[[], object]], int]
+"""A function ``of(count)``, which prepares a call that does ``count`` pieces of work; and a count.
+"""
+
 _NIL, _TICK = 1e-9, 1e-9
 _ALIKE = 1.2
 """Ratio of times that are held to be equal: other work of the machine changes them by so much."""
@@ -223,7 +227,7 @@ def trade(
             evaluated, _ = columns(program, times, values, method, 1)
             if unfinished(program, evaluated).any():
                 raise AssemblyError("some instants have no result")
-            works[method] = _Work(
+            works[method] = (
                 partial(_evaluation, program, times, values, method),
                 INSTANTS // 10 if method.backend == "vm" else INSTANTS,
             )
@@ -258,7 +262,7 @@ def _peak_costs(scene: Scene, timing: Timing, p: Array) -> tuple[PeakCost, ...]:
     """Measure both kinds of peaks of one design many times; nothing where it has no result."""
     engines = {peaks: DesignEngine.of(scene, timing=timing, peaks=peaks) for peaks in PEAK_SEARCHES}
     works = {
-        peaks: _Work(partial(_designs, engine, p), 1 + math.ceil(INSTANTS / timing.count))
+        peaks: (partial(_designs, engine, p), 1 + math.ceil(INSTANTS / timing.count))
         for peaks, engine in engines.items()
     }
     found = {peaks: engine.evaluate(p[None]) for peaks, engine in engines.items()}
@@ -289,14 +293,11 @@ class _Truth:
         self.compared = compared
         rows = reference(program, list(t[compared]), list(p), evaluated.iterated[:, compared])
         self.columns = {output: [row[k] for row in rows] for output, k in program.outputs.items()}
-        self.angles = program.loop_angles
         peaks = {name: max(abs(float(x)) for x in column) for name, column in self.columns.items()}
-        largest: dict[str, float] = {}
+        largest = _motions(program, t, p)
         for name, peak in peaks.items():
             unit = name.quantity.unit
             largest[unit] = max(largest.get(unit, 0.0), peak)
-        for unit, size in _motions(program, t, p).items():
-            largest[unit] = max(largest.get(unit, 0.0), size)
         of_unit = {name: largest[name.quantity.unit] for name in peaks}
         self.scales = {
             name: (peak if peak > _NIL * of_unit[name] else of_unit[name]) or 1.0
@@ -307,16 +308,11 @@ class _Truth:
         """The largest and the median error relative to the peaks, and which quantity errs most."""
         worst = {}
         for name, k in program.outputs.items():
-            if name in self.columns:
-                gaps = [
-                    float(x - float(y))
-                    for x, y in zip(
-                        self.columns[name], evaluated.out[k, self.compared], strict=True
-                    )
-                ]
-                if name in self.angles:
-                    gaps = [math.remainder(gap, math.tau) for gap in gaps]
-                worst[name] = max(abs(gap) for gap in gaps) / self.scales[name]
+            both = zip(self.columns[name], evaluated.out[k, self.compared], strict=True)
+            gaps = [float(x - float(y)) for x, y in both]
+            if name in program.loop_angles:
+                gaps = [math.remainder(gap, math.tau) for gap in gaps]
+            worst[name] = max(abs(gap) for gap in gaps) / self.scales[name]
         name = max(worst, key=lambda name: worst[name])
         return worst[name], float(np.median(list(worst.values()))), str(name)
 
@@ -344,14 +340,6 @@ def _motions(program: Program, t: Array, p: Array) -> dict[str, float]:
     }
 
 
-@dataclass(frozen=True)
-class _Work:
-    """Timed work: ``of(count)`` prepares a call that does ``count`` pieces of work."""
-
-    of: Callable[[int], Callable[[], object]]
-    count: int
-
-
 def _evaluation(
     program: Program, t: Array, p: Array, method: EvaluationMethod, count: int
 ) -> Callable[[], object]:
@@ -372,8 +360,7 @@ def _in_turns(works: Mapping[_Way, _Work]) -> dict[_Way, float]:
     Each way has its turn in each round, with all pieces and with one; the least times count.
     Rounds end when these fall no more, by a fiftieth.
     """
-    counts = {way: (work.count, 1) for way, work in works.items()}
-    calls = {(way, count): works[way].of(count) for way in works for count in counts[way]}
+    calls = {(way, n): of(n) for way, (of, count) in works.items() for n in (count, 1)}
     least, quiet, begun = dict.fromkeys(calls, math.inf), 0, time.monotonic()
     while quiet < QUIET and time.monotonic() - begun < LONGEST:
         quiet += 1
@@ -385,5 +372,5 @@ def _in_turns(works: Mapping[_Way, _Work]) -> dict[_Way, float]:
             least[key] = min(least[key], taken)
     return {
         way: max(least[way, count] - least[way, 1], _TICK) / (count - 1)
-        for way, (count, _) in counts.items()
+        for way, (_, count) in works.items()
     }

@@ -14,7 +14,8 @@ from ...base.arguments import public
 from ...base.arrays import Array
 from ...base.brief import Brief
 from ...errors import DeclarationError, NoDesignError
-from .duty import Duty, mean_of
+from ...results.statistics import shares
+from .duty import Duty
 from .motor import Motor
 
 
@@ -167,7 +168,7 @@ def warmest(t: Array, torque: Array, time_constant: float) -> float:
     """
     heat, steps = torque**2, np.diff(t)
     if math.isinf(time_constant):
-        return math.sqrt(mean_of(t, heat))
+        return math.sqrt(heat @ shares(t))
     parts = steps / time_constant
     keep, gain = np.exp(-parts), -np.expm1(-parts)
     # The exact solution for heat that goes straight from a to b: w1 = keep w0 + gain a + (1 -

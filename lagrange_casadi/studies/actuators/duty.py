@@ -17,6 +17,7 @@ from ...base.units import quantity
 from ...engine.instants.beyond_equilibrium import Holding
 from ...errors import DeclarationError, UnknownNameError
 from ...results.solution import Solution
+from ...results.statistics import shares
 
 _COARSE = 0.01
 """Largest relative change, if only every second instant is used, for which instants are enough."""
@@ -63,12 +64,12 @@ class Duty(Brief):
     @property
     def rms_torque(self) -> float:
         """The root of the mean square of the torque [N m], by trapezia: what heats the motor."""
-        return math.sqrt(mean_of(self.t, self.torque**2))
+        return math.sqrt(self.torque**2 @ shares(self.t))
 
     @property
     def mean_speed(self) -> float:
         """The mean of the size of the speed [rad/s]."""
-        return mean_of(self.t, np.abs(self.speed))
+        return float(np.abs(self.speed) @ shares(self.t))
 
     @property
     def peak_torque(self) -> float:
@@ -122,7 +123,7 @@ class Duty(Brief):
             )
             raise DeclarationError(f"inertia ratio of '{self.joint}': expected {lacking}")
         ratio = self.carried / (self.ratio**2 * self.inertia)
-        return InertiaRatio(float(ratio.min()), mean_of(self.t, ratio), float(ratio.max()))
+        return InertiaRatio(float(ratio.min()), float(ratio @ shares(self.t)), float(ratio.max()))
 
     @property
     def coarse(self) -> bool:
@@ -254,11 +255,6 @@ def duty_of(
 def slides(solution: Solution, joint: str) -> bool:
     """Return whether the coordinate of a drive is a length."""
     return solution.unit(f"motion:{joint}") == "m"
-
-
-def mean_of(t: Array, values: Array) -> float:
-    """The mean over time of straight lines between values."""
-    return float(np.sum((values[1:] + values[:-1]) / 2.0 * np.diff(t)) / (t[-1] - t[0]))
 
 
 def _positive_area(t: Array, values: Array) -> float:

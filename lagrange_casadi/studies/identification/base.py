@@ -71,24 +71,10 @@ class Ranking(NamedTuple):
     scales: Array
     order: tuple[int, ...]
 
-    @classmethod
-    def of(cls, values: Array, units: Sequence[str]) -> Ranking:
-        """Rank parameters as they are declared, masses last: those are parts of the moments of the
-        links that carry them.
-        """
-        order = sorted(range(len(units)), key=lambda k: units[k] == "kg")
-        return cls(np.where(values == 0.0, 1.0, np.abs(values)), tuple(order))
-
 
 def triangle(columns: Array) -> Array:
     """Return the triangular factor of columns (n, k), which has their norms and products."""
     return np.asarray(np.linalg.qr(columns, mode="r"))
-
-
-def inverse(columns: Array) -> Array:
-    """Return the pseudo-inverse of independent columns (n, k)."""
-    scale = np.linalg.norm(columns, axis=0)
-    return np.asarray(np.linalg.pinv(columns / scale) / scale[:, None])
 
 
 def base_of(columns: Array, ranking: Ranking, whole: float = 0.0) -> Base:

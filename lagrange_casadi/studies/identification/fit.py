@@ -16,7 +16,7 @@ import numpy.typing as npt
 from ...base.arrays import Array
 from ...base.brief import Brief
 from ...errors import AccuracyError, DeclarationError, UnknownNameError
-from .base import Base, Ranking, base_of, inverse, triangle
+from .base import Base, Ranking, base_of, triangle
 from .consistency import Consistency
 from .measurements import Filter, Measurements, check_units
 from .regressor import DrivenMotion, Regressor
@@ -268,8 +268,10 @@ class System(NamedTuple):
 
     @property
     def inverse(self) -> Array:
-        """Inverse of the columns that stand for combinations."""
-        return inverse(self.columns[:, list(self.sure.chosen)])
+        """Pseudo-inverse of the columns that stand for combinations."""
+        columns = self.columns[:, list(self.sure.chosen)]
+        scale = np.linalg.norm(columns, axis=0)
+        return np.asarray(np.linalg.pinv(columns / scale) / scale[:, None])
 
 
 @dataclass(frozen=True, eq=False)

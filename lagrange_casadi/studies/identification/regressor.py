@@ -146,9 +146,13 @@ class Regressor(Graphs, Brief):
         return [list(self.program.data.parameters).index(name) for name in self.unknown]
 
     def ranking(self, p: Array) -> Ranking:
-        """Rank the unknown parameters by their units, with sizes of values ``p`` of all."""
-        parameters = self.program.data.parameters
-        return Ranking.of(p[self.numbers], [parameters[name].unit for name in self.unknown])
+        """Rank the unknown parameters as they are declared, masses last: those are parts of the
+        moments of the links that carry them. Sizes are those of values ``p`` of all.
+        """
+        values, parameters = p[self.numbers], self.program.data.parameters
+        masses = [parameters[name].unit == "kg" for name in self.unknown]
+        order = sorted(range(len(masses)), key=masses.__getitem__)
+        return Ranking(np.where(values == 0.0, 1.0, np.abs(values)), tuple(order))
 
     @property
     def unchanged(self) -> DeclarationError:

@@ -23,12 +23,12 @@ from ...base.quantities import Output
 from ...base.scalars import column
 from ...base.status import Status
 from ...base.tables import table_of
-from ...base.vocabulary import KEEPS, Keep, PeakSearch
+from ...base.vocabulary import Keep, PeakSearch
 from ...engine.identity import sources
 from ...engine.instants.evaluation_method import EvaluationMethod
 from ...engine.model_data import ModelData
 from ...engine.program import Program
-from ...errors import DeclarationError, UnknownNameError
+from ...errors import DeclarationError
 from ...model.even_points import EvenPoints, points
 from ...model.times import Timing
 from ...model.wanted_names import SENSITIVITY
@@ -58,12 +58,6 @@ _FLUCTUATION_COST = 3e-3
 
 _SLOPES_COST = 3e-4
 """Seconds of the derivatives of a design's peaks."""
-
-
-def check_keep(keep: str) -> None:
-    """Raise :class:`UnknownNameError` for what cannot be kept."""
-    if keep not in KEEPS:
-        raise UnknownNameError("choice of what to keep", str(keep), KEEPS)
 
 
 @dataclass(frozen=True)
@@ -368,14 +362,14 @@ class _Batch:
         return self._each(
             (self.p.shape[1], 2, mean.shape[1]),
             lambda k: np.where(
-                np.isnan(mean[k]), np.nan, np.moveaxis(engine.mean_slopes(self.p[k]), 2, 0)
+                np.isnan(mean[k]), np.nan, np.transpose(engine.mean_slopes(self.p[k]), (2, 0, 1))
             ),
         )
 
     def _each(self, size: tuple[int, ...], of: Callable[[int], npt.ArrayLike]) -> Array:
         """An array (..., designs) of what is found ``of`` each design with a result, else NaN."""
         found = np.full((len(self.p), *size), np.nan)
-        for k in np.flatnonzero(self._valid):
+        for k in np.flatnonzero(self._valid).tolist():
             found[k] = of(k)
         return np.moveaxis(found, 0, -1)
 

@@ -15,9 +15,16 @@ import numpy as np
 
 from ...base.arrays import Array, spread
 from ...base.space import in_words, require
-from ...base.vocabulary import Keep, PeakSearch, Precision
+from ...base.vocabulary import KEEPS, Keep, PeakSearch, Precision
 from ...engine.derive import compile_scene, derived
-from ...errors import AssemblyError, DeclarationError, MobilityError, ParameterError, SizeError
+from ...errors import (
+    AssemblyError,
+    DeclarationError,
+    MobilityError,
+    ParameterError,
+    SizeError,
+    UnknownNameError,
+)
 from ...model.description import Description
 from ...model.even_points import checked_ratios
 from ...model.scene import STRENGTH, Scene
@@ -25,9 +32,8 @@ from ...model.wanted_names import SENSITIVITY, among, by_parameters, without_fit
 from ..designs.spot_check import wanted_whole
 from ..request import Request
 from .axes import Designs, check_designs, counted
-from .columns import Harvest, Task, check_keep
+from .columns import Harvest, Task
 from .design_blocks import Slab, chunk_of, slabs
-from .meanings import Column
 
 _Bound = float | str
 """Start or end of instants: a number, or an expression of parameters in words."""
@@ -102,7 +108,8 @@ class Plan:
         Raises what :func:`.sweep` does.
         """
         fixed, method = request.parameters or {}, request.method
-        check_keep(keep)
+        if keep not in KEEPS:
+            raise UnknownNameError("choice of what to keep", str(keep), KEEPS)
         check_designs(designs, scene.parameters, fixed)
         values, timing = scene.values(fixed), scene.timing(request.t, request.over)
         if designs.size > MOST:
@@ -155,11 +162,6 @@ class Plan:
         return self.designs.size
 
     @property
-    def columns(self) -> tuple[Column, ...]:
-        """Columns of each design."""
-        return self.harvest.columns
-
-    @property
     def axes_size(self) -> int:
         """Bytes of the values along the designs' axes."""
         return 8 * sum(self.designs.dimensions.values())
@@ -167,7 +169,7 @@ class Plan:
     @property
     def most(self) -> int:
         """Bytes of the file, at most; columns are smaller where they deflate."""
-        return self.axes_size + self.size * sum(column.width for column in self.columns)
+        return self.axes_size + self.size * sum(column.width for column in self.harvest.columns)
 
     def takes(self, done: int) -> str:
         """Remaining work after so many designs, in words; empty if it is little."""

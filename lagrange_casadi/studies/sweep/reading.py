@@ -95,7 +95,10 @@ class Sweep:
         StoreError
             If it is not the whole file of a sweep.
         """
-        _refuse_unfinished(path)
+        if not os.path.exists(path) and Checkpoint.of(Path(path), "sweep").begun:
+            raise PathError(
+                f"{path}: its sweep is not finished: `lagrange-casadi info` shows its progress"
+            )
         return opened_sweep(path)
 
     def __repr__(self) -> str:
@@ -554,7 +557,7 @@ class Sweep:
 
     def opened(self) -> AbstractContextManager[h5py.File]:
         """Open its file to read. Raises what :meth:`open` does."""
-        return _opened(self.path, self.verified)
+        return opened_file(self.path, SWEEP, self.verified)
 
 
 @public
@@ -579,7 +582,7 @@ def opened_sweep(
     Raises :class:`StoreError` for what is not a whole file of a sweep.
     """
     verified = verified if verified and verified.is_at(path) else verify(path)
-    with _opened(path, verified) as file:
+    with opened_file(path, SWEEP, verified) as file:
         return Sweep(Path(path), **contents(file), keeper=keeper, verified=verified)
 
 
@@ -589,15 +592,3 @@ def names_in(given: str | Sequence[str]) -> list[str]:
     if found is None:
         raise DeclarationError(f"columns: expected a name, or a list of names, got {shown(given)}")
     return found
-
-
-def _opened(path: str | Path, verified: VerifiedFile | None) -> AbstractContextManager[h5py.File]:
-    return opened_file(path, SWEEP, verified)
-
-
-def _refuse_unfinished(path: str | Path) -> None:
-    """Raise :class:`PathError` where there are parts, and no file yet."""
-    if not os.path.exists(path) and Checkpoint.of(Path(path), "sweep").begun:
-        raise PathError(
-            f"{path}: its sweep is not finished: `lagrange-casadi info` shows its progress"
-        )

@@ -72,7 +72,7 @@ def joining(
         _begin(file, plan, scales, breathe)
         datasets = [
             (_created(file, plan, column, scales), (0,) * len(column.axes))
-            for column in plan.columns
+            for column in plan.harvest.columns
         ]
         scales.finish()
         slabs = plan.slabs()
@@ -122,7 +122,7 @@ def _begin(file: h5py.File, plan: Plan, scales: Scales, breathe: Callable[[], No
             scales.attach(scale, [DESIGN])
     instants = plan.harvest.axis
     for axis, values in ((instants.name, instants.values), ("xi", plan.harvest.xi)):
-        if any(axis in column.axes for column in plan.columns):
+        if any(axis in column.axes for column in plan.harvest.columns):
             scale = file.create_dataset(
                 axis, data=values, fletcher32=True, fillvalue=np.nan, **LARGE
             )
@@ -132,7 +132,7 @@ def _begin(file: h5py.File, plan: Plan, scales: Scales, breathe: Callable[[], No
         file.attrs[key] = json.dumps(value) if key in WORDS else value
     file.attrs.update(conventions(meanings.table))
     file.attrs["parameters"] = json.dumps(dict(plan.values))
-    file.attrs["columns"] = len(plan.columns)
+    file.attrs["columns"] = len(plan.harvest.columns)
     if plan.case_file:
         file.attrs["case_file"] = plan.case_file
 
