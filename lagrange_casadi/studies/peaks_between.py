@@ -9,9 +9,8 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -31,7 +30,7 @@ from ..engine.reciprocals import differentiable
 from ..engine.section_function import Side
 from ..engine.sharpness import Sharpness
 from ..errors import DeclarationError
-from ..model.even_points import EvenPoints, are_even
+from ..model.even_points import are_even
 from ..model.scene import Scene
 from ..model.times import Over, Times, span_of
 from ..results.histories import Peak
@@ -251,7 +250,7 @@ def rates(program: Program) -> ca.Function:
 class ContinuousSolution(Brief):
     """A solution, and what its quantities and their time derivatives are at any time of its span.
 
-    ``again`` makes that of the same parameters at other instants, for outputs that are wanted.
+    It is a solution of the ``scene``.
     """
 
     interpreter: Interpreter
@@ -259,7 +258,7 @@ class ContinuousSolution(Brief):
     p: Array
     z: Array
     rows: Mapping[Output, int]
-    again: Callable[[EvenPoints, Sequence[str]], ContinuousSolution]
+    scene: Scene
 
     @property
     def program(self) -> Program:
@@ -288,12 +287,7 @@ class ContinuousSolution(Brief):
         guess = np.array(program.newton.guess if program.newton else ())
         z, status = np.empty((guess.size, solution.t.size)), np.empty(solution.t.size, np.int32)
         interpreter.follow(solution.t, p, guess, z, status)
-
-        def again(t: EvenPoints, names: Sequence[str]) -> ContinuousSolution:
-            asked: dict[str, Any] = {"backend": "vm", "certificate": False, "elastic": False}
-            return cls.of(scene, evaluate(scene, parameters=values, t=t, wanted=names, **asked))
-
-        found = cls(interpreter, solution, p, z, program.outputs, again)
+        found = cls(interpreter, solution, p, z, program.outputs, scene)
         if not found.agrees():
             raise other
         return found
@@ -324,7 +318,16 @@ class ContinuousSolution(Brief):
         """
         t = self.solution.t
         names = list(wanted) or list(dict.fromkeys(map(wanted_for, self.solution.outputs)))
-        return self.again((float(t[0]), float(t[-1]), t.size), names)
+        even = evaluate(
+            self.scene,
+            parameters=self.solution.description.values,
+            t=(float(t[0]), float(t[-1]), t.size),
+            wanted=names,
+            backend="vm",
+            certificate=False,
+            elastic=False,
+        )
+        return ContinuousSolution.of(self.scene, even)
 
     def refined(
         self, sampled: Sequence[Peak], listed: Listed | None = None

@@ -165,9 +165,8 @@ def tolerances(
     drawn = f.designs(p)
     ok = drawn.status == Status.OK
     moves = gradient.slopes[:, places] * reach
-    found = {}
-    for k, quantity in enumerate(f.quantities):
-        found[quantity] = _spread(
+    spreads = [
+        _spread(
             quantity,
             f.units[k],
             float(gradient.value[k]),
@@ -175,13 +174,15 @@ def tolerances(
             tuple(sizes),
             drawn.value[ok, k],
         )
-    ranked = sorted(found, key=lambda name: -_relative(found[name]))
+        for k, quantity in enumerate(f.quantities)
+    ]
+    ranked = sorted(spreads, key=lambda spread: -_relative(spread))
     return Spreads(
         scene.name,
         sizes,
         samples,
         int(np.count_nonzero(~ok)),
-        {name: found[name] for name in ranked},
+        {spread.quantity: spread for spread in ranked},
     )
 
 

@@ -88,8 +88,6 @@ def test_a_speed_that_is_a_parameter_keeps_its_phase():
 
 def test_misuse_is_named():
     scene = four_bar()
-    with pytest.raises(DeclarationError, match="not read from a table"):
-        DesignEngine.of(scene, method=EvaluationMethod(table=64))
     with pytest.raises(DeclarationError, match=r"expected an array of shape \(n, 0\), got \(3,\)"):
         DesignEngine.of(scene).evaluate(np.zeros(3))
     empty = DesignEngine.of(scene).evaluate(np.zeros((0, 0)))

@@ -12,24 +12,12 @@ from ...base.csv_table import Row, Table
 from ...base.units import Unit
 from ...errors import DeclarationError
 from .classes import CLASSES
-from .motor import Motor
+from .motor import UNITS, Motor
 
 _ROTARY = ("stall_torque", "rated_torque", "rated_speed", "peak_torque", "max_speed", "inertia")
 _LINEAR = ("stall_force", "rated_force", "rated_speed", "peak_force", "max_speed", "mass")
 _KNEE = ("knee_speed", "end_torque"), ("knee_speed", "end_force")
 _LASTS = "time_constant"
-_UNITS = {
-    "torque": ("N m", "N m"),
-    "force": ("N", "N"),
-    "turning": ("rad/s", "rpm"),
-    "sliding": ("m/s", "m/s"),
-    "inertia": ("kg m^2", "kg m^2"),
-    "mass": ("kg", "kg"),
-    "constant": ("s", "s"),
-}
-"""Units of the columns' kinds, by the last word of their names, and those that are meant where none
-is said.
-"""
 
 
 @public
@@ -69,23 +57,18 @@ def read_motors(path: str | os.PathLike[str]) -> list[Motor]:
         raise DeclarationError(
             f"{table.head.where}: expected both columns {' and '.join(knee)}, or none"
         )
-    columns = {name: _units(name, linear) for name in (*needed, *knee, _LASTS)}
+    names = (*needed, *knee, _LASTS)
+    columns = dict(zip(names, (unit[linear] for unit in UNITS.values()), strict=True))
     units = table.units_of(
-        {"name": "1"} | {name: columns[name][0] for name in needed},
-        {name: columns[name][0] for name in (*knee, _LASTS)},
-        {name: usual for name, (_, usual) in columns.items()},
+        {"name": "1"} | {name: columns[name] for name in needed},
+        {name: columns[name] for name in (*knee, _LASTS)},
+        {name: "rpm" if unit == "rad/s" else unit for name, unit in columns.items()},
     )
     del units["name"]
     return [
         _motor(row, name, cells, units, needed, knee, linear)
         for row, name, cells in table.named("motor")
     ]
-
-
-def _units(column: str, linear: bool) -> tuple[str, str]:
-    """The unit of a column's kind, and that which is meant where none is said."""
-    kind = column.rpartition("_")[2]
-    return _UNITS[("sliding" if linear else "turning") if kind == "speed" else kind]
 
 
 def _motor(

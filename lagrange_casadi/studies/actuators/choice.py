@@ -177,9 +177,7 @@ def warmest(t: Array, torque: Array, time_constant: float) -> float:
         slope = np.where(parts > 1e-6, 1.0 - gain / parts, parts / 2.0)
     added = gain * heat[:-1] + slope * (heat[1:] - heat[:-1])
     # The start of a cycle is its end: w0 = (keep of all) w0 + what a cycle adds.
-    end = 0.0
-    for share, more in zip(keep.tolist(), added.tolist(), strict=True):
-        end = share * end + more
+    end = float(added @ np.exp((t[1:] - t[-1]) / time_constant))
     warm = [end / -math.expm1(-float(parts.sum()))]
     for share, more in zip(keep.tolist(), added.tolist(), strict=True):
         warm.append(share * warm[-1] + more)

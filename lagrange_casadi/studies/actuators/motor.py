@@ -14,7 +14,7 @@ from ...base.units import quantity
 from ...errors import DeclarationError
 
 _TORQUE, _SPEED = ("N m", "N"), ("rad/s", "m/s")
-_UNITS = {
+UNITS = {
     "stall_torque": _TORQUE,
     "rated_torque": _TORQUE,
     "rated_speed": _SPEED,
@@ -25,7 +25,7 @@ _UNITS = {
     "end_torque": _TORQUE,
     "time_constant": ("s", "s"),
 }
-"""Units of a motor's numbers, and of a linear motor's."""
+"""Units of a motor's numbers, and of a linear motor's, in the order of its fields."""
 
 _POSITIVE = ("rated_speed", "max_speed", "time_constant")
 
@@ -56,7 +56,7 @@ class Motor(Brief):
     linear: bool = False
 
     def __post_init__(self) -> None:
-        for name, units in _UNITS.items():
+        for name, units in UNITS.items():
             value = getattr(self, name)
             if value is not None and not (name == "time_constant" and value == math.inf):
                 what = f"motor '{self.name}': {name}"

@@ -92,10 +92,6 @@ class DesignEngine:
         ``timing`` in place of ``t``; ``peaks`` exactly, or those of the instants.
         """
         method = method or EvaluationMethod()
-        if method.table is not None:
-            raise DeclarationError(
-                "designs are not read from a table: each would need a different table"
-            )
         program = compile_scene(scene, wanted)
         method.check(program)
         scene.checked(scene.values())

@@ -7,7 +7,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -16,10 +15,6 @@ from ...base.arrays import Array, Flags
 from ...base.status import Status
 from ...engine.program import Program
 from ...model.beyond_ends import BEYOND
-from ...model.corners import Corners
-
-if TYPE_CHECKING:
-    import casadi as ca
 
 _OK = int(Status.OK)
 
@@ -30,27 +25,21 @@ class Watch:
 
     program: Program
 
-    @property
-    def _ends(self) -> ca.Function | None:
-        return self.program.laws.beyond
-
-    @property
-    def _corners(self) -> Corners:
-        return self.program.data.corners
-
     @cached_property
     def _seen(self) -> dict[str, list[int]]:
         """The columns of what each constraint sees."""
-        return {name: self.program.seen_columns(name) for name in self._corners.constraints}
+        constraints = self.program.data.corners.constraints
+        return {name: self.program.seen_columns(name) for name in constraints}
 
     def __bool__(self) -> bool:
         """Return whether there are any conditions."""
-        return self._ends is not None or bool(self._corners.laws) or self.columns
+        laws = self.program.data.corners.laws
+        return self.program.laws.beyond is not None or bool(laws) or self.columns
 
     @property
     def columns(self) -> bool:
         """True if columns of designs may be needed, as arguments of constraints."""
-        return bool(self._corners.constraints)
+        return bool(self.program.data.corners.constraints)
 
     def statuses(
         self,
@@ -67,18 +56,19 @@ class Watch:
         columns, t) of some designs at instants, for what constraints see.
         """
         found: npt.NDArray[np.int8] = status.copy()
-        if self._ends is not None:
+        ends, corners = self.program.laws.beyond, self.program.data.corners
+        if ends is not None:
             for k, row in enumerate(p):
-                share = float(self._ends(t[min(k, len(t) - 1)][None], row).full().max(initial=0.0))
+                share = float(ends(t[min(k, len(t) - 1)][None], row).full().max(initial=0.0))
                 if not share <= BEYOND["double"] and np.isfinite(row).all():
                     found[k] = Status.BEYOND_ENDS
-        some = np.flatnonzero((found == _OK) & (near | self._corners.hidden))
+        some = np.flatnonzero((found == _OK) & (near | corners.hidden))
         if not some.size:
             return found
         p, t = p[some], t[some] if len(t) > 1 else t
-        broken = self._corners.broken_laws(t, p)
+        broken = corners.broken_laws(t, p)
         if self.columns:
             rows = columns(p, t)
-            broken |= self._corners.broken_constraints(lambda name: rows[:, self._seen[name]], p)
+            broken |= corners.broken_constraints(lambda name: rows[:, self._seen[name]], p)
         found[some[broken]] = Status.CORNER
         return found

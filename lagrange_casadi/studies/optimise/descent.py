@@ -168,9 +168,8 @@ class Descent:
         self._learn(held, closures, first, everything=True)
         current, tried = first, 0
         for _ in range(_ROUNDS):
-            every = (
-                current.sampled.instants if program.averaged and current.sampled is not None else []
-            )
+            there = current.sampled if program.averaged else None
+            every = [] if there is None else [there.instant(k) for k in range(there.t.size)]
             found = program.solve(box.share(current.p), held, closures, every)
             x = found.x
             if not np.isfinite(x).all():

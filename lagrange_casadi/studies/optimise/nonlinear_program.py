@@ -8,16 +8,16 @@ points are parameters of the program, so it is built once.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import casadi as ca
 import numpy as np
+import numpy.typing as npt
 
 from ...base.arrays import Array
 from ...base.ipopt import ipopt
-from ...base.quantities import Output
 from ...base.symbolic import symbolic
 from ..designs.energy import DriveEnergy
 from ..designs.engine import DesignEngine
@@ -97,54 +97,51 @@ class _Built:
     rows: list[slice]
 
 
-class Energy(ca.Callback):
-    """The fluctuation of energy of a drive as a function of all parameters: evaluated as it is,
-    with its derivatives of the first order.
+class Numbers(ca.Callback):
+    """A number as a function of ``size`` parameters, evaluated as it is, with its ``slopes``; or
+    these by themselves.
     """
 
-    def __init__(self, engine: DesignEngine, drive: Output) -> None:
+    def __init__(
+        self,
+        value: Callable[[Array], npt.ArrayLike],
+        size: int,
+        slopes: Callable[[Array], npt.ArrayLike] | None = None,
+        name: str = "number",
+        options: dict[str, Any] | None = None,
+    ) -> None:
         super().__init__()
-        self.energy, self.size = DriveEnergy(engine, drive), len(engine.parameters)
-        self.slopes: list[ca.Callback] = []
-        self.construct("fluctuation", {})
+        self.value, self.size, self.slopes = value, size, slopes
+        self.kept: list[ca.Callback] = []
+        self.construct(name, options or {})
 
-    def get_sparsity_in(self, _: int) -> ca.Sparsity:
-        """All parameters."""
-        return ca.Sparsity.dense(self.size)
+    def get_n_in(self) -> int:
+        """The parameters, and for slopes the number too."""
+        return 1 if self.slopes else 2
+
+    def get_sparsity_in(self, number: int) -> ca.Sparsity:
+        """All parameters, and the number."""
+        return ca.Sparsity.dense(1 if number else self.size)
+
+    def get_sparsity_out(self, _: int) -> ca.Sparsity:
+        """The number, or a row of slopes."""
+        return ca.Sparsity.dense(1, 1 if self.slopes else self.size)
 
     def eval(self, arg: Sequence[Any]) -> list[Any]:
         """Evaluate it."""
-        return [self.energy.fluctuation(np.asarray(arg[0], float).ravel())]
+        return [np.atleast_2d(self.value(np.asarray(arg[0], float).ravel()))]
 
     def has_jacobian(self) -> bool:
-        """Return True."""
-        return True
+        """Return whether it has slopes."""
+        return self.slopes is not None
 
     def get_jacobian(
         self, name: str, _inputs: Sequence[str], _outputs: Sequence[str], options: dict[str, Any]
     ) -> ca.Function:
         """The derivatives by all parameters."""
-        self.slopes.append(_EnergySlopes(self.energy, self.size, name, options))
-        return self.slopes[-1]
-
-
-class _EnergySlopes(ca.Callback):
-    def __init__(self, energy: DriveEnergy, size: int, name: str, options: dict[str, Any]) -> None:
-        super().__init__()
-        self.energy, self.size = energy, size
-        self.construct(name, options)
-
-    def get_n_in(self) -> int:
-        return 2
-
-    def get_sparsity_in(self, number: int) -> ca.Sparsity:
-        return ca.Sparsity.dense(self.size if number == 0 else 1)
-
-    def get_sparsity_out(self, _: int) -> ca.Sparsity:
-        return ca.Sparsity.dense(1, self.size)
-
-    def eval(self, arg: Sequence[Any]) -> list[Any]:
-        return [self.energy.slopes(np.asarray(arg[0], float).ravel())[None]]
+        assert self.slopes is not None
+        self.kept.append(Numbers(self.slopes, self.size, None, name, options))
+        return self.kept[-1]
 
 
 class NonlinearProgram:
@@ -159,10 +156,14 @@ class NonlinearProgram:
         self.values, self.box, self.instants, self.least_closure = values, box, engine.count, least
         self.objective, self.terms = problem.objective, problem.terms
         self.closures = values.closures()
-        self.energies = {
-            term: Energy(engine, term.output)
+        energies = {
+            term: DriveEnergy(engine, term.output)
             for term in self.terms
             if term.output is not None and term.kind == "fluctuation"
+        }
+        self.energies = {
+            term: Numbers(energy.fluctuation, box.p.size, energy.slopes)
+            for term, energy in energies.items()
         }
         self.large = (
             values.program.instant.n_instructions() > _LARGE

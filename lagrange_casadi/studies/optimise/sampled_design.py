@@ -132,11 +132,6 @@ class SampledDesign:
         ]
         return np.array(rows).reshape(len(rows), self.t.size)
 
-    @property
-    def instants(self) -> list[Point]:
-        """All of them, as points."""
-        return [self.instant(k) for k in range(self.t.size)]
-
     def instant(self, k: int) -> Point:
         """An instant by its number, as a point."""
         return Point(

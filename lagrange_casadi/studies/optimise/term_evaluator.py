@@ -52,11 +52,11 @@ class TermEvaluator:
         """
         self.evaluations += len(rows)
         found = self.engine.evaluate(rows)
-        if not any(term.kind in ("max", "min") or tired_link(term.output) for term in self.terms):
-            return [self._evaluated(p, found, k, None) for k, p in enumerate(rows)]
-        there = found.status == Status.OK
+        closely = np.full(len(rows), False)
+        if any(term.kind in ("max", "min") or tired_link(term.output) for term in self.terms):
+            closely = found.status == Status.OK
         return [
-            self._evaluated(p, found, k, SampledDesign.at(self.engine, p) if there[k] else None)
+            self._evaluated(p, found, k, SampledDesign.at(self.engine, p) if closely[k] else None)
             for k, p in enumerate(rows)
         ]
 

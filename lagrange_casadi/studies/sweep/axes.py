@@ -367,6 +367,13 @@ def _read_list(designs: Listed, units: Mapping[str, str]) -> Listed:
     return replace(designs, rows=rows, units={})
 
 
+def filled(values: Mapping[str, float], names: Sequence[str], rows: Array) -> Array:
+    """Designs (n, parameters): ``rows`` (n, names) of some parameters among the values of all."""
+    p: Array = np.tile(np.array(list(values.values())), (len(rows), 1))
+    p[:, [list(values).index(name) for name in names]] = rows
+    return p
+
+
 def check_designs(
     designs: Designs, parameters: Mapping[str, Parameter], fixed: Mapping[str, float]
 ) -> None:

@@ -11,8 +11,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, TypedDict
 
-import numpy as np
-
 from ...base.arrays import Array, spread
 from ...base.space import in_words, require
 from ...base.vocabulary import KEEPS, Keep, PeakSearch, Precision
@@ -31,7 +29,7 @@ from ...model.scene import STRENGTH, Scene
 from ...model.wanted_names import SENSITIVITY, among, by_parameters, without_fitted
 from ..designs.spot_check import wanted_whole
 from ..request import Request
-from .axes import Designs, check_designs, counted
+from .axes import Designs, check_designs, counted, filled
 from .columns import Harvest, Task
 from .design_blocks import Slab, chunk_of, slabs
 
@@ -205,10 +203,7 @@ class Plan:
         """Designs by number, of shape (designs, parameters): all parameters in the order of
         declaration.
         """
-        names = list(self.values)
-        p = np.tile(np.array(list(self.values.values())), (stop - start, 1))
-        p[:, [names.index(name) for name in self.designs.names]] = self.designs.block(start, stop)
-        return p
+        return filled(self.values, self.designs.names, self.designs.block(start, stop))
 
     @cached_property
     def identity(self) -> Identity:

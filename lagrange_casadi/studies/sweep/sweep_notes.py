@@ -19,7 +19,7 @@ from ...model.scene import Scene
 from ...model.times import Over, Times, Timing
 from ...results.strength.fatigue import lacking
 from ..evaluate import evaluate
-from .axes import DesignsLike, designs_of
+from .axes import DesignsLike, designs_of, filled
 from .meanings import LEAST
 from .reading import Sweep
 
@@ -96,9 +96,7 @@ def turning_note(
     a ``grid``.
     """
     designs, values = designs_of(grid, scene.parameters), scene.values(fixed)
-    numbers = spread(designs.size, _TURNS_OF)
-    p = np.tile(np.array(list(values.values())), (numbers.size, 1))
-    columns = [list(values).index(name) for name in designs.names]
-    for row, number in zip(p, numbers.tolist(), strict=True):
-        row[columns] = designs.block(number, number + 1)[0]
+    some = spread(designs.size, _TURNS_OF).tolist()
+    rows = np.concatenate([designs.block(number, number + 1) for number in some])
+    p = filled(values, designs.names, rows)
     return note(scene.prescribed, template(scene).content.kinds, timing, p)
