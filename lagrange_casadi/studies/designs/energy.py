@@ -15,7 +15,9 @@ R. L. Norton, *Design of Machinery*; J. E. Shigley, *Mechanical Engineering Desi
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
 
 import casadi as ca
 import numpy as np
@@ -47,16 +49,15 @@ class DriveEnergy:
 
     engine: DesignEngine
     drive: Output
-    kept: dict[bytes, _Nodes | None] = field(default_factory=dict, init=False, repr=False)
 
     def fluctuation(self, p: Array) -> float:
         """Return the fluctuation of energy [J] of a design (parameters,), NaN if it has none."""
-        nodes = self._nodes(p)
+        nodes = self._nodes(p.tobytes())
         return np.nan if nodes is None else float(nodes.swing @ nodes.beyond)
 
     def slopes(self, p: Array) -> Array:
         """Return the derivatives of the fluctuation by all parameters, (parameters,)."""
-        nodes = self._nodes(p)
+        nodes = self._nodes(p.tobytes())
         if nodes is None:
             return np.full(p.size, np.nan)
         engine, t, instants = self.engine, nodes.t, self._instants(p)
@@ -91,16 +92,10 @@ class DriveEnergy:
         instants: Array = self.engine.times.of(p[None], asked=False)[0][0]
         return instants
 
-    def _nodes(self, p: Array) -> _Nodes | None:
-        """Samples of a design; None without a result."""
-        key = p.tobytes()
-        try:
-            return self.kept[key]
-        except KeyError:  # of another design, perhaps of another thread
-            nodes = self._nodes_of(p)
-        self.kept.clear()
-        self.kept[key] = nodes
-        return nodes
+    @cached_property
+    def _nodes(self) -> Callable[[bytes], _Nodes | None]:
+        """Samples of a design by its parameters (parameters,); None without a result."""
+        return lru_cache(maxsize=1)(lambda p: self._nodes_of(np.frombuffer(p)))
 
     def _nodes_of(self, p: Array) -> _Nodes | None:
         engine, instants = self.engine, self._instants(p)

@@ -87,11 +87,10 @@ class Found:
 
 @dataclass(frozen=True, eq=False)
 class _Built:
-    """A program with ``room`` for so many points of each term; ``rows`` are those of the
-    constraints, objective first.
+    """A program with room for some points of each term; ``rows`` are those of the constraints,
+    objective first.
     """
 
-    capacity: int
     solver: Any
     slopes: Any
     rows: list[slice]
@@ -155,7 +154,9 @@ class NonlinearProgram:
     ) -> None:
         self.values, self.box, self.instants, self.least_closure = values, box, engine.count, least
         self.objective, self.terms = problem.objective, problem.terms
-        self.closures = values.closures()
+        self.closures, self.averaged = values.closures(), any(one.averaged for one in self.terms)
+        # The objective is the largest of several values, which a variable of its own is above.
+        self.levelled = self.objective.kind in ("peak", "max")
         energies = {
             term: DriveEnergy(engine, term.output)
             for term in self.terms
@@ -231,18 +232,6 @@ class NonlinearProgram:
             found_conditions,
             status,
         )
-
-    @property
-    def levelled(self) -> bool:
-        """True if the objective is the largest of several values, which a variable of its own is
-        above.
-        """
-        return self.objective.kind in ("peak", "max")
-
-    @property
-    def averaged(self) -> bool:
-        """True if some term is an average."""
-        return any(term.averaged for term in self.terms)
 
     def _packed(self, held: Held, capacity: int, places: int | None = None) -> Array:
         """The points of a term, as many as there is room for; the first one stands for those that
@@ -335,9 +324,7 @@ class NonlinearProgram:
         parts = ca.horzcat(ca.gradient(best, variables), ca.jtimes(g, variables, by_g, True))
         hessian = ca.MX(0, 0) if self.large else ca.densify(ca.jacobian(slope, variables))
         outputs = [slope, parts, g, ca.jacobian(g, variables), hessian]
-        return _Built(
-            capacity, solver, ca.Function("slopes", [variables, by_g, parameters], outputs), places
-        )
+        return _Built(solver, ca.Function("slopes", [variables, by_g, parameters], outputs), places)
 
     def _average(self, term: Term, p: ca.MX, guesses: ca.MX) -> ca.MX:
         """A mean over time, by trapezia, as sweeps have it."""

@@ -5,11 +5,11 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, overload
 
 from ...base.arguments import public
-from ...base.interrupts import uninterrupted
 from ...base.units import Within
 from ...base.vocabulary import POINTS, Compiled
 from ...errors import DeclarationError
@@ -211,11 +211,12 @@ def optimise(
         else:
             found = FrontSearch(search, points).front()
         if parts is not None:
-            try:
-                with uninterrupted():
-                    save(found, parts.target)
-                    if not found.stopped:
-                        parts.clear()
-            except KeyboardInterrupt:  # it came when there was nothing left to interrupt
-                pass
+            search.whole(partial(_finish, found, parts))
     return found
+
+
+def _finish(found: Optimum | Front, parts: Checkpoint) -> None:
+    """Write the file of a search; parts stay where it was stopped."""
+    save(found, parts.target)
+    if not found.stopped:
+        parts.clear()

@@ -107,9 +107,9 @@ def _alike(one: npt.ArrayLike, other: npt.ArrayLike) -> bool:
 
 
 def _write_front(file: h5py.File, front: Front) -> None:
-    for name in ("stopped", "feasible", "converged", "evaluations"):
-        file.attrs[name] = getattr(front, name)
     names = list(front.points[0].optimum.values)
+    said = ("stopped", "feasible", "converged", "evaluations")
+    file.attrs.update({name: getattr(front, name) for name in said})
     group = file.create_group("front", track_order=True)
     group.attrs.update(
         {
@@ -131,10 +131,9 @@ def _write_front(file: h5py.File, front: Front) -> None:
 
 def _write_optimum(file: h5py.Group, optimum: Optimum) -> None:
     names = list(optimum.values)
-    file.attrs.update(
-        {"minimised": str(optimum.minimised), "unit": optimum.unit, "objective": optimum.objective}
-    )
-    for name in (
+    said = (
+        "unit",
+        "objective",
         "feasible",
         "converged",
         "stopped",
@@ -142,8 +141,9 @@ def _write_optimum(file: h5py.Group, optimum: Optimum) -> None:
         "curvature",
         "transmission",
         "evaluations",
-    ):
-        file.attrs[name] = getattr(optimum, name)
+    )
+    file.attrs["minimised"] = str(optimum.minimised)
+    file.attrs.update({name: getattr(optimum, name) for name in said})
     parameters = file.create_group("parameters", track_order=True)
     for name, value in optimum.parameters.items():
         parameters[name] = value
@@ -158,9 +158,10 @@ def _write_optimum(file: h5py.Group, optimum: Optimum) -> None:
                 "constraint": str(limit.constraint),
                 "value": limit.value,
                 "limit": limit.constraint.limit,
+                "active": limit.active,
+                "multiplier": limit.multiplier,
             }
         )
-        group.attrs.update({"active": limit.active, "multiplier": limit.multiplier})
     starts = file.create_group("starts", track_order=True)
     for number, start in enumerate(optimum.starts):
         group = starts.create_group(f"{number}")

@@ -5,11 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+
 from ...errors import DeclarationError
 from ..designs.engine import DesignEngine
 from .nonlinear_program import NonlinearProgram
 from .problem import Problem, Question
 from .term_evaluator import TermEvaluator
+from .terms import Term
 from .values import PointValues
 
 
@@ -46,28 +49,22 @@ class Solver:
         solver.program(
             Problem(question.objectives[0], question.constraints)
         )  # what cannot be differentiated is refused at once
-        if idle := [name for name in question.box.names if not solver._matters(name)]:
+        matters = np.any([solver.depends(term) for term in question.terms], axis=0)
+        box = question.box
+        if idle := [n for n, k in zip(box.names, box.places, strict=True) if not matters[k]]:
             named = ", ".join(f"'{name}'" for name in idle)
             raise DeclarationError(
                 f"over: no objective or limit depends on {named}; remove it from over="
             )
         return solver
 
-    def _matters(self, name: str) -> bool:
-        """Return whether a term depends on a parameter."""
-        place = self.engine.parameters.index(name)
-        for term in self.question.terms:
-            if term.output is None:
-                if (
-                    place
-                    in term.of_parameters(self.engine.program.data)
-                    .jac_sparsity(0, 0)
-                    .get_triplet()[1]
-                ):
-                    return True
-            elif self.evaluator.values.of(term.output).depends[place]:
-                return True
-        return False
+    def depends(self, term: Term) -> list[bool]:
+        """Return whether a term depends on each parameter."""
+        if term.output is None:
+            found = term.of_parameters(self.engine.program.data).jac_sparsity(0, 0)
+        else:
+            found = self.evaluator.values.of(term.output).value.jac_sparsity(0, 2)
+        return [bool(found.colind(k + 1) > found.colind(k)) for k in range(found.size2())]
 
     def program(self, problem: Problem) -> NonlinearProgram:
         """Program of a problem, for any limits."""

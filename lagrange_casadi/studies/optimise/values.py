@@ -10,8 +10,9 @@ are those of the implicit function theorem.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
-from functools import cached_property
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cache, cached_property, partial
 from typing import Any
 
 import casadi as ca
@@ -55,12 +56,6 @@ class Followed:
     slopes: Any
     moved: Any
     size: int
-
-    @cached_property
-    def depends(self) -> list[bool]:
-        """Return whether it depends on each parameter."""
-        found = self.value.jac_sparsity(0, 2)
-        return [bool(found.colind(k + 1) > found.colind(k)) for k in range(found.size2())]
 
     def following(self, point: Point, p: Array, sign: float, step: float, *, free: bool) -> Point:
         """A local peak of the value times ``sign``, and how it follows as parameters change, unless
@@ -132,20 +127,22 @@ class PointValues:
 
     program: Program
     times: DesignTimes
-    known: dict[Output, Followed] = field(default_factory=dict)
-    links: dict[str, Tired] = field(default_factory=dict)
 
-    @symbolic
-    def of(self, quantity: Output) -> Followed:
+    @cached_property
+    def of(self) -> Callable[[Output], Followed]:
         """A quantity at a point; it is made once.
 
         ``place`` has a 1 where a section force is meant, and 0 elsewhere: first at ``xi``, then at
         each side of each station.
         """
-        if quantity not in self.known:
-            self.known[quantity] = self._made(quantity)
-        return self.known[quantity]
+        return cache(self._made)
 
+    @cached_property
+    def tired(self) -> Callable[[str], Tired]:
+        """A link whose utilisation against fatigue is a term; it is made once."""
+        return cache(partial(Tired, self.program))
+
+    @symbolic
     def _made(self, quantity: Output) -> Followed:
         t, d, rate, acceleration, z, p = inputs = self._instant.sx_in()
         xi = ca.SX.sym("xi")
@@ -176,12 +173,6 @@ class PointValues:
         return Followed.of(
             self._at_time([t, d, rate, acceleration, z, p, xi, place], ca.SX(meant)), len(sizes)
         )
-
-    def tired(self, link: str) -> Tired:
-        """A link whose utilisation against fatigue is a term; it is made once."""
-        if link not in self.links:
-            self.links[link] = Tired(self.program, link)
-        return self.links[link]
 
     @symbolic
     def closures(self) -> ca.Function | None:

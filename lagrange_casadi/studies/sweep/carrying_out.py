@@ -42,7 +42,7 @@ def carry_out(
     Raises :class:`BusyError`, :class:`PathError` or :class:`StoreError` where the file is another
     sweep's, :class:`StoppedError` after an interrupt.
     """
-    check_names(plan.designs, plan.harvest.axis, plan.harvest.columns)
+    check_names(plan)
     folder = Checkpoint.of(target, "sweep")
     with folder.opened(plan.identity, resume=resume, force=force):
         there = folder.target.exists()

@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.arrays import Array, Json, Operand
-from ...base.quantities import Output
+from ...base.quantities import Output, parts_along
 from ...base.scalars import column
 from ...base.status import Status
 from ...base.tables import table_of
@@ -390,11 +390,8 @@ class _Batch:
         largest, whole = [], []
         for link in harvest._links:
             law = _law_of_designs(harvest.data, link, engine.provenance.precision)
-            rows = {
-                output: k
-                for k, output in enumerate(map(Output.of, engine.columns))
-                if output.along and output.part == link
-            }
+            numbers = {Output.of(name): k for k, name in enumerate(engine.columns)}
+            rows = parts_along(numbers, link)
             with np.errstate(all="ignore"):  # of designs that have no result
                 moving = of_counted(series[:, list(rows.values())])
                 laws = law({output: moving[:, k] for k, output in enumerate(rows)}, p)

@@ -22,35 +22,26 @@ from ...errors import DeclarationError
 from ...results.store.dataset_words import conventions, say
 from ...results.store.opening import SWEEP, sealed
 from ...results.store.scales import LARGE, Scales
-from .axes import DESIGN, Designs, Grid
+from .axes import DESIGN, Grid
 from .chunks import FILTERS
 from .design_blocks import chunk_of, slabs
-from .meanings import KINDS, Column, InstantAxis
+from .meanings import KINDS, Column
 from .plan import Plan
 
 WORDS = ("versions", "mechanism", "wanted", "t", "xi", "grid")
 """Attributes that are JSON; the others of a plan's identity are as they stand."""
 
 _CHUNK = 1 << 15
-_SOME = tuple(name for name, kind in KINDS.items() if kind.optional)
-"""Kinds of columns that not every file has."""
-
-_TAKEN = ("grid", *(kind for kind in KINDS if kind not in _SOME), DESIGN, "t", "xi")
 
 
-def check_names(designs: Designs, axis: InstantAxis, columns: Sequence[Column] = ()) -> None:
+def check_names(plan: Plan) -> None:
     """Raise :class:`DeclarationError` for a parameter whose dimension would bear a name that the
     file keeps for its own.
-
-    ``axis`` is that of the instants, ``columns`` are what is kept.
     """
-    kinds = {column.name.partition(":")[0] for column in columns}
-    taken = (
-        *_TAKEN,
-        axis.name,
-        *(("peak_over",) if axis.joint else ()),
-        *(kind for kind in _SOME if kind in kinds),
-    )
+    harvest, designs = plan.harvest, plan.designs
+    taken = {"grid", DESIGN, "t", "xi", harvest.axis.name}
+    taken |= {name for name, kind in KINDS.items() if not kind.optional}
+    taken |= {column.name.partition(":")[0] for column in harvest.columns}
     for name in designs.dimensions:
         if name in taken and isinstance(designs, Grid):
             raise DeclarationError(

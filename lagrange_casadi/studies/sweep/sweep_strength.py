@@ -16,9 +16,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.arrays import Array
-from ...base.quantities import Output
+from ...base.quantities import Output, parts_along
 from ...engine.model_data import ModelData
-from ...engine.section_function import SectionInputs
 from ...model.mass_properties import ALL
 from ...results.statistics import counted
 from ...results.strength.fatigue import Score, damage_score, lacking, use_score
@@ -130,7 +129,8 @@ class Kept:
         """Utilisation against fatigue, and the life in cycles, of every design."""
         share, lives = np.full(len(p), np.nan), np.full(len(p), np.nan)
         assert series is not None
-        material, outputs = self.data.content.materials[link], self._law(link)
+        numbers = {Output.of(name): k for k, name in enumerate(self.engine.columns)}
+        material, outputs = self.data.content.materials[link], parts_along(numbers, link)
         members = series[:, [*outputs.values()]]
         counts = np.array([counted(members[k]) for k in there])
         for moving in np.unique(counts, axis=0):
@@ -146,12 +146,6 @@ class Kept:
                 with np.errstate(divide="ignore"):
                     lives[worn] = 1.0 / np.maximum(largest(worn, damage_score(material)), 0.0)
         return share, lives
-
-    def _law(self, link: str) -> dict[Output, int]:
-        """The outputs that the section law of a link is made of, and their places in ``series``."""
-        engine = self.engine
-        outputs = SectionInputs.of(engine.program.outputs, link)
-        return {one: engine.outputs.index(one) for one in (*outputs.law, *outputs.acting)}
 
     def _largest(
         self,
