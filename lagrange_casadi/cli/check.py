@@ -9,9 +9,9 @@ from ..base.apart import LostError, run_apart
 from ..base.vocabulary import TIME_LIMIT
 from ..errors import StoreError
 from ..results.store import runs as store
-from ..results.store.opening import IDENTIFICATION, check_identification, kind_of
+from ..results.store.opening import IDENTIFICATION, SEARCH, check_identification, kind_of
 from ..results.store.untrusted import structured
-from ..studies.optimise.search_file import check_optimum, is_optimum
+from ..studies.optimise.search_file import check_optimum
 from ..studies.sweep import is_sweep
 from ..studies.sweep.checking import check_sweep, flaws, progress, unfinished
 from .echo import echo
@@ -63,7 +63,7 @@ def _findings(file: Path) -> list[str]:
     folder = unfinished(file)
     if folder:
         return [progress(folder), *flaws(folder)]
-    if is_optimum(file):
+    if kind_of(file) == SEARCH:
         return check_optimum(file)
     if kind_of(file) == IDENTIFICATION:
         return check_identification(file)

@@ -257,7 +257,6 @@ class ContinuousSolution(Brief):
     solution: Solution
     p: Array
     z: Array
-    rows: Mapping[Output, int]
     scene: Scene
 
     @property
@@ -287,7 +286,7 @@ class ContinuousSolution(Brief):
         guess = np.array(program.newton.guess if program.newton else ())
         z, status = np.empty((guess.size, solution.t.size)), np.empty(solution.t.size, np.int32)
         interpreter.follow(solution.t, p, guess, z, status)
-        found = cls(interpreter, solution, p, z, program.outputs, scene)
+        found = cls(interpreter, solution, p, z, scene)
         if not found.agrees():
             raise other
         return found
@@ -298,7 +297,7 @@ class ContinuousSolution(Brief):
         """
         solution = self.solution
         outputs = [output for output in solution.outputs if output not in solution.indeterminate]
-        if not all(output in self.rows for output in outputs):
+        if not all(output in self.program.outputs for output in outputs):
             return False
         outputs = [output for output in outputs if output not in self.program.loop_angles]
         moving = np.flatnonzero(solution.resting.all() | ~solution.resting)
@@ -308,7 +307,7 @@ class ContinuousSolution(Brief):
         rounding = _NOTHING * max(sizes.values(), default=0.0)
         found = np.ones(some.size, bool)
         for output in outputs:
-            gaps = np.abs(out[self.rows[output]] - solution.outputs[output][some])
+            gaps = np.abs(out[self.program.outputs[output]] - solution.outputs[output][some])
             found &= ~(gaps > _SAME * sizes[solution.unit(output)] + rounding)
         return bool(found.any())
 
@@ -405,9 +404,11 @@ class ContinuousSolution(Brief):
     def quantity(self, output: Output) -> Quantity:
         """Number of a quantity's column."""
         if output.group != "section":
-            return tuple(self.rows[component] for component in self.solution.made_of(output))
+            return tuple(
+                self.program.outputs[component] for component in self.solution.made_of(output)
+            )
         link, law = output.part, self.solution.section(output.part).law
-        rows = parts_along(self.rows, link)
+        rows = parts_along(self.program.outputs, link)
         return SectionForce(output.member, link, rows, law.length, law.density)
 
     def scales(self, names: Sequence[Output]) -> tuple[list[int], list[float]]:
@@ -418,12 +419,11 @@ class ContinuousSolution(Brief):
             for output in solution.quantities()
             if output in solution.outputs and solution.determined(output)
         ]
-        units = compared([solution.unit(output) for output in (*names, *others)])
-        scales = [0.0] * (max(units[: len(names)]) + 1)
-        for output, k in zip(others, units[len(names) :], strict=True):
-            if k < len(scales):
-                scales[k] = max(scales[k], most(solution.outputs[output]))
-        return units[: len(names)], scales
+        units = np.array(compared([solution.unit(output) for output in (*names, *others)]))
+        own, beside = np.split(units, [len(names)])
+        scales = np.zeros(len(units))
+        np.maximum.at(scales, beside, [most(solution.outputs[output]) for output in others])
+        return own.tolist(), scales[: own.max() + 1].tolist()
 
     def timed(
         self, signals: Signals, names: Sequence[Output], peaks: Peaks
@@ -486,23 +486,25 @@ class ContinuousSolution(Brief):
                 rate = law.rate(force, law_rate, place[:, None], sides[int(np.argmax(sizes))])[0, 0]
                 found[:, k] = value[0], place[0], np.sign(value[0]) * rate
             elif len(parts := self.solution.made_of(name)) > 1:
-                rows = [self.rows[component] for component in parts]
+                rows = [self.program.outputs[component] for component in parts]
                 value = size_of(columns[rows, 0])
                 found[:, k] = value, np.nan, columns[rows, 0] @ changes[rows, 0] / (value or 1.0)
             else:
-                value = columns[self.rows[name], 0]
+                value = columns[self.program.outputs[name], 0]
                 if name in self.program.loop_angles:
                     value += math.tau * np.round(
                         (self.solution.outputs[name][near[k]] - value) / math.tau
                     )
-                found[:, k] = value, np.nan, np.sign(value) * changes[self.rows[name], 0]
+                found[:, k] = value, np.nan, np.sign(value) * changes[self.program.outputs[name], 0]
         return found[0], found[1], found[2]
 
     def law(self, link: str, columns: Array) -> SectionLaw:
         """A link's law with columns of the graph, or of their rates, for its coefficients, loads
         and stations.
         """
-        of_link = {output: columns[k] for output, k in parts_along(self.rows, link).items()}
+        of_link = {
+            output: columns[k] for output, k in parts_along(self.program.outputs, link).items()
+        }
         return self.solution.section(link).law.of(link, of_link)
 
 

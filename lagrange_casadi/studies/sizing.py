@@ -5,9 +5,8 @@ own mass brings.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 
 import casadi as ca
 
@@ -159,8 +158,9 @@ def size(
     LagrangeCasadiError
         As :func:`.evaluate` and :func:`.strength.safety`.
     """
-    enough = _Enough(float(safety), criterion, yield_criterion, deflection)
-    search = _Search.of(scene, profiles, links, Request(parameters, t, over), enough)
+    criteria = {"criterion": criterion, "yield_criterion": yield_criterion}
+    request = Request(parameters, t, over)
+    search = _Search.of(scene, profiles, links, request, float(safety), criteria, deflection)
     choice = search.lightened(search.safe())
     return search.result(choice)
 
@@ -179,27 +179,20 @@ class _Slot:
         return {self.parameters[name]: value for name, value in profile.dimensions.items()}
 
 
-@dataclass(frozen=True)
-class _Enough:
-    """Factor of safety that is enough, by which criteria, and the largest deflection over a
-    link's length.
-    """
-
-    factor: float
-    criterion: str
-    yield_criterion: str
-    deflection: float | None
-
-
 @dataclass(eq=False)
 class _Search:
-    evaluated: Callable[..., Solution]
+    """Choice of profiles for links of a scene: a ``factor`` of safety is enough by some
+    ``criteria``, and so is a ``deflection`` over a link's length.
+    """
+
+    scene: Scene
     request: Request
     template: Template[Description]
     slots: dict[str, _Slot]
-    enough: _Enough
+    factor: float
+    criteria: Mapping[str, str]
+    deflection: float | None
     left: Mapping[str, str]
-    outputs: Sequence[str]
     sections: Sequence[str]
     evaluations: int = 0
 
@@ -210,7 +203,9 @@ class _Search:
         profiles: Sequence[Profile],
         links: Sequence[str] | None,
         request: Request,
-        enough: _Enough,
+        factor: float,
+        criteria: Mapping[str, str],
+        deflection: float | None,
     ) -> _Search:
         if not profiles:
             raise DeclarationError("size: expected at least one profile")
@@ -248,8 +243,8 @@ class _Search:
                         " each its own"
                     )
         sections = [f"section:{name}" for name in having]
-        evaluated = partial(solve, scene)
-        return cls(evaluated, request, described, slots, enough, remaining, scene.wanted, sections)
+        enough = (factor, criteria, deflection)
+        return cls(scene, request, described, slots, *enough, remaining, sections)
 
     @property
     def fixed(self) -> Mapping[str, float]:
@@ -260,7 +255,7 @@ class _Search:
         """The loads with profiles by their numbers."""
         self.evaluations += 1
         asked = replace(self.request, parameters=self.values(choice), wanted=self.sections)
-        return self.evaluated(asked, certificate=False)
+        return solve(self.scene, asked, certificate=False)
 
     def values(self, choice: Mapping[str, int]) -> dict[str, float]:
         found = dict(self.fixed)
@@ -276,34 +271,24 @@ class _Search:
         slot, values = self.slots[name], solution.description.values
         values |= slot.values(slot.profiles[k])
         other = replace(member, beam=beam_at(self.template, name, list(values.values())))
-        criterion, yield_criterion = self.enough.criterion, self.enough.yield_criterion
-        enough = 0.0 if whole else self.enough.factor
-        found = rated(
-            other,
-            as_column(solution.description, other),
-            criterion=criterion,
-            yield_criterion=yield_criterion,
-            enough=enough,
-        )
-        if self.enough.deflection is None or found.factor < enough:
+        enough = 0.0 if whole else self.factor
+        column = as_column(solution.description, other)
+        found = rated(other, column, **self.criteria, enough=enough)
+        if self.deflection is None or found.factor < enough:
             return found
         against: Against = "base" if "free" in ends_of(solution.description, name) else "ends"
         peak = Deflection(Compliance.of(other, f"deflection of '{name}'"), against).peak()
-        allowed = self.enough.deflection * member.law.length
+        allowed = self.deflection * member.law.length
         where = (
             f"{abs(peak.value) * 1e3:.4g} of {allowed * 1e3:.4g} mm at t = {peak.t:.5g} s, xi/l ="
             f" {peak.xi:.4f}"
         )
         verdict = Verdict(_BENT, allowed / abs(peak.value) if peak.value else math.inf, where)
-        return StiffSafety(
-            found.link, (*found.verdicts, verdict), found.not_evaluated, self.enough.factor
-        )
+        return StiffSafety(found.link, (*found.verdicts, verdict), found.not_evaluated, self.factor)
 
     def suffices(self, found: Safety) -> bool:
         """Return whether a link is safe, and stiff if that is asked for."""
-        return (
-            found.suffices if isinstance(found, StiffSafety) else found.factor >= self.enough.factor
-        )
+        return found.suffices if isinstance(found, StiffSafety) else found.factor >= self.factor
 
     def safe(self) -> dict[str, int]:
         """Numbers of profiles that are safe under the loads that they bring, each the first that is
@@ -313,13 +298,13 @@ class _Search:
         for _ in range(_TURNS):
             solution, changed = self.solve(choice), False
             for name, slot in self.slots.items():
-                tried = {k: self.judge(solution, name, k) for k in (choice[name],)}
-                while not self.suffices(tried[choice[name]]):
+                first = choice[name]
+                while not self.suffices(self.judge(solution, name, choice[name])):
                     changed = True
                     if choice[name] + 1 == len(slot.profiles):
+                        tried = range(first, len(slot.profiles))
                         raise NoDesignError(self._report_none(solution, name, tried))
                     choice[name] += 1
-                    tried[choice[name]] = self.judge(solution, name, choice[name])
             if not changed:
                 return choice
         raise NoDesignError(f"size: loads and profiles do not converge within {_TURNS} evaluations")
@@ -331,11 +316,10 @@ class _Search:
         most = f"the most, '{profile}', has {found.factor:.4g} against {found.governs.against}"
         stiff = (
             ""
-            if self.enough.deflection is None
-            else f", and a deflection of {self.enough.deflection:g} of its length at most"
+            if self.deflection is None
+            else f", and a deflection of {self.deflection:g} of its length at most"
         )
-        factor = self.enough.factor
-        return f"size: link '{name}': no profile has a factor of {factor:g}{stiff}; {most}"
+        return f"size: link '{name}': no profile has a factor of {self.factor:g}{stiff}; {most}"
 
     def lightened(self, choice: dict[str, int]) -> dict[str, int]:
         """The same, each link as light as the others allow."""
@@ -356,9 +340,9 @@ class _Search:
 
     def result(self, choice: Mapping[str, int]) -> Sizing:
         """Result of a choice, evaluated anew with its certificate."""
-        wanted = [*self.outputs, *self.sections]
+        wanted = [*self.scene.wanted, *self.sections]
         asked = replace(self.request, parameters=self.values(choice), wanted=wanted)
-        solution = self.evaluated(asked)
+        solution = solve(self.scene, asked)
         links = []
         for name, k in choice.items():
             slot, mass = self.slots[name], solution.description.bodies[name].mass

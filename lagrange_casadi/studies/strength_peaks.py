@@ -218,4 +218,6 @@ class _Searched:
         return replace(along.at(signals.columns(times, z)), t=times)
 
     def _along(self, size: Callable[[Member], Array]) -> _Along:
-        return _Along(self.member, parts_along(self.over_time.rows, self.member.link), size)
+        return _Along(
+            self.member, parts_along(self.over_time.program.outputs, self.member.link), size
+        )

@@ -196,14 +196,12 @@ class NonlinearProgram:
                     ]
                 ).ravel()
             ]
-            + [self._packed(term, capacity) for term in held if term.points]
             + [
-                self._packed(
-                    Held(self.objective, None, 1.0, points=[(point, 1.0) for point in closures]),
-                    capacity,
-                    1,
-                )
+                self._packed(term.points, capacity, self.values.of(output).size)
+                for term in held
+                if term.points and (output := term.term.output)
             ]
+            + [self._packed([(point, 1.0) for point in closures], capacity, 1)]
             * (self.closures is not None)
             + [np.array([point.guess for point in averages]).ravel()] * bool(self.averaged)
         )
@@ -233,16 +231,14 @@ class NonlinearProgram:
             status,
         )
 
-    def _packed(self, held: Held, capacity: int, places: int | None = None) -> Array:
-        """The points of a term, as many as there is room for; the first one stands for those that
-        lack.
+    def _packed(self, points: Sequence[tuple[Point, float]], capacity: int, size: int) -> Array:
+        """Points of as many places as their ``size`` says, as many as there is room for; the first
+        one stands for those that lack.
         """
-        output = held.term.output
-        size = self.values.of(output).size if places is None and output is not None else 1
         n = len(self.box.names)
         rows = np.zeros((capacity, _NUMBERS + n + size + self.values.program.instant.size1_in("z")))
         for k in range(capacity):
-            point, sign = held.points[k if k < len(held.points) else 0]
+            point, sign = points[k if k < len(points) else 0]
             where = point.where(size)
             rows[k] = np.concatenate(
                 [

@@ -127,6 +127,7 @@ def optimum_of(
         value = evaluated.values[constraint.term]
         near = abs(constraint.excess(value)) <= _NEAR * constraint.scale(value)
         limits.append(Limit(constraint, value, bool(near), float(multiplier) if near else 0.0))
+    active = [limit.constraint.term for limit in limits if limit.active]
     bounds = dict.fromkeys(box.names, math.nan)
     if best.bounds:
         x = box.share(evaluated.p)
@@ -157,7 +158,7 @@ def optimum_of(
             -1, 4 + len(box.names)
         ),
         evaluations=evaluations,
-        notes=tuple(_notes(solver, problem, evaluated)),
+        notes=tuple(_notes(solver, [problem.objective, *active], evaluated)),
     )
 
 
@@ -188,25 +189,15 @@ def _optima(solver: Solver, runs: Sequence[SearchRun]) -> tuple[LocalOptimum, ..
     )
 
 
-def _notes(solver: Solver, problem: Problem, evaluated: EvaluatedDesign) -> Iterator[str]:
-    """Notes on active peaks at a kink or a jump, whose change the program has by differences."""
+def _notes(solver: Solver, terms: Sequence[Term], evaluated: EvaluatedDesign) -> Iterator[str]:
+    """Notes on peaks at a kink or a jump of the objective and of what is active, whose change the
+    program has by differences.
+    """
     sampled = evaluated.sampled
     assert sampled is not None
-    values = [
-        None,
-        *(
-            c.excess(evaluated.values[c.term]) / c.scale(evaluated.values[c.term])
-            for c in problem.constraints
-        ),
-    ]
-    for term, excess in zip(problem.terms, values, strict=True):
+    for term in terms:
         points = evaluated.points[term]
-        if (
-            not points
-            or term.output is None
-            or tired_link(term.output)
-            or (excess is not None and abs(excess) > _NEAR)
-        ):
+        if not points or term.output is None or tired_link(term.output):
             continue
         point, _ = points[0]
         followed = solver.evaluator.values.of(term.output)

@@ -9,7 +9,7 @@ import h5py
 import numpy as np
 import numpy.typing as npt
 
-from ...results.store.opening import SEARCH, kind_of, opened_file, read_all, sealed_file
+from ...results.store.opening import SEARCH, opened_file, read_all, sealed_file
 from ...results.store.untrusted import check_dataset, shown
 from .front import Front
 from .optimum import Optimum
@@ -32,11 +32,6 @@ def save(found: Optimum | Front, path: str | os.PathLike[str]) -> None:
             _write_optimum(file, found)
         else:
             _write_front(file, found)
-
-
-def is_optimum(path: str | os.PathLike[str]) -> bool:
-    """Return whether a path is that of a search's file, whole or not."""
-    return kind_of(path) == SEARCH
 
 
 def check_optimum(path: str | os.PathLike[str]) -> list[str]:

@@ -69,7 +69,3 @@ class Queue:
 
     blocks: Iterator[tuple[int, int]]
     stopped: bool = False
-
-    def take(self) -> tuple[int, int] | None:
-        """The next block, from and to before; None where nothing is left."""
-        return None if self.stopped else next(self.blocks, None)

@@ -12,6 +12,7 @@ import threading
 from collections.abc import Callable, Generator, Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
 from dataclasses import dataclass
+from itertools import islice
 from typing import Any, Protocol, runtime_checkable
 
 from ...base.arrays import Array, Json
@@ -125,8 +126,9 @@ def handed(
     pending: dict[Future[Any], tuple[int, int]] = {}
     try:
         while True:
-            while len(pending) < ahead and (block := queue.take()):
-                pending[submit(*block)] = block
+            if not queue.stopped:
+                for block in islice(queue.blocks, ahead - len(pending)):
+                    pending[submit(*block)] = block
             if not pending:
                 return
             if queue.stopped:
