@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -30,7 +31,7 @@ from ..engine.reciprocals import differentiable
 from ..engine.section_function import Side
 from ..engine.sharpness import Sharpness
 from ..errors import DeclarationError
-from ..model.even_points import are_even
+from ..model.even_points import EvenPoints, are_even
 from ..model.scene import Scene
 from ..model.times import Over, Times, span_of
 from ..results.histories import Peak
@@ -250,14 +251,14 @@ def rates(program: Program) -> ca.Function:
 class ContinuousSolution(Brief):
     """A solution, and what its quantities and their time derivatives are at any time of its span.
 
-    It is a solution of the ``scene``.
+    ``again`` makes that of the same parameters at other instants, for outputs that are wanted.
     """
 
     interpreter: Interpreter
     solution: Solution
     p: Array
     z: Array
-    scene: Scene
+    again: Callable[[EvenPoints, Sequence[str]], ContinuousSolution]
 
     @property
     def program(self) -> Program:
@@ -286,7 +287,12 @@ class ContinuousSolution(Brief):
         guess = np.array(program.newton.guess if program.newton else ())
         z, status = np.empty((guess.size, solution.t.size)), np.empty(solution.t.size, np.int32)
         interpreter.follow(solution.t, p, guess, z, status)
-        found = cls(interpreter, solution, p, z, scene)
+
+        def again(t: EvenPoints, names: Sequence[str]) -> ContinuousSolution:
+            asked: dict[str, Any] = {"backend": "vm", "certificate": False, "elastic": False}
+            return cls.of(scene, evaluate(scene, parameters=values, t=t, wanted=names, **asked))
+
+        found = cls(interpreter, solution, p, z, again)
         if not found.agrees():
             raise other
         return found
@@ -317,16 +323,7 @@ class ContinuousSolution(Brief):
         """
         t = self.solution.t
         names = list(wanted) or list(dict.fromkeys(map(wanted_for, self.solution.outputs)))
-        even = evaluate(
-            self.scene,
-            parameters=self.solution.description.values,
-            t=(float(t[0]), float(t[-1]), t.size),
-            wanted=names,
-            backend="vm",
-            certificate=False,
-            elastic=False,
-        )
-        return ContinuousSolution.of(self.scene, even)
+        return self.again((float(t[0]), float(t[-1]), t.size), names)
 
     def refined(
         self, sampled: Sequence[Peak], listed: Listed | None = None

@@ -130,22 +130,17 @@ def select(
     given = sorted(motors, key=lambda motor: (motor.rated_power, motor.name))
     if not given or not list(ratios):
         raise DeclarationError("select: expected motors, and ratios")
-    refused: list[str] = []
-    nearest: Choice | None = None
+    nearest: list[Choice] = []
     for motor in given:
-        tried = [
-            assess(motor, duty(float(ratio), motor.inertia), tuple(refused)) for ratio in ratios
-        ]
+        refused = tuple(f"{one.motor.name}: {_exceeded(one)}" for one in nearest)
+        tried = [assess(motor, duty(float(ratio), motor.inertia), refused) for ratio in ratios]
         serving = [choice for choice in tried if choice.serves]
         if serving:
             return min(serving, key=lambda choice: choice.heat)
-        best = min(tried, key=_worst)
-        refused.append(f"{motor.name}: {_exceeded(best)}")
-        nearest = best if nearest is None or _worst(best) < _worst(nearest) else nearest
-    assert nearest is not None
+        nearest.append(min(tried, key=_worst))
+    best = min(nearest, key=_worst)
     raise NoDesignError(
-        f"no motor of {len(given)} is suitable; nearest is {nearest.motor.name}:"
-        f" {_exceeded(nearest)}"
+        f"no motor of {len(given)} is suitable; nearest is {best.motor.name}: {_exceeded(best)}"
     )
 
 

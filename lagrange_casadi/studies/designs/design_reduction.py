@@ -98,14 +98,19 @@ class KeptOutputs:
             - {-1}
             for link in along
         ]
-        made_of = [*map(set, chosen.values()), *(row for row in rows for _ in table.forces)]
-        sharpness = Sharpness.of(program, sorted({k for columns in made_of for k in columns}))
+        every = [*map(set, chosen.values()), *(row for row in rows for _ in table.forces)]
+        sharpness = Sharpness.of(program, sorted({k for columns in every for k in columns}))
         checks = [(bound.column, bound.beside) for bound in program.bounds]
         doubted = {bound.column: number for number, bound in enumerate(program.bounds)}
         sizes: list[tuple[int, Beside]] = [
             (bound.size, "") for bound in program.bounds if bound.beside == "ROW"
         ]
-        made = {name: _made_of(program, name, table) for name in names}
+        made = {
+            name: made_of(at, name.part, name.member, table)
+            if name.group == "section"
+            else name.components(table)
+            for name in names
+        }
         indeterminate_checks = [
             (doubted[program.indeterminate[n]], k)
             for k, name in enumerate(names)
@@ -124,7 +129,7 @@ class KeptOutputs:
             margins=margins,
             watches=sharpness.watches,
             knots=sharpness.knots,
-            depends=sharpness.dependence(made_of),
+            depends=sharpness.dependence(every),
             marks=data.corners.whole,
         )
         return cls(tuple(names), units, efforts, reduction, sharpness)
@@ -160,13 +165,6 @@ def _along(data: ModelData, link: str, at: dict[Output, int], table: Table) -> A
         tuple(marks),
         sliced,
     )
-
-
-def _made_of(program: Program, quantity: Output, table: Table) -> list[Output]:
-    """The outputs that a quantity is made of."""
-    if quantity.group == "section":
-        return made_of(program.outputs, quantity.part, quantity.member, table)
-    return list(quantity.components(table))
 
 
 @symbolic

@@ -151,11 +151,6 @@ class Data:
         names = self.regressor.quantities
         return Comparison(self.motion.t, *(dict(zip(names, x, strict=True)) for x in each))
 
-    def some(self, rows: npt.NDArray[np.intp]) -> Data:
-        """Return the data of some of the instants, not filtered."""
-        motion, measured = self.motion.some(rows), self.measured[rows]
-        return replace(self, motion=motion, measured=measured, low_pass=None)
-
     def rows(self, theta: Array, z: Array) -> Rows:
         """Return what is measured less the model, if both are known, and prior values less those
         of the parameters.
@@ -201,7 +196,8 @@ def nonlinear(data: Data, z: Array) -> dict[str, tuple[str, ...]]:
     generator = np.random.default_rng(0)
     known = np.flatnonzero(np.isfinite(data.motion.acceleration).all(axis=1))
     few = np.sort(generator.permutation(known)[:_LOOKED])
-    some, z = data.some(few), z[few]
+    motion, z = DrivenMotion(*(part[few] for part in data.motion)), z[few]
+    some = replace(data, motion=motion, measured=data.measured[few], low_pass=None)
     theta, names, scales = data.theta, data.regressor.unknown, data.ranking.scales
     before = _slopes(some, theta, z)
     changes = np.zeros((theta.size, theta.size), bool)

@@ -14,7 +14,6 @@ from typing import Any, NamedTuple
 
 import casadi as ca
 import numpy as np
-import numpy.typing as npt
 
 from ...base.arrays import Array, Expression
 from ...base.brief import Brief
@@ -63,10 +62,6 @@ class DrivenMotion(NamedTuple):
             f"<DrivenMotion of {drives} drives: {instants} instants from {self.t[0]:.5g} to"
             f" {self.t[-1]:.5g} s>"
         )
-
-    def some(self, rows: npt.NDArray[np.intp] | npt.NDArray[np.bool_]) -> DrivenMotion:
-        """Return the motion at some of the instants."""
-        return DrivenMotion(*(column[rows] for column in self))
 
 
 class Along(NamedTuple):

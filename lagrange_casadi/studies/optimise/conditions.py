@@ -84,25 +84,18 @@ def conditions(
         return Conditions(residual, math.nan, math.nan, np.zeros(chosen))
     bounded = np.zeros(at.size, bool)
     bounded[:chosen] = np.minimum(at[:chosen], 1.0 - at[:chosen]) <= _ACTIVE
-    found = []
-    for active, bound in (
-        (np.abs(by_g) > _COUNTS * size, np.abs(by_x) > _COUNTS * size),
-        (
-            (rows.ravel() > -_ACTIVE) | (np.abs(by_g) > _COUNTS * size),
-            bounded | (np.abs(by_x) > _COUNTS * size),
-        ),
-    ):
-        found.append(_least(hessian, np.vstack([jacobian[active], np.eye(at.size)[bound]])))
-    (curvature, _), (least, direction) = found
+    held, pressed = np.abs(by_g) > _COUNTS * size, np.abs(by_x) > _COUNTS * size
+    curvature, _ = _least(hessian, np.vstack([jacobian[held], np.eye(at.size)[pressed]]))
+    held, pressed = held | (rows.ravel() > -_ACTIVE), pressed | bounded
+    least, direction = _least(hessian, np.vstack([jacobian[held], np.eye(at.size)[pressed]]))
     return Conditions(residual, curvature, least, direction[:chosen])
 
 
 def _least(hessian: Array, active: Array) -> tuple[float, Array]:
     """The least eigenvalue along what leaves active limits as they are, and its direction."""
-    free = np.eye(len(hessian))
-    if len(active):
-        _, sizes, rows = np.linalg.svd(active)
-        free = rows[int(np.sum(sizes > 1e-9 * sizes.max())) :].T
+    from scipy.linalg import null_space  # imported where it is needed, as it takes long
+
+    free = null_space(active, 1e-9) if len(active) else np.eye(len(hessian))
     if not free.size:
         return math.inf, np.zeros(len(hessian))
     values, vectors = np.linalg.eigh(free.T @ hessian @ free)

@@ -105,20 +105,19 @@ class Followed:
         given: list[Any] = [kind.sym(name, value.size1_in(k)) for k, name in enumerate(names)]
         share, guess, p, xi, place = given
         turn, reach = (kind.sym(name, n) for name, n in (("turn", 3), ("reach", 2)))
-        further: list[Any] = [turn, reach]
-        at = ca.densify(ca.gradient(value(*given), ca.vertcat(share, xi))) if smooth else None
-        if at is None:
-            at = ca.vertcat(*(ca.densify(ca.gradient(value(*given), x)) for x in (share, xi)))
+        by = [ca.vertcat(share, xi)] if smooth else [share, xi]
+        at = ca.vertcat(*(ca.densify(ca.gradient(value(*given), x)) for x in by))
         away: list[Any] = [turn[0] * at[0] + turn[1] * at[1], turn[1] * at[0] + turn[2] * at[1]]
-        limits: list[Any] = [reach[0], reach[1]]
         there = [
             x + ca.fmin(ca.fmax(far, -most), most)
-            for x, far, most in zip((share, xi), away, limits, strict=True)
+            for x, far, most in zip((share, xi), away, (reach[0], reach[1]), strict=True)
         ]
         options = {"cse": True} if smooth else {}
         slopes = ca.Function("slopes", given, [at], options)
         moved = value(there[0], guess, p, there[1], place)
-        return cls(value, slopes, ca.Function("moved", [*given, *further], [moved], options), size)
+        return cls(
+            value, slopes, ca.Function("moved", [*given, turn, reach], [moved], options), size
+        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -222,12 +222,9 @@ class Grid:
 
     def block(self, start: int, stop: int) -> Array:
         """The designs from ``start`` to before ``stop``, of shape (designs, names)."""
-        rest = np.arange(start, stop, dtype=np.int64)
-        columns = []
-        for axis in list(self.axes.values())[::-1]:
-            rest, numbers = np.divmod(rest, axis.count)
-            columns.append(axis.at(numbers))
-        return np.stack(columns[::-1], axis=1)
+        places = np.unravel_index(np.arange(start, stop), tuple(self.dimensions.values()))
+        columns = [axis.at(k) for axis, k in zip(self.axes.values(), places, strict=True)]
+        return np.stack(columns, axis=1)
 
     def scale(self, name: str, start: int, stop: int) -> Array:
         """Values along one parameter's own dimension."""

@@ -207,7 +207,7 @@ class Harvest:
     @property
     def meanings(self) -> Meanings:
         """Meanings of columns and axes."""
-        return Meanings(self.data.content, self.axis.joint, self.task.timing.shared)
+        return Meanings(self.data.content, self.task.timing.joint, self.task.timing.shared)
 
     @property
     def block(self) -> int:
@@ -303,7 +303,7 @@ class Harvest:
 
     def _of_peaks(self, quantity: Output) -> list[str]:
         """The kinds of columns of the peak of a quantity."""
-        over = ["peak_over"] if self.axis.joint else []
+        over = ["peak_over"] if self.task.timing.joint else []
         xi = ["peak_xi"] if quantity.group == "section" else []
         return ["peak", "peak_t", *over, *xi, *([ERROR] if self.engine.sampled else [])]
 

@@ -113,13 +113,10 @@ def in_words(axes: Sequence[str]) -> str:
 
 @dataclass(frozen=True, eq=False)
 class InstantAxis:
-    """An axis: its name in the file and values (t,); ``joint`` is the drive by which instants are
-    asked for.
-    """
+    """An axis: its name in the file and values (t,)."""
 
     name: str
     values: Array
-    joint: str = ""
 
     @classmethod
     def of(cls, data: ModelData, timing: Timing) -> InstantAxis:
@@ -129,9 +126,9 @@ class InstantAxis:
         if timing.joint and timing.fixed:
             start, stop, _ = timing.bounds(np.zeros((1, 0)))
             coordinates = points((float(start[0]), float(stop[0]), timing.count))
-            return cls(OVER, coordinates, timing.joint)
+            return cls(OVER, coordinates)
         places = points((0.0, 1.0, timing.count)) if timing.count > 1 else np.zeros(1)
-        return cls(CYCLE, places, timing.joint)
+        return cls(CYCLE, places)
 
 
 @dataclass(frozen=True)
@@ -190,7 +187,17 @@ class Meanings:
         """
         kinds, (kind, _, rest) = self.description.kinds, name.partition(":")
         if name == STATUS:
-            return "1", self._of_status()
+            # Designs that share their instants have some.
+            said = [
+                (number, *words)
+                for number, words in STATUSES.items()
+                if not self.shared or number != Status.NO_INSTANTS
+            ]
+            return "1", {
+                "long_name": "status: validity of the result, or the reason why there is none",
+                "flag_meanings": " ".join(word for _, word, _ in said),
+                "sentences": json.dumps({number: sentence for number, _, sentence in said}),
+            }
         if name == TIMES:
             return "s", {"long_name": "time"}
         if kind in (LEAST, LIFE, MASS):
@@ -228,20 +235,6 @@ class Meanings:
             DESIGN: ("1", "number of the design"),
         }.get(name) or (self.description.parameters[name].unit, f"parameter {name}")
         return unit, {"long_name": long_name}
-
-    def _of_status(self) -> dict[str, str]:
-        words_by_number = {
-            number: words
-            for number, words in STATUSES.items()
-            if not self.shared or number != Status.NO_INSTANTS
-        }
-        return {
-            "long_name": "status: validity of the result, or the reason why there is none",
-            "flag_meanings": " ".join(word for word, _ in words_by_number.values()),
-            "sentences": json.dumps(
-                {number: sentence for number, (_, sentence) in words_by_number.items()}
-            ),
-        }
 
 
 def _of_strength(kind: str, rest: str, among: Collection[str]) -> Meaning:

@@ -22,12 +22,9 @@ from ..checkpoint import difference
 from .design_blocks import Queue
 from .plan import Plan
 
-Block = tuple[int, int, list[bytes]]
-"""Designs from and to before, and their columns as the file keeps them."""
-
-Blocks = Generator[Block | None, None, None]
-"""Blocks as they are done; None where nothing was done for a while, so
-that whoever waits may stop.
+Blocks = Generator[tuple[int, int, list[bytes]] | None, None, None]
+"""Blocks as they are done: designs from and to before, and their columns as the file keeps them;
+None where nothing was done for a while, so that whoever waits may stop.
 """
 
 _PULSE, _PATIENCE = 0.1, 0.7
