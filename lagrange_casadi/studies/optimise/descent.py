@@ -160,7 +160,7 @@ class Descent:
         sampled, box, problem = first.sampled, self.solver.question.box, self.task.problem
         program = self.solver.program(problem)
         assert sampled is not None
-        held = [Held(problem.objective, None, self.task.scales[0])]
+        held = [Held(problem.objective, 0.0, self.task.scales[0])]
         for constraint, scale in zip(problem.constraints, self.task.scales[1:], strict=True):
             held.append(Held(constraint.term, constraint.limit, scale, constraint.least))
         numbers = np.unique(np.linspace(0, sampled.t.size - 1, _CLOSED).astype(int)).tolist()

@@ -38,14 +38,14 @@ derivatives are not formed.
 
 @dataclass(frozen=True, eq=False)
 class Held:
-    """A term that is held at points: not more than ``limit``, or less where ``least``; the
-    objective has none.
+    """A term that is held at points: not more than ``limit``, or less where ``least``; that of the
+    objective does not count.
 
     ``scale`` is about how large it is. ``points`` are those that are known.
     """
 
     term: Term
-    limit: float | None
+    limit: float
     scale: float
     least: bool = False
     points: list[tuple[Point, float]] = field(default_factory=list)
@@ -53,7 +53,6 @@ class Held:
     @property
     def bound(self) -> float:
         """Upper bound of the term, times -1 if the limit is the least."""
-        assert self.limit is not None
         return -self.limit if self.least else self.limit
 
     def add(self, point: Point, sign: float, near: float) -> bool:
@@ -188,14 +187,7 @@ class NonlinearProgram:
             self.built[capacity] = self._build(held, capacity)
         built = self.built[capacity]
         given = np.concatenate(
-            [
-                np.array(
-                    [
-                        (0.0 if term.limit is None else term.bound / term.scale, 1.0 / term.scale)
-                        for term in held
-                    ]
-                ).ravel()
-            ]
+            [np.array([(term.bound / term.scale, 1.0 / term.scale) for term in held]).ravel()]
             + [
                 self._packed(term.points, capacity, self.values.of(output).size)
                 for term in held
