@@ -171,13 +171,16 @@ class Harvest:
     @cached_property
     def _kept(self) -> dict[str, tuple[tuple[str, ...], str, tuple[int, ...]]]:
         """The axes of each column, and its place in a :class:`_Batch`: table and numbers."""
-        engine, over, series = self.engine, self.axis.name, self.engine.columns
+        engine, over, keep = self.engine, self.axis.name, self.task.keep
         found: dict[str, tuple[tuple[str, ...], str, tuple[int, ...]]] = {
             STATUS: ((), "states", ())
         }
         for k, quantity in enumerate(map(Output.of, engine.quantities)):
-            for kind in self._of_peaks(quantity):
-                found[f"{kind}:{quantity}"] = (), _PEAKS[kind], (k,)
+            along = quantity.group == "section"
+            there = {"peak_over": self.task.timing.joint, "peak_xi": along, ERROR: engine.sampled}
+            for kind, field in _PEAKS.items():
+                if there.get(kind, True):
+                    found[f"{kind}:{quantity}"] = (), field, (k,)
         for k, name in enumerate(engine.efforts):
             found |= {f"{kind}:{name}": ((), kind, (k,)) for kind in _MEANS}
         for k, drive in enumerate(self._drives):
@@ -193,11 +196,12 @@ class Harvest:
         sections = sections if self.xi.size else []
         for k, name in enumerate(sections):
             found[f"peak_at:{name}"] = ("xi",), "along_links", (0, k)
-        for name in self._series:
-            found[f"history:{name}"] = (over,), "series", (series.index(name),)
-        if self.task.keep != "peaks" and over != "t":
+        for k, name in enumerate(engine.columns):
+            if keep == "histories" or (keep == "laws" and Output.of(name).along):
+                found[f"history:{name}"] = (over,), "series", (k,)
+        if keep != "peaks" and over != "t":
             found[TIMES] = (over,), "instants", ()
-        if self.task.keep == "histories":
+        if keep == "histories":
             for k, name in enumerate(sections):
                 found[f"history:{name}"] = (over, "xi"), "along_links", (1, k)
         for k, name in enumerate(self.strength.columns):
@@ -288,24 +292,10 @@ class Harvest:
         sections = (one for one in map(Output.of, self.engine.quantities) if one.group == "section")
         return tuple(dict.fromkeys(one.part for one in sections))
 
-    @cached_property
-    def _series(self) -> tuple[str, ...]:
-        """The engine's columns that are kept whole."""
-        if self.task.keep == "peaks":
-            return ()
-        whole = self.task.keep == "histories"
-        return tuple(name for name in self.engine.columns if whole or Output.of(name).along)
-
     @property
     def _drives(self) -> tuple[Output, ...]:
         """The efforts of which the fluctuation of energy is kept."""
         return self.engine.drives if self.task.fluctuation else ()
-
-    def _of_peaks(self, quantity: Output) -> list[str]:
-        """The kinds of columns of the peak of a quantity."""
-        over = ["peak_over"] if self.task.timing.joint else []
-        xi = ["peak_xi"] if quantity.group == "section" else []
-        return ["peak", "peak_t", *over, *xi, *([ERROR] if self.engine.sampled else [])]
 
 
 @dataclass(frozen=True, eq=False)
