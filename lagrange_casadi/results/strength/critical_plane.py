@@ -23,7 +23,7 @@ from ...base.arguments import NotNegative, Numeric, public
 from ...base.arrays import Array
 from ...errors import DeclarationError, shown
 from ...model.beams.material import Material
-from .fatigue import ROUNDED, Score
+from .fatigue import Score
 
 FINDLEY = "findley"
 """The criterion's name."""
@@ -147,8 +147,7 @@ def plane_score(share: float = DUCTILE) -> Score:
         normal, shears = stresses[0], stresses[1:]
         wide = np.ptp(normal, axis=-1) ** 2 + 4.0 * np.sum(np.ptp(shears, axis=-1) ** 2, axis=0)
         principal = normal / 2 + np.sqrt((normal / 2) ** 2 + np.sum(shears**2, axis=0))
-        most = np.sqrt(wide) / 4 + share * np.maximum(principal.max(axis=-1), 0.0)
-        return np.asarray(most * ROUNDED)
+        return np.asarray(np.sqrt(wide) / 4 + share * np.maximum(principal.max(axis=-1), 0.0))
 
     def of(values: Array) -> float:
         return critical_plane(values, share).value(share)

@@ -31,10 +31,6 @@ _LEAST = 1e3
 _NOTHING = 1e-300
 """Amplitude [Pa] in the place of none."""
 
-ROUNDED = 1.0 + 1e-12
-"""Factor of rounding by which a value may exceed a bound."""
-
-
 @dataclass(frozen=True)
 class Criterion:
     """Treatment of a mean stress: ``strength`` is the material's number for a mean stress alone;
@@ -340,27 +336,14 @@ def use_score(material: Material, criterion: str = "goodman") -> Score:
     worst, as long as means count for less than amplitudes.
     """
     endurance, strength = strengths(material, criterion)
-    linear, swing = not criterion_of(criterion).square, _use(material, criterion)
-    exact = strength >= (1.0 if linear else 2.0) * endurance
+    exact = strength >= (2.0 if criterion_of(criterion).square else 1.0) * endurance
+    swing = _use(material, criterion)
 
     def of(values: Array) -> float:
         found = loaded(values)
         return float(np.max(swing(found.amplitude, found.mean)))
 
-    def bound(stresses: Array) -> Array:
-        if exact and len(stresses) == 1:
-            low, high = stresses[0].min(axis=-1), stresses[0].max(axis=-1)
-            return np.asarray(swing((high - low) / 2, (high + low) / 2))
-        most = _bounds(stresses)
-        if not (exact and linear):
-            return np.asarray(swing(most.amplitude, most.mean))
-        # A smaller swing has a larger mean. Where shear is most of it, or means count for much, no
-        # more is known than the second.
-        lesser = most.sheared if strength >= math.sqrt(2.0) * endurance else most.amplitude
-        whole, part = swing(most.amplitude, most.middle), swing(lesser, most.mean)
-        return np.asarray(np.maximum(whole, part))
-
-    return Score(of, bound, swing, exact)
+    return Score(of, lambda stresses: _bound(swing, stresses), swing, exact)
 
 
 def damage_score(material: Material, criterion: str = "goodman") -> Score:
@@ -381,32 +364,23 @@ def damage_score(material: Material, criterion: str = "goodman") -> Score:
         return float(score(found.amplitude, found.mean, found.times, 0))
 
     def bound(stresses: Array) -> Array:
-        most = _bounds(stresses)
-        return score(most.amplitude, most.mean, stresses.shape[-1] / 2 + 1, ())
+        times = stresses.shape[-1] / 2 + 1
+        return _bound(lambda amplitude, mean: score(amplitude, mean, times, ()), stresses)
 
     return Score(of, bound, _use(material, criterion))
 
 
-class _Bounds(NamedTuple):
-    """Bounds on swings in a history: on the ``amplitude`` and on the ``mean`` of each, on the mean
-    ``middle`` of the widest swing of normal stress, and on the amplitude ``sheared`` of a swing
-    that has no less of shear stress than of normal stress.
+def _bound(swing: Callable[[Array, Array], Operand], stresses: Array) -> Array:
+    """Bound on how bad any ``swing`` in stresses (k, ..., t) is.
+
+    Shear stress counts as the widest, about the largest. Then a swing is no worse than one between
+    the smallest and the largest normal stress, or than one of shear alone at the largest.
     """
-
-    amplitude: Array
-    mean: Array
-    middle: Array
-    sheared: Array
-
-
-def _bounds(stresses: Array) -> _Bounds:
-    """Bounds on all swings in stresses (k, ..., t)."""
-    low, high = stresses[0].min(axis=-1), stresses[0].max(axis=-1)
-    ranges = 3.0 * np.sum(np.ptp(stresses[1:], axis=-1) ** 2, axis=0)
-    sizes = 3.0 * np.max(np.sum(stresses[1:] ** 2, axis=0), axis=-1)
-    means = [np.sqrt(np.maximum(mean, 0.0) ** 2 + sizes) for mean in (high, (high + low) / 2)]
-    amplitudes = [np.sqrt(square) / 2 for square in ((high - low) ** 2 + ranges, 2.0 * ranges)]
-    amplitude, mean, middle, sheared = (
-        ROUNDED * found for found in (amplitudes[0], *means, amplitudes[1])
-    )
-    return _Bounds(amplitude, mean, middle, sheared)
+    low, high = stresses.min(axis=-1), stresses.max(axis=-1)
+    ranges = 3.0 * np.sum((high[1:] - low[1:]) ** 2, axis=0)
+    sizes = 3.0 * np.sum(np.maximum(high[1:], -low[1:]) ** 2, axis=0)
+    swings = [
+        swing(np.sqrt((high[0] - first) ** 2 + ranges) / 2, np.sqrt(larger(mean, 0.0) ** 2 + sizes))
+        for first, mean in ((low[0], (low[0] + high[0]) / 2), (high[0], high[0]))
+    ]
+    return np.maximum(*swings)
