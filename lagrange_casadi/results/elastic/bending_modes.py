@@ -19,11 +19,23 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from ...base.arrays import Array
 from ...model.end_conditions import Ends
 
 _PARTS, _POINTS = 32, 5
+
+_HELD = {
+    "pinned": (True, False),
+    "clamped": (True, True),
+    "free": (False, False),
+    "guided": (False, True),
+}
+"""Whether an end holds its place, and its slope."""
+
+_LINES = np.array([[1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [0.0, 1.0]])
+"""Place and slope of a + b u at the base, and at the tip."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,15 +77,12 @@ def first_mode(
     low, width = edges[:-1, None], np.diff(edges)[:, None]
     u, weights = low + width * s, length * width * w / 2
     h = length * width
-    zero, one = np.zeros_like(s), np.ones_like(s)
     # Hermite's cubics and their curvatures, in deflection and slope at both ends of a part.
     shape = np.stack(
         [1 - 3 * s**2 + 2 * s**3, s - 2 * s**2 + s**3, 3 * s**2 - 2 * s**3, -(s**2) + s**3]
     )
-    bent = (
-        np.stack([-6 * one + 12 * s, -4 * one + 6 * s, 6 * one - 12 * s, -2 * one + 6 * s]) + zero
-    )
-    units = np.stack([np.ones_like(h[:, 0]), h[:, 0], np.ones_like(h[:, 0]), h[:, 0]])
+    bent = np.stack([12 * s - 6, 6 * s - 4, 6 - 12 * s, 6 * s - 2])
+    units = np.stack([np.ones_like(h[:, 0]), h[:, 0]] * 2)
     parts, size = len(h), 2 * len(edges)
     curved = bent[:, None] * units[:, :, None] / h[None] ** 2
     moved = shape[:, None] * units[:, :, None]
@@ -88,21 +97,18 @@ def first_mode(
             (at[:, :, None], at[:, None, :]),
             np.einsum("ipn,pn,jpn->pij", shapes, factor, shapes),
         )
-    gone = {"pinned": (0,), "clamped": (0, 1), "free": (), "guided": (1,)}
-    fixed = [*gone[ends[0]], *(size - 2 + k for k in gone[ends[1]])]
-    kept = [i for i in range(size) if i not in fixed]
-    # Of a + b x what the ends let be.
-    lines = {"pinned": [[1, 0]], "clamped": [[1, 0], [0, 1]], "free": [], "guided": [[0, 1]]}
-    tip = [[1, 1] if row == [1, 0] else row for row in lines[ends[1]]]
-    rigid = 2 - int(np.linalg.matrix_rank(np.array([[0, 0], *lines[ends[0]], *tip])))
+    held = np.array([_HELD[end] for end in ends])
+    kept = np.ones(size, bool)
+    kept[[0, 1, -2, -1]] = ~held.ravel()
+    rigid = 2 - int(np.linalg.matrix_rank(_LINES * held.reshape(4, 1)))
     whole = np.sum(weights * mass(u))
     if whole == 0.0:
         return Mode(np.inf, None if rigid else np.inf, u.ravel(), weights.ravel(), np.zeros(u.size))
     # By flexibilities, for parts may be without mass; what can move as a whole is held by so much
     # of its mass.
-    held = np.pi**4 / length**4 * np.sum(weights * stiffness(u)) / whole if rigid else 0.0
+    holding = np.pi**4 / length**4 * np.sum(weights * stiffness(u)) / whole if rigid else 0.0
     stiff, heavy = (matrix[np.ix_(kept, kept)] for matrix in (k, m))
-    lower = np.linalg.cholesky(stiff + held * heavy)
+    lower = np.linalg.cholesky(stiff + holding * heavy)
     half = np.linalg.solve(lower, heavy)
     flexible, vectors = (
         found[..., ::-1] for found in np.linalg.eigh(np.linalg.solve(lower, half.T))
@@ -117,7 +123,7 @@ def first_mode(
     )
     bound = None
     if not rigid:
-        rest = np.sum(weights * mass(u) * _sag(stiffness, length, edges, u, ends)) - np.sum(
+        rest = np.sum(weights * mass(u) * _sag(stiffness, length, edges, u, held)) - np.sum(
             flexible[1:]
         )
         bound = float(min(1.0 / np.sqrt(rest), np.sqrt(most)))
@@ -125,63 +131,42 @@ def first_mode(
 
 
 def _sag(
-    stiffness: Callable[[Array], Array], length: float, edges: Array, u: Array, ends: Ends
+    stiffness: Callable[[Array], Array],
+    length: float,
+    edges: Array,
+    u: Array,
+    held: npt.NDArray[np.bool_],
 ) -> Array:
-    """The deflection at ratios by a unit force there, by the force method: the base clamped, or for
-    a pin at it the beam turned.
+    """The deflection at ratios by a unit force there: the least energy of all bending moments that
+    the force and the ends leave.
+
+    At a ratio x moments over the length are max(x - u, 0) + a + b u. An end that does not hold its
+    slope bears no moment, one that does not hold its place no force.
     """
-    if ends[0] in ("free", "guided") or ends == ("pinned", "clamped"):
-        turned = _sag(
-            lambda v: stiffness(1.0 - v),
-            length,
-            (1.0 - edges)[::-1],
-            (1.0 - u)[::-1, ::-1],
-            (ends[1], ends[0]),
-        )
-        return turned[::-1, ::-1]
-    flat = u.ravel()
-    sums = _moments(stiffness, length, edges, np.append(flat, 1.0))
+    x = u.ravel()
+    sums = _moments(stiffness, edges, np.append(x, 1.0))
     here, whole = sums[:, :-1], sums[:, -1]
-    x = length * flat
-    if ends[0] == "pinned":
-        # Of a beam on two pins the moment is (l - x) s/l before the force, and x (l - s)/l beyond
-        # it.
-        beyond = whole[:, None] - here
-        ramp = length**2 * beyond[0] - 2 * length * beyond[1] + beyond[2]
-        if ends[1] == "pinned":
-            return np.asarray(
-                ((length - x) / length) ** 2 * here[2] + (x / length) ** 2 * ramp
-            ).reshape(u.shape)
-        # And where the tip is guided: s before the force, x beyond it.
-        return np.asarray(here[2] + x**2 * beyond[0]).reshape(u.shape)
-    clamped = x**2 * here[0] - 2 * x * here[1] + here[2]
-    tip_force = length * x * here[0] - (length + x) * here[1] + here[2]
-    tip_couple = x * here[0] - here[1]
-    at_tip = np.array(
-        [
-            [length**2 * whole[0] - 2 * length * whole[1] + whole[2], length * whole[0] - whole[1]],
-            [length * whole[0] - whole[1], whole[0]],
-        ]
-    )
-    held = {"free": [], "pinned": [0], "clamped": [0, 1], "guided": [1]}[ends[1]]
-    if held:
-        loads = np.stack([tip_force, tip_couple])[held]
-        clamped = clamped - np.einsum(
-            "in,in->n", loads, np.linalg.solve(at_tip[np.ix_(held, held)], loads)
-        )
-    return np.asarray(clamped).reshape(u.shape)
+    bears_none = ~held[:, ::-1].ravel()
+    lines = _LINES[bears_none]
+    nothing = np.zeros_like(x)
+    needed = np.stack([-x, nothing + 1.0, nothing, nothing])[bears_none]
+    energy = np.array([whole[:2], whole[1:]])
+    by_force = x * here[:2] - here[1:]
+    matrix = np.block([[energy, lines.T], [lines, np.zeros((len(lines), len(lines)))]])
+    line = np.linalg.solve(matrix, np.concatenate([-by_force, needed]))[:2]
+    own = x**2 * here[0] - 2 * x * here[1] + here[2]
+    found = own + np.sum(line * (2 * by_force + energy @ line), axis=0)
+    return np.asarray(length**3 * found).reshape(u.shape)
 
 
-def _moments(
-    stiffness: Callable[[Array], Array], length: float, edges: Array, ratios: Array
-) -> Array:
-    """The integrals from the base to ratios of s^k/EI ds, k = 0, 1, 2: (3, n)."""
+def _moments(stiffness: Callable[[Array], Array], edges: Array, ratios: Array) -> Array:
+    """The integrals from the base to ratios of u^k/EI du, k = 0, 1, 2: (3, n)."""
     x, w = np.polynomial.legendre.leggauss(2 * _POINTS)
 
     def between(a: Array, b: Array) -> Array:
         v = a[:, None] + (b - a)[:, None] * (x + 1) / 2
-        flow = length * (b - a)[:, None] * w / 2 / stiffness(v)
-        return np.stack([np.sum(flow * (length * v) ** k, axis=1) for k in range(3)])
+        flow = (b - a)[:, None] * w / 2 / stiffness(v)
+        return np.stack([np.sum(flow * v**k, axis=1) for k in range(3)])
 
     whole = np.concatenate(
         [np.zeros((3, 1)), np.cumsum(between(edges[:-1], edges[1:]), axis=1)], axis=1

@@ -31,6 +31,7 @@ _LEAST = 1e3
 _NOTHING = 1e-300
 """Amplitude [Pa] in the place of none."""
 
+
 @dataclass(frozen=True)
 class Criterion:
     """Treatment of a mean stress: ``strength`` is the material's number for a mean stress alone;
