@@ -4,34 +4,15 @@ they are of has under /.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-
 import h5py
-import numpy as np
 
 from ...base.arrays import Array
 from ...base.quantities import Output
 from ...model.wanted_names import SENSITIVITY
-from ..derivatives import Derivatives, derivatives
+from ..derivatives import Derivatives
 from ..histories import Histories
-from ..solution import Solution
-from .dataset_words import place_of, say, unlike, without_scale
-from .scales import Scales
+from .dataset_words import place_of
 from .untrusted import numbers
-
-
-def add_slopes(
-    file: h5py.File,
-    scales: Scales,
-    solution: Solution,
-    create: Callable[[str, tuple[int, ...]], h5py.Dataset],
-) -> None:
-    """Write all; ``create`` makes an empty dataset at a place, of a shape."""
-    for found in derivatives(solution, solution.sensitivities):
-        dataset = create(place_of(found.name), found.values.shape)
-        dataset[...] = found.values
-        say(dataset, found.unit, found.attributes)
-        scales.attach(dataset, found.output.quantity.axes)
 
 
 def slopes_of(file: h5py.File, histories: Histories) -> Derivatives:
@@ -59,18 +40,3 @@ def slopes_of(file: h5py.File, histories: Histories) -> Derivatives:
     return Derivatives(
         {name: found[name] for name in histories.description.parameters if name in found}
     )
-
-
-def check_slopes(file: h5py.File, solution: Solution) -> Iterator[str]:
-    """Faults of a file's sensitivities: they must be finite where their quantities are, in their
-    units, on their axes.
-    """
-    for found in derivatives(solution, solution.sensitivities):
-        place, rests = (
-            place_of(found.name),
-            solution.resting.reshape(-1, *[1] * (found.values.ndim - 1)),
-        )
-        if not (np.isfinite(found.values) | (rests & np.isnan(found.values))).all():
-            yield f"{place}: values that are not finite"
-        yield from unlike(file[place], found.unit, found.attributes)
-        yield from without_scale(file[place], found.output.quantity.axes)

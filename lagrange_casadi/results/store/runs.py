@@ -10,9 +10,8 @@ from __future__ import annotations
 import math
 import os
 import shutil
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
 import h5py
@@ -24,7 +23,7 @@ from ...base.files import check_writable, is_hdf5, settled, writing
 from ...base.interrupts import uninterrupted
 from ...base.quantities import Output
 from ...base.tables import ANGLE, LENGTH
-from ...engine.instants.beyond_equilibrium import ENDS, Holding, held_outputs
+from ...engine.instants.beyond_equilibrium import ENDS, Holding
 from ...errors import PathError, StoreError, UnknownNameError, one_line
 from ...model.description import Description
 from ...model.even_points import are_even
@@ -41,13 +40,13 @@ from .attributes import (
     figures_of,
     read_attributes,
 )
-from .dataset_words import place_of, say, unlike, unlike_conventions, without_scale
-from .kept_slopes import add_slopes, check_slopes, slopes_of
+from .dataset_words import place_of, unlike_conventions
+from .datasets import AXES, OVER, Stored, datasets_of
+from .kept_slopes import slopes_of
 from .opening import KINDS, RUN, kind_of, opened_file, sealed
-from .scales import LARGE, Scales
+from .scales import Scales
 from .untrusted import (
     check_links,
-    check_numbers,
     number,
     numbers,
     parsed,
@@ -55,17 +54,6 @@ from .untrusted import (
     shown,
 )
 
-_CHUNK_BYTES = 1 << 20
-_BLOCK_BYTES = 1 << 23
-_AXES = {
-    "t": ("s", {"long_name": "time"}),
-    "xi": ("1", {"long_name": "place along a link, ratio xi/l"}),
-}
-_OVER = "over"
-_BESIDE = ("units", "error_estimate", "DIMENSION_LIST")
-"""Attributes that a dataset may have beside those of what it holds."""
-
-_GRID_TOLERANCE = 1e-12
 _OVER_TOLERANCE = {"double": 1e-12, "single": 1e-6}
 """Largest distance of a coordinate from that by which the instants were defined, relative to the
 largest.
@@ -107,14 +95,20 @@ def save(
     check_target(target)
     with reported_as("cannot be written", target):
         attributes = attributes_to_write(solution, figures, links)
-    _require_space(solution, target, len(links))
+    datasets = [*datasets_of(solution, links)]
+    _require_space(datasets, target)
     with (
         writing(target, hdf5=True) as bytes_,
         uninterrupted() as breathe,
         sealed(bytes_, RUN) as file,
     ):
         try:
-            _write(file, solution, links, breathe)
+            scales = Scales(file)
+            for dataset in datasets:
+                dataset.write(file, scales, breathe)
+            scales.finish()
+            if solution.over:
+                file.attrs["coordinates"] = OVER
             file.attrs.update(attributes)
         except RuntimeError as error:  # of HDF5
             raise StoreError(f"cannot write {target}: {one_line(error)}") from error
@@ -161,15 +155,9 @@ def _with_grids(solution: Solution, asked: bool | Sequence[str] | None) -> list[
     return [link for link in links if link in asked]
 
 
-def _require_space(solution: Solution, target: Path, grids: int) -> None:
-    """Raise :class:`StoreError` where the disk has less room than the grids take."""
-    size = (
-        8
-        * solution.t.size
-        * (len(solution.series) + len(solution.table.forces) * solution.xi.size * grids)
-    ) + sum(
-        values.nbytes for found in solution.sensitivities.by.values() for values in found.values()
-    )
+def _require_space(datasets: Iterable[Stored], target: Path) -> None:
+    """Raise :class:`StoreError` where the disk has less room than the datasets take."""
+    size = 8 * sum(math.prod(dataset.values.shape) for dataset in datasets)
     try:
         free = shutil.disk_usage(target.parent).free
     except OSError:
@@ -240,29 +228,19 @@ def check(path: str | os.PathLike[str]) -> list[str]:
     """
     with opened_file(path, RUN) as file:
         solution = _read(file)
-        certificate = (Output("certificate", "", name) for name in solution.certificate)
-        grids = (
-            parsed(file.attrs["grids"], tuple[str, ...], "grids") if "grids" in file.attrs else None
-        )
-        quantities = (
-            output
-            for output in solution.quantities()
-            if output.group != "section" or grids is None or output.part in grids
-        )
-        outputs = dict.fromkeys(
-            [*quantities, *solution.outputs, *held_outputs(solution.holding), *certificate]
-        )
+        links = solution.links_with_sections
+        if "grids" in file.attrs:
+            kept = parsed(file.attrs["grids"], tuple[str, ...], "grids")
+            links = tuple(link for link in links if link in kept)
+        datasets = [*datasets_of(solution, links)]
         listed = map(Output.of, parsed(file.attrs["outputs"], tuple[str, ...]))
-        found = [f"{place_of(output)}: missing" for output in listed if output not in outputs]
+        places = {dataset.place for dataset in datasets}
+        found = [f"{place}: missing" for place in map(place_of, listed) if place not in places]
         found += check_attributes(file.attrs, solution.description)
         if not found:
             found += unlike_conventions(file, solution.table)
-            found += _check_axes(file, solution)
             found += _check_drive_axis(solution)
-            found += [
-                finding for output in outputs for finding in _check_dataset(file, solution, output)
-            ]
-            found += check_slopes(file, solution)
+            found += [fault for dataset in datasets for fault in dataset.faults(file, solution)]
             found += _check_certificate(file, solution)
     return found
 
@@ -285,41 +263,15 @@ def _check_certificate(file: h5py.File, solution: Solution) -> Iterator[str]:
         yield "certificate: the verdict or its tolerance is not what follows from the residuals"
 
 
-def _check_dataset(file: h5py.File, solution: Solution, output: Output) -> Iterator[str]:
-    place, quantity, name = place_of(output), output.meant(solution.table), output
-    dataset = file[place]
-    check_numbers(
-        dataset, [{"t": solution.t.size, "xi": solution.xi.size}[axis] for axis in quantity.axes]
-    )
-    gap, finite = _read_through(dataset, solution, name)
-    if solution.determined(name):
-        if not finite:
-            yield f"{place}: values that are not finite"
-        if quantity.axes == ("t", "xi") and gap > _GRID_TOLERANCE * abs(solution.peak(name).value):
-            yield f"{place}: differs from its law by {gap:.3g} {solution.unit(name)}"
-    yield from unlike(dataset, solution.unit(name), quantity.attributes)
-    if strange := dataset.attrs.keys() - {*quantity.attributes, *_BESIDE}:
-        yield f"{place}: {min(strange)} is not in the schema"
-    yield from without_scale(dataset, quantity.axes)
-
-
-def _check_axes(file: h5py.File, solution: Solution) -> Iterator[str]:
-    """Times and ratios: finite, and said to be these."""
-    for axis, values in (("t", solution.t), ("xi", solution.xi)):
-        if not np.isfinite(values).all():
-            yield f"{axis}: values that are not finite"
-        yield from unlike(file[axis], *_AXES[axis])
-
-
 def _check_drive_axis(solution: Solution) -> Iterator[str]:
-    """The coordinate by which instants were asked for: finite, in equal steps, and that of the
+    """The coordinate by which instants were asked for: in equal steps, and that of the
     motion, where this is there.
     """
     if solution.over is None:
         return
     values = solution.over.values
-    if not np.isfinite(values).all() or not are_even(values):
-        yield f"{_OVER}: not in equal steps"
+    if not are_even(values):
+        yield f"{OVER}: not in equal steps"
     joint = solution.over.joint
     motion, rate = (
         solution.outputs.get(Output("motion", joint, member)) for member in ("", "rate")
@@ -329,113 +281,14 @@ def _check_drive_axis(solution: Solution) -> Iterator[str]:
         # Times are doubles, and a fast drive far from zero moves on between two of them.
         allowed += 4.0 * float(np.max(np.abs(rate)) * np.spacing(np.abs(solution.t).max()))
     if motion is not None and not np.abs(motion - values).max() <= allowed:
-        yield f"{_OVER}: not the coordinate of joint '{joint}'"
-
-
-def _read_through(dataset: h5py.Dataset, solution: Solution, output: Output) -> tuple[float, bool]:
-    """Distance of a grid from its law, and whether all values are finite, block by block."""
-    gap, finite = 0.0, True
-    height = max(1, _BLOCK_BYTES // (8 * math.prod(dataset.shape[1:])))
-    law = solution.section(output.part).law if output.group == "section" else None
-    basis = law.basis(solution.xi) if law else None
-    rests = output.group not in ("motion", "pose", "certificate") and bool(solution.resting.any())
-    for start in range(0, dataset.shape[0], height):
-        block = slice(start, start + height)
-        stored = dataset[block]
-        finite = finite and bool((np.isfinite(stored) | (rests & np.isnan(stored))).all())
-        if law and basis:
-            gap = float(
-                np.fmax(
-                    gap,
-                    np.fmax.reduce(
-                        np.abs(stored - law.during(block).on_grid(output.member, basis)), axis=None
-                    ),
-                )
-            )
-    return gap, finite
-
-
-def _write(
-    file: h5py.File,
-    solution: Solution,
-    grids: Sequence[str],
-    breathe: Callable[[], None],
-) -> None:
-    for axis, values in (("t", solution.t), ("xi", solution.xi)):
-        scale = file.create_dataset(axis, data=values, fletcher32=True, fillvalue=np.nan, **LARGE)
-        say(scale, *_AXES[axis])
-        scale.make_scale(axis)
-    scales = Scales(file)
-    if solution.over:
-        _add_drive_axis(file, scales, solution.over)
-    residuals = {Output("certificate", "", name): x for name, x in solution.certificate.items()}
-    every = {**solution.outputs, **held_outputs(solution.holding), **residuals}
-    for output, values in every.items():
-        breathe()
-        _create(file, scales, solution, output, values.shape)[...] = values
-    for link in grids:
-        for force in solution.table.forces:
-            _add_grid(file, scales, solution, Output("section", link, force), breathe)
-    breathe()
-    add_slopes(file, scales, solution, partial(_empty, file))
-    scales.finish()
-
-
-def _add_drive_axis(file: h5py.File, scales: Scales, over: DriveAxis) -> None:
-    """The coordinate by which instants were asked for, beside their times: an auxiliary coordinate,
-    as CF calls it.
-    """
-    dataset = file.create_dataset(
-        _OVER, data=over.values, fletcher32=True, fillvalue=np.nan, **LARGE
-    )
-    say(dataset, over.unit, {"long_name": over.long_name, "joint": over.joint})
-    scales.attach(dataset, ("t",))
-    file.attrs["coordinates"] = _OVER
-
-
-def _add_grid(
-    file: h5py.File, scales: Scales, solution: Solution, output: Output, breathe: Callable[[], None]
-) -> None:
-    """A grid block by block: it need not fit into memory."""
-    law, xi = solution.section(output.part).law, solution.xi
-    dataset = _create(file, scales, solution, output, (solution.t.size, xi.size))
-    height, width = dataset.chunks
-    height *= max(1, _BLOCK_BYTES // (8 * height * width))
-    for left in range(0, xi.size, width):
-        basis = law.basis(xi[left : left + width])
-        for start in range(0, solution.t.size, height):
-            breathe()
-            block = law.during(slice(start, start + height))
-            dataset[start : start + height, left : left + width] = block.on_grid(
-                output.member, basis
-            )
-
-
-def _empty(file: h5py.File, place: str, shape: tuple[int, ...]) -> h5py.Dataset:
-    width = tuple(min(size, _CHUNK_BYTES // 8) for size in shape[1:])
-    chunks = (min(shape[0], max(1, _CHUNK_BYTES // (8 * math.prod(width)))), *width)
-    return file.create_dataset(
-        place, shape, np.float64, chunks=chunks, fletcher32=True, fillvalue=np.nan
-    )
-
-
-def _create(
-    file: h5py.File, scales: Scales, solution: Solution, output: Output, shape: tuple[int, ...]
-) -> h5py.Dataset:
-    quantity, name = output.meant(solution.table), str(output)
-    dataset = _empty(file, place_of(output), shape)
-    say(dataset, solution.unit(output), quantity.attributes)
-    if name in solution.errors:
-        dataset.attrs["error_estimate"] = solution.errors[name]
-    scales.attach(dataset, quantity.axes)
-    return dataset
+        yield f"{OVER}: not the coordinate of joint '{joint}'"
 
 
 def _read(file: h5py.File) -> Solution:
     check_links(file)
     stated, evidence = read_attributes(file.attrs)
     description, errors, reasons = stated["description"], evidence["errors"], evidence["holding"]
-    t, xi = (numbers(file[axis]) for axis in _AXES)
+    t, xi = (numbers(file[axis]) for axis in AXES)
     if t.ndim != 1 or xi.ndim != 1 or not t.size or not xi.size:
         raise ValueError(f"t and xi have the shapes {t.shape} and {xi.shape}")
     outputs: dict[Output, Array] = {}
@@ -443,7 +296,7 @@ def _read(file: h5py.File) -> Solution:
     def visit(place: str, item: h5py.Group | h5py.Dataset) -> None:
         if (
             isinstance(item, h5py.Dataset)
-            and place not in (*_AXES, _OVER)
+            and place not in (*AXES, OVER)
             and not place.startswith(f"{SENSITIVITY}/")
         ):
             output = Output.of(place.replace("/", ":"))
@@ -457,7 +310,7 @@ def _read(file: h5py.File) -> Solution:
         t=t,
         xi=xi,
         outputs=in_order(outputs, description),
-        over=drive_axis(file[_OVER], t.shape, description) if _OVER in file else None,
+        over=drive_axis(file[OVER], t.shape, description) if OVER in file else None,
         **stated,
     )
     for link in histories.links_with_sections:

@@ -184,14 +184,9 @@ def numbers(dataset: h5py.Dataset, shape: tuple[int, ...] | None = None) -> Arra
 
     Raises ``ValueError`` for what has others.
     """
-    check_numbers(dataset, shape)
-    return np.asarray(dataset[()], np.float64)
-
-
-def check_numbers(dataset: h5py.Dataset, shape: Sequence[int] | None) -> None:
-    """Raise ``ValueError`` for a dataset that has no numbers, or another shape."""
     check_dataset(dataset, shape)
     check_chunks(dataset)
+    return np.asarray(dataset[()], np.float64)
 
 
 def check_chunks(dataset: h5py.Dataset) -> None:

@@ -384,4 +384,4 @@ def _bound(swing: Callable[[Array, Array], Operand], stresses: Array) -> Array:
         swing(np.sqrt((high[0] - first) ** 2 + ranges) / 2, np.sqrt(larger(mean, 0.0) ** 2 + sizes))
         for first, mean in ((low[0], (low[0] + high[0]) / 2), (high[0], high[0]))
     ]
-    return np.maximum(*swings)
+    return np.asarray(np.maximum(*swings))
