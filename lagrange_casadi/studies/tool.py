@@ -121,15 +121,14 @@ def tool_deflection(
     for k, name in enumerate(pushes):
         unit = sections({name: push})
         for link, beam in beams.items():
-            at = nodes(beam.member)
-            section = beam.member.at(at.u)
+            u, weights = nodes(beam.member)
+            section = beam.member.at(u)
             more = (
-                np.stack([unit.section(link).law.at(force, at.u) for force in beam.member.forces])
+                np.stack([unit.section(link).law.at(force, u) for force in beam.member.forces])
                 - section
             )
             by_link[link][:, k] = (
-                np.sum(beam.strains(section, at.index, at.u) * more * at.weights, axis=(0, 2))
-                / push
+                np.sum(beam.strains(section, u) * more * weights, axis=(0, 2)) / push
             )
     return ToolDeflection(plain.t, by_link)
 

@@ -22,9 +22,9 @@ def work(first, second, links):
     total, size = 0.0, 0.0
     for link in links:
         beam = Compliance.of(Member.of(first, link, spun=True), "test")
-        at = nodes(beam.member)
-        forces = [Member.of(one, link, spun=True).at(at.u) for one in (first, second)]
-        parts = [force * beam.strains(forces[1], at.index, at.u) * at.weights for force in forces]
+        u, weights = nodes(beam.member)
+        forces = [Member.of(one, link, spun=True).at(u) for one in (first, second)]
+        parts = [force * beam.strains(forces[1], u) * weights for force in forces]
         total = total + parts[0].sum(axis=(0, 2))
         size = size + np.abs(parts[1]).sum(axis=(0, 2))
     return total, size

@@ -77,6 +77,7 @@ def first_mode(
     low, width = edges[:-1, None], np.diff(edges)[:, None]
     u, weights = low + width * s, length * width * w / 2
     h = length * width
+    rigidity, masses = weights * stiffness(u), weights * mass(u)
     # Hermite's cubics and their curvatures, in deflection and slope at both ends of a part.
     shape = np.stack(
         [1 - 3 * s**2 + 2 * s**3, s - 2 * s**2 + s**3, 3 * s**2 - 2 * s**3, -(s**2) + s**3]
@@ -88,10 +89,7 @@ def first_mode(
     moved = shape[:, None] * units[:, :, None]
     k, m = np.zeros((size, size)), np.zeros((size, size))
     at = 2 * np.arange(parts)[:, None] + np.arange(4)
-    for into, shapes, factor in (
-        (k, curved, weights * stiffness(u)),
-        (m, moved, weights * mass(u)),
-    ):
+    for into, shapes, factor in ((k, curved, rigidity), (m, moved, masses)):
         np.add.at(
             into,
             (at[:, :, None], at[:, None, :]),
@@ -101,12 +99,12 @@ def first_mode(
     kept = np.ones(size, bool)
     kept[[0, 1, -2, -1]] = ~held.ravel()
     rigid = 2 - int(np.linalg.matrix_rank(_LINES * held.reshape(4, 1)))
-    whole = np.sum(weights * mass(u))
+    whole = np.sum(masses)
     if whole == 0.0:
         return Mode(np.inf, None if rigid else np.inf, u.ravel(), weights.ravel(), np.zeros(u.size))
     # By flexibilities, for parts may be without mass; what can move as a whole is held by so much
     # of its mass.
-    holding = np.pi**4 / length**4 * np.sum(weights * stiffness(u)) / whole if rigid else 0.0
+    holding = np.pi**4 / length**4 * np.sum(rigidity) / whole if rigid else 0.0
     stiff, heavy = (matrix[np.ix_(kept, kept)] for matrix in (k, m))
     lower = np.linalg.cholesky(stiff + holding * heavy)
     half = np.linalg.solve(lower, heavy)
@@ -118,14 +116,12 @@ def first_mode(
     curvature = np.einsum("pi,ipn->pn", mode[at], curved)
     # Rayleigh's quotient of any shape is above; the square of the matrices is off by what the
     # highest modes are rounded by.
-    most = np.sum(weights * stiffness(u) * curvature**2) / np.sum(
-        weights * mass(u) * np.einsum("pi,ipn->pn", mode[at], moved) ** 2
+    most = np.sum(rigidity * curvature**2) / np.sum(
+        masses * np.einsum("pi,ipn->pn", mode[at], moved) ** 2
     )
     bound = None
     if not rigid:
-        rest = np.sum(weights * mass(u) * _sag(stiffness, length, edges, u, held)) - np.sum(
-            flexible[1:]
-        )
+        rest = np.sum(masses * _sag(stiffness, length, edges, u, held)) - np.sum(flexible[1:])
         bound = float(min(1.0 / np.sqrt(rest), np.sqrt(most)))
     return Mode(float(np.sqrt(most)), bound, u.ravel(), weights.ravel(), curvature.ravel())
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from ...base.arrays import Array
 from ...base.brief import Brief
@@ -31,36 +30,22 @@ class Compliance(Brief):
         """
         return cls(member, moduli_of(member.beam, what, space=member.space))
 
-    def strains(self, forces: Array, index: npt.NDArray[np.intp], u: Array) -> Array:
-        """The strains of section forces (forces, t, n) at ratios (t, n) in cells ``index`` (t, n):
-        in the order of the forces.
+    def strains(self, forces: Array, u: Array) -> Array:
+        """The strains of section forces (forces, t, n) at ratios (t, n): in the order of the
+        forces.
         """
         found = np.empty_like(forces)
-        for cell in range(len(self.member.beam.course.cells)):
-            here = index == cell
-            if here.any():
-                forces_here = dict(zip(self.member.forces, forces[:, here], strict=True))
-                each = strains(
-                    self.member.cross.properties(cell, u[here]), forces_here, self.moduli
-                )
-                for k, name in enumerate(self.member.forces):
-                    found[k, here] = each[name]
+        for here, properties in self.member.properties(u):
+            forces_here = dict(zip(self.member.forces, forces[:, here], strict=True))
+            each = strains(properties, forces_here, self.moduli)
+            for k, name in enumerate(self.member.forces):
+                found[k, here] = each[name]
         return found
 
 
-@dataclass(frozen=True, eq=False)
-class Nodes:
-    """Gauss's nodes along a link at every instant: ratios ``u``, weights [m], and the cell of the
-    cross-section, each (t, n).
-    """
-
-    u: Array
-    weights: Array
-    index: npt.NDArray[np.intp]
-
-
-def nodes(member: Member) -> Nodes:
-    """Nodes that sum the product of a link's section forces with linear ones exactly.
+def nodes(member: Member) -> tuple[Array, Array]:
+    """Gauss's nodes along a link at every instant, ratios and weights [m], (t, n), that sum the
+    product of the link's section forces with linear ones exactly.
 
     Of a cross-section that changes it is summed as closely as polynomials give its properties, to
     1e-13.
@@ -68,5 +53,4 @@ def nodes(member: Member) -> Nodes:
     x, w = np.polynomial.legendre.leggauss((member.strain_degree + 1) // 2 + 1)
     low, width = member.edges[:, :-1, None], np.diff(member.edges, axis=1)[:, :, None]
     u = (low + width * (x + 1.0) / 2.0).reshape(member.t.size, -1)
-    weights = (member.law.length * width * w / 2.0).reshape(member.t.size, -1)
-    return Nodes(u, weights, member.index_at(u))
+    return u, (member.law.length * width * w / 2.0).reshape(member.t.size, -1)

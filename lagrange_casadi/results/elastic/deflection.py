@@ -158,7 +158,7 @@ class Deflection:
         member = self.member
         low, width = member.edges[:, :-1, None], np.diff(member.edges, axis=1)[:, :, None]
         u = (low + width * nodes(member.strain_degree)).reshape(member.t.size, -1)
-        strains = self.compliance.strains(member.at(u), member.index_at(u), u)
+        strains = self.compliance.strains(member.at(u), u)
         strains = strains.reshape(len(member.forces), *width.shape[:2], -1)
         ordinates = interpolated(np.moveaxis(strains, 3, 0))
         return {name: ordinates[:, k] for k, name in enumerate(member.forces)}

@@ -12,7 +12,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -122,21 +121,17 @@ def vibration(solution: Histories, link: str, ends: Ends | None = None) -> Vibra
     compliance = Compliance.of(Member.of(solution, link), f"vibration of '{link}'")
     held = ends or ends_of(solution.description, link)
     body = solution.description.bodies[link]
-    planes = [
-        _Plane.of(compliance, body, held, k) for k in ((0, 1) if compliance.member.space else (0,))
-    ]
-    softest = min(planes, key=lambda plane: plane.mode.upper)
-    lower = None if softest.mode.lower is None else softest.mode.lower / math.tau
-    found = Vibration(link, held, softest.mode.upper / math.tau, lower)
-    forces, t = [plane.force() for plane in planes], solution.t
+    many = 2 if compliance.member.space else 1
+    planes = [_plane(compliance, body, held, number) for number in range(many)]
+    modes, forces = zip(*planes, strict=True)
+    softest, t = min(modes, key=lambda mode: mode.upper), solution.t
+    lower = None if softest.lower is None else softest.lower / math.tau
+    found = Vibration(link, held, softest.upper / math.tau, lower)
     whole = float(np.max(np.abs(forces)))
     if reason := _no_cycle(t, forces, whole):
         return replace(found, reason=reason)
     cycle = 1.0 / float(t[-1] - t[0])
-    pairs = zip(forces, planes, strict=True)
-    swung = [
-        _swung(force[:-1], cycle, plane.mode.upper / math.tau, whole) for force, plane in pairs
-    ]
+    swung = [_swung(force[:-1], cycle, mode.upper / math.tau, whole) for mode, force in planes]
     excess, harmonic, shares = max(swung, key=lambda one: one[0])
     return replace(found, cycle=cycle, harmonic=harmonic, excess=excess, harmonics=shares)
 
@@ -152,59 +147,42 @@ def swinging(solution: Histories) -> Iterator[str]:
                 yield f"link '{output.part}': {found.words}"
 
 
-@dataclass(frozen=True, eq=False)
-class _Plane:
-    """A plane of bending: the first mode in it, and the moments (t, n) at the mode's places."""
+def _plane(
+    compliance: Compliance, body: BodyNumbers, ends: Ends, number: int
+) -> tuple[Mode, Array]:
+    """The first mode in a plane of bending; and its load, (t,): the sum of bending moments times
+    curvature, as large as moments are.
+    """
+    member, (length, density) = compliance.member, body.length_and_density
+    breaks = tuple(sorted({*member.beam.course.breaks, *density.breaks}))
+    middle = _stiffness(compliance, np.array([0.5]))[..., 0]
+    axis = np.linalg.eigh(middle)[1][:, number]
 
-    mode: Mode
-    moments: Array
+    def stiffness(u: Array) -> Array:
+        found = _stiffness(compliance, u.ravel())
+        return np.asarray(np.einsum("i,ijn,j->n", axis, found, axis)).reshape(u.shape)
 
-    @classmethod
-    def of(cls, compliance: Compliance, body: BodyNumbers, ends: Ends, number: int) -> _Plane:
-        member, (length, density) = compliance.member, body.length_and_density
-        breaks = tuple(sorted({*member.beam.course.breaks, *density.breaks}))
-        axis = (
-            np.linalg.eigh(_stiffness(compliance, np.array([0.5]))[..., 0])[1][:, number]
-            if member.space
-            else np.array([1.0])
-        )
-
-        def stiffness(u: Array) -> Array:
-            found = _stiffness(compliance, u.ravel())
-            return np.asarray(np.einsum("i,ijn,j->n", axis, found, axis)).reshape(u.shape)
-
-        mode = first_mode(stiffness, lambda u: density.at(u) / length, length, breaks, ends)
-        u = np.broadcast_to(mode.u, (member.t.size, mode.u.size))
-        names = ("bending_y", "bending_z") if member.space else ("bending",)
-        moments = sum(part * member.law.at(name, u) for part, name in zip(axis, names, strict=True))
-        return cls(mode, np.asarray(moments))
-
-    def force(self) -> Array:
-        """Modal load, (t,): the sum of M times curvature, as large as moments are."""
-        return np.asarray(self.moments @ (self.mode.weights * self.mode.curvature))
+    mode = first_mode(stiffness, lambda u: density.at(u) / length, length, breaks, ends)
+    u = np.broadcast_to(mode.u, (member.t.size, mode.u.size))
+    bending = member.forces[-axis.size :]
+    moments = sum(part * member.law.at(name, u) for part, name in zip(axis, bending, strict=True))
+    return mode, np.asarray(moments @ (mode.weights * mode.curvature))
 
 
 def _stiffness(compliance: Compliance, u: Array) -> Array:
     """Bending stiffness at ratios (n,): in the plane (1, 1, n), in space of the curvatures about y
     and z, (2, 2, n).
     """
-    member = compliance.member
-    index = member.index_at(u)
-    found = np.empty((2 if member.space else 1,) * 2 + u.shape)
-    for cell in range(len(member.beam.course.cells)):
-        here = index == cell
-        if here.any():
-            p = member.cross.properties(cell, u[here])
-            each: Any = (
-                [[p.iy, -p.iyz], [-p.iyz, p.iz]] if member.space else [[p.iz - p.iyz**2 / p.iy]]
-            )
-            for i, row in enumerate(each):
-                for j, value in enumerate(row):
-                    found[i, j, here] = compliance.moduli[0] * value
-    return found
+    many = 2 if compliance.member.space else 1
+    found = np.empty((many**2, u.size))
+    for here, p in compliance.member.properties(u):
+        plane = (p.iz - p.iyz**2 / p.iy,)
+        for k, value in enumerate((p.iy, -p.iyz, -p.iyz, p.iz) if many > 1 else plane):
+            found[k, here] = compliance.moduli[0] * value
+    return found.reshape(many, many, -1)
 
 
-def _no_cycle(t: Array, forces: list[Array], whole: float) -> str:
+def _no_cycle(t: Array, forces: Sequence[Array], whole: float) -> str:
     """Reason why there are no harmonics; empty if there are."""
     if t.size < _FEWEST:
         return "harmonics need more instants"

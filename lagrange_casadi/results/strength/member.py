@@ -21,6 +21,7 @@ from ...engine.section_stress import FORCES, CrossSections
 from ...engine.two_force_links import unaimed
 from ...errors import DeclarationError
 from ...model.beams.beam import Beam
+from ...model.beams.properties import Properties
 from ..histories import Histories
 from ..pieces import Pieces
 from ..section_laws import SectionLaw, law_of
@@ -256,10 +257,9 @@ class Member(Brief):
         """These forces as polynomials along the link."""
         return [self.law.pieces(force) for force in self.forces]
 
-    def at(self, u: Array, side: Side = "tip", scale: Array | None = None) -> Array:
-        """The section forces at ratios ``u`` (t, n), each times its ``scale``: (forces, t, n)."""
-        values = np.stack([self.law.at(force, u, side) for force in self.forces])
-        return values if scale is None else values * scale[:, None, None]
+    def at(self, u: Array, side: Side = "tip") -> Array:
+        """The section forces at ratios ``u`` (t, n): (forces, t, n)."""
+        return np.stack([self.law.at(force, u, side) for force in self.forces])
 
     def during(self, instants: slice | npt.NDArray[np.generic]) -> Member:
         """Member at some of the instants, a slice or their numbers."""
@@ -314,12 +314,14 @@ class Member(Brief):
         """The degree of polynomials that give strains between two edges."""
         return self.degree + max(cell.degree for cell in self.cells)
 
-    def index_at(self, u: Array) -> npt.NDArray[np.intp]:
-        """The numbers of the parts of the beam, between breaks of its cross-section, in which
-        ratios are.
+    def properties(self, u: Array) -> Iterator[tuple[npt.NDArray[np.bool_], Properties]]:
+        """The properties of cross-sections at ratios, of each part of the beam between breaks:
+        which ratios are in the part, as marks, and the properties at these.
         """
-        inner = np.array(self.beam.course.breaks[1:-1])
-        return np.searchsorted(inner, u, side="right")
+        index = np.searchsorted(np.array(self.beam.course.breaks[1:-1]), u, side="right")
+        for cell in np.unique(index).tolist():
+            here = index == cell
+            yield here, self.cross.properties(cell, u[here])
 
     def cell_at(self, u: float, side: Side) -> Cell:
         """The part in which a ratio is; at a border that on one of its sides."""

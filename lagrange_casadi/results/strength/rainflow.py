@@ -86,19 +86,15 @@ def counted(values: Array, *, repeating: bool) -> list[StressCycle]:
             before = abs(level[stack[-2]] - level[stack[-3]])
             if newest < before:
                 break
-            if len(stack) == 3 and not repeating:
-                cycle(stack[0], stack[1], 0.5)
-                del stack[0]
-            elif len(stack) == 3:
-                break
-            else:
+            if len(stack) > 3:
                 cycle(stack[-3], stack[-2], 1.0)
                 del stack[-3:-1]
-    if repeating:
-        # What is left goes from the largest value down to the smallest and back.
-        if len(stack) > 1:
-            cycle(stack[0], stack[1], 1.0)
-        return found
-    for first, last in itertools.pairwise(stack):
-        cycle(first, last, 0.5)
+            elif repeating:
+                break
+            else:
+                cycle(stack[0], stack[1], 0.5)
+                del stack[0]
+    # Of a repeated history there is left the way from the largest value to the smallest and back.
+    for first, last in itertools.pairwise(stack[:2] if repeating else stack):
+        cycle(first, last, 1.0 if repeating else 0.5)
     return found

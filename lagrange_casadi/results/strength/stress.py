@@ -107,17 +107,12 @@ class Stress:
         found = np.empty((self.member.t.size, u.size))
         for cell in self.member.cells:
             inside = np.flatnonzero((u >= cell.low) & ((u < cell.high) | (cell.high == 1.0)))
-            factors = cell.factors(u[inside])
-            for start in range(
-                0,
-                inside.size,
-                width := max(1, _BLOCK // (3 * len(cell.names) * self.member.t.size)),
-            ):
-                chosen = inside[start : start + width]
+            size = 3 * len(cell.names) * self.member.t.size * inside.size
+            for chosen in np.array_split(inside, 1 + size // _BLOCK):
                 forces = self.member.at(
                     np.broadcast_to(u[chosen], (self.member.t.size, chosen.size))
                 )
-                values = np.einsum("cfkn,ktn->cftn", factors[..., start : start + width], forces)
+                values = np.einsum("cfkn,ktn->cftn", cell.factors(u[chosen]), forces)
                 _, found[:, chosen] = _of_fibres(kind, values)
         return found
 
@@ -139,10 +134,10 @@ class Stress:
             Normal stress, and shear stress along y and z [Pa].
         """
         cell = self.member.cell_at(xi, side)
-        forces = self.member.at(np.full((self.member.t.size, 1), xi), side, self._scale(notch))
-        return np.asarray(
-            np.einsum("cfk,kt->cft", cell.factors(np.array([xi]))[..., 0], forces[..., 0])
-        )
+        forces = self.member.at(np.full((self.member.t.size, 1), xi), side)[..., 0]
+        scale = [concentration(notch, force) for force in self.member.forces]
+        factors = cell.factors(np.array([xi]))[..., 0] * scale
+        return np.asarray(np.einsum("cfk,kt->cft", factors, forces))
 
     def fibres(self, xi: Share, side: Side = "tip") -> tuple[str, ...]:
         """Return the names of the fibres at a ratio.
@@ -246,9 +241,6 @@ class Stress:
         best, value = _of_fibres(kind, np.concatenate(stresses, axis=1))
         fibres = np.array([*itertools.chain.from_iterable(names)], object)[best]
         return Largest(value, places[best], tuple(fibres.tolist()))
-
-    def _scale(self, notch: Notch | None) -> Array:
-        return np.array([concentration(notch, force) for force in self.member.forces])
 
     def _blocks(self) -> Iterator[Stress]:
         """The stresses over few instants after another."""
