@@ -13,7 +13,7 @@ import enum
 import itertools
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple, cast
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -25,7 +25,7 @@ from ...engine.sharpness import Kind, Watch
 from ..statistics import counted, shares
 from .ends import Ends, implicit_bends
 from .jacobian import SAME_PLACE
-from .slopes import Bends, Numbers, Slopes, unit_ways
+from .slopes import Bends, Numbers, Slopes
 
 AS_LARGE: dict[Precision, float] = {"double": 1e-9, "single": 1e-5}
 """Largest relative difference of two peaks that tie."""
@@ -150,21 +150,10 @@ class MovingPeaks:
 
         ``nothing`` (q,) marks the peaks that are zero within rounding: with them nothing moves.
         """
-        value, t, _ = peaks
-        sound = np.isfinite(value) & np.isfinite(t)
-        if sound.all():
-            return self._gradient(chosen, peaks, nothing)
-        size = (t.size, self.p.size)
-        kinds, switch = np.full(t.size, _UNKNOWN, np.int8), np.full(t.size, -1, np.intc)
-        found = PeakSlopes(np.full(size, np.nan), kinds, np.zeros(size), switch, t.copy())
-        some = (value[sound], t[sound], peaks[2][sound])
-        inner = self._gradient(chosen[sound], some, nothing[sound])
-        for array, part in zip(found, inner, strict=True):
-            cast(Any, array)[sound] = part
-        return found
-
-    def _gradient(self, chosen: Numbers, peaks: Peaks, nothing: Flags) -> PeakSlopes:
         value, t, xi = peaks
+        unknown = ~(np.isfinite(value) & np.isfinite(t))
+        t = np.where(unknown, self.instants[0], t)
+        peaks = value, t, xi
         at_first, at_last = t - self.instants[0] <= self.near, self.instants[-1] - t <= self.near
         going = at_first | at_last
         here, lacking, z, off = self._found(chosen, peaks, going | nothing)
@@ -179,10 +168,11 @@ class MovingPeaks:
         moved[at_last], moved[at_first] = self.ends.slopes[::-1]
         if steep.any():
             moved[steep], switch[steep] = self._switching(t[steep], z[steep])
-            unknown = np.isnan(moved[steep]).any(axis=1)
-            kinds[steep] = np.where(unknown, _UNKNOWN, _SWITCH)
+            kinds[steep] = _SWITCH
+            unknown |= steep & np.isnan(moved).any(axis=1)
             going |= steep
         total = here[:, 2:] + np.where(going[:, None], here[:, :1] * moved, lacking)
+        total[unknown], kinds[unknown] = np.nan, _UNKNOWN
         return PeakSlopes(total, kinds, moved, switch, times)
 
     def _found(
@@ -372,8 +362,7 @@ class MovingPeaks:
     def _bends(self, chosen: Numbers, t: Array, xi: Array, value: Array | None) -> Bends:
         """The second derivatives by time, xi/l and all parameters of what is ``chosen``."""
         z = self.slopes.loops.at(self.instants, self.p, t)
-        directions = unit_ways(range(self.p.size), self.p.size)
-        return self.slopes.bends(t, z, self.p, chosen, xi, value, directions)
+        return self.slopes.bends(t, z, self.p, chosen, xi, value, np.eye(2 + self.p.size))
 
     def _moved_bends(self, first_order: PeakSlopes) -> Array:
         """The second derivatives (q, parameters, parameters) of the times of peaks that go with an

@@ -231,11 +231,6 @@ class Slopes(Brief):
         return {}
 
 
-def unit_ways(numbers: Sequence[int], parameters: int) -> Array:
-    """The ways along time, along xi/l, and along some of so many parameters, by their numbers."""
-    return np.eye(2 + parameters)[[0, 1, *(2 + k for k in numbers)]]
-
-
 def _given(
     t: Array, z: Array, p: Array, chosen: Numbers, xi: Array, value: Array | None
 ) -> dict[str, tuple[npt.NDArray[np.generic], int]]:

@@ -4,6 +4,8 @@ they are of has under /.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import h5py
 
 from ...base.arrays import Array
@@ -15,28 +17,27 @@ from .dataset_words import place_of
 from .untrusted import numbers
 
 
-def slopes_of(file: h5py.File, histories: Histories) -> Derivatives:
-    """Read the sensitivities of a file.
+def slopes_of(datasets: Mapping[str, h5py.Dataset], histories: Histories) -> Derivatives:
+    """Read the sensitivities among the ``datasets`` of a file, by place.
 
-    Raises ``ValueError`` where it is not whole.
+    Raises ``ValueError`` where they are not whole.
     """
-    group = file.get(SENSITIVITY, {})
-    lengths = {"t": histories.t.size, "xi": histories.xi.size}
-    expected = [output for output in histories.quantities() if histories.determined(output)]
-    found: dict[str, dict[Output, Array]] = {}
-    places: list[str] = []
-    if group:
-        group.visititems(
-            lambda place, item: places.append(place) if isinstance(item, h5py.Dataset) else None
-        )
-    if set(group) - histories.description.parameters.keys():
+    kept = [place for place in datasets if place.startswith(f"{SENSITIVITY}/")]
+    names, parameters = {place.split("/")[1] for place in kept}, histories.description.parameters
+    if names - parameters.keys():
         raise ValueError("there are sensitivities by names that are not parameters")
-    expected_names = {f"{name}/{place_of(o)}": (name, o) for name in group for o in expected}
-    if set(places) != set(expected_names):
+    expected = {
+        f"{SENSITIVITY}/{name}/{place_of(output)}": (name, output)
+        for name in parameters
+        if name in names
+        for output in histories.quantities()
+        if histories.determined(output)
+    }
+    if set(kept) != expected.keys():
         raise ValueError("the sensitivities are not of all quantities")
-    for place, (name, output) in expected_names.items():
+    lengths = {"t": histories.t.size, "xi": histories.xi.size}
+    found: dict[str, dict[Output, Array]] = {}
+    for place, (name, output) in expected.items():
         shape = tuple(lengths[axis] for axis in output.quantity.axes)
-        found.setdefault(name, {})[output] = numbers(group[place], shape)
-    return Derivatives(
-        {name: found[name] for name in histories.description.parameters if name in found}
-    )
+        found.setdefault(name, {})[output] = numbers(datasets[place], shape)
+    return Derivatives(found)

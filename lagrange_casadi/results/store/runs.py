@@ -291,21 +291,22 @@ def _read(file: h5py.File) -> Solution:
     t, xi = (numbers(file[axis]) for axis in AXES)
     if t.ndim != 1 or xi.ndim != 1 or not t.size or not xi.size:
         raise ValueError(f"t and xi have the shapes {t.shape} and {xi.shape}")
-    outputs: dict[Output, Array] = {}
+    datasets: dict[str, h5py.Dataset] = {}
 
     def visit(place: str, item: h5py.Group | h5py.Dataset) -> None:
-        if (
-            isinstance(item, h5py.Dataset)
-            and place not in (*AXES, OVER)
-            and not place.startswith(f"{SENSITIVITY}/")
-        ):
-            output = Output.of(place.replace("/", ":"))
-            if "error_estimate" in item.attrs:
-                errors[str(output)] = number(item.attrs, "error_estimate")
-            if output.quantity.axes == ("t",) and output.group not in ("certificate", "holding"):
-                outputs[output] = numbers(item, t.shape)
+        if isinstance(item, h5py.Dataset):
+            datasets[place] = item
 
     file.visititems(visit)
+    outputs: dict[Output, Array] = {}
+    for place, dataset in datasets.items():
+        if place in (*AXES, OVER) or place.startswith(f"{SENSITIVITY}/"):
+            continue
+        output = Output.of(place.replace("/", ":"))
+        if "error_estimate" in dataset.attrs:
+            errors[str(output)] = number(dataset.attrs, "error_estimate")
+        if output.quantity.axes == ("t",) and output.group not in ("certificate", "holding"):
+            outputs[output] = numbers(dataset, t.shape)
     histories = Histories(
         t=t,
         xi=xi,
@@ -323,7 +324,7 @@ def _read(file: h5py.File) -> Solution:
     residuals = file.get("certificate", {})
     evidence |= {
         "certificate": {name: numbers(residuals[name], t.shape) for name in residuals},
-        "sensitivities": slopes_of(file, histories),
+        "sensitivities": slopes_of(datasets, histories),
         "holding": _held(file, histories, reasons),
     }
     return solution_of(histories, **evidence)

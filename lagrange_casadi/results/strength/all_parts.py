@@ -35,10 +35,9 @@ def safeties(solution: Histories) -> Iterator[Safety]:
 
 def looked(solution: Histories) -> Iterator[Safety]:
     """The same, and of those that are open the reason, without a verdict."""
-    links, joints = _parts(solution)
-    for part in [*links, *joints]:
+    for part in _parts(solution):
         try:
-            yield joint_safety(solution, part) if part in joints else safety(solution, part)
+            yield part_safety(solution, part)
         except DeclarationError as error:
             yield Safety(part, (), (str(error),))
 
@@ -47,22 +46,20 @@ def not_evaluated(solution: Histories) -> dict[str, str]:
     """Links with beams, and joints with pins or bearings, that have no factor of safety, and the
     reasons.
     """
-    links, joints = _parts(solution)
-    reasons = {
-        link: reason(
-            lambda name: Member.of(solution, name).beam.material.needs("safety", *NEEDED), link
-        )
-        for link in links
-    }
-    reasons |= {joint: reason(partial(joint_safety, solution), joint) for joint in joints}
-    return {part: why for part, why in reasons.items() if why}
+
+    def asked(part: str) -> object:
+        if part in solution.description.joints:
+            return joint_safety(solution, part)
+        return Member.of(solution, part).beam.material.needs("safety", *NEEDED)
+
+    return {part: why for part in _parts(solution) if (why := reason(asked, part))}
 
 
-def _parts(solution: Histories) -> tuple[list[str], list[str]]:
+def _parts(solution: Histories) -> list[str]:
     """The links that have a beam and sections, and the joints that have something fitted."""
     described = solution.description
     links = [link for link in solution.links_with_sections if link in described.beams]
-    return links, described.fitted
+    return [*links, *described.fitted]
 
 
 def part_safety(

@@ -223,23 +223,21 @@ def joint_safety(solution: Histories, joint: str, parts: Sequence[Fitted] | None
         )
     across, along = _reaction_sizes(solution, joint)
     rate, slide = (_joint_rate(solution, joint, kind) for kind in ("angle", "slide"))
-    verdicts: list[Verdict] = []
-    unknown: list[str] = []
+    found: list[Verdict | str] = []
     if parts is None:
         parts = fitted.parts if fitted else ()
     for part in parts:
         _check(joint, part)
         if isinstance(part, Pin):
-            verdicts += _pin(part, across, solution.t)
+            found += _pin(part, across, solution.t)
         elif isinstance(part, Plain):
-            found, missing = _plain(part, across, rate, slide, solution.t)
-            verdicts += found
-            unknown += missing
+            found += _plain(part, across, rate, slide, solution.t)
         elif rate is None:
-            unknown.append(f"rolling bearing: the motion of joint '{joint}' is not evaluated")
+            found.append(f"rolling bearing: the motion of joint '{joint}' is not evaluated")
         else:
-            verdicts += _rolling(part, across, along, rate, solution.t)
-    return Safety(joint, tuple(verdicts), tuple(unknown))
+            found += _rolling(part, across, along, rate, solution.t)
+    verdicts = tuple(one for one in found if isinstance(one, Verdict))
+    return Safety(joint, verdicts, tuple(one for one in found if isinstance(one, str)))
 
 
 def _reaction_sizes(solution: Histories, joint: str) -> tuple[Array, Array]:
@@ -332,24 +330,23 @@ def _pin(pin: Pin, force: Array, t: Array) -> Iterator[Verdict]:
 
 def _plain(
     bearing: Plain, force: Array, rate: Array | None, slide: Array | None, t: Array
-) -> tuple[list[Verdict], list[str]]:
+) -> Iterator[Verdict | str]:
     d = float(bearing.bore)
     pressure = force / (d * float(bearing.width))
-    found: list[Verdict] = []
     if bearing.pressure is not None:
-        found.append(_verdict("pressure", bearing.pressure, pressure, t, "pressure", "MPa", 1e6))
+        yield _verdict("pressure", bearing.pressure, pressure, t, "pressure", "MPa", 1e6)
     if bearing.speed is None and bearing.heating is None:
-        return found, []
+        return
     if rate is None and slide is None:
-        return found, ["plain bearing: its joint's motion is not evaluated"]
+        yield "plain bearing: its joint's motion is not evaluated"
+        return
     speed = np.hypot(0.0 if rate is None else rate * d / 2, 0.0 if slide is None else slide)
     if bearing.speed is not None:
-        found.append(_verdict("speed", bearing.speed, speed, t, "speed of sliding", "m/s"))
+        yield _verdict("speed", bearing.speed, speed, t, "speed of sliding", "m/s")
     if bearing.heating is not None:
         mean = float(pressure * speed @ shares(t))
         factor = bearing.heating / mean if mean else math.inf
-        found.append(Verdict("heating", factor, f"p v {mean / 1e6:.4g} MPa m/s in the mean"))
-    return found, []
+        yield Verdict("heating", factor, f"p v {mean / 1e6:.4g} MPa m/s in the mean")
 
 
 def _rolling(

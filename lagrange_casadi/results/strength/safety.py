@@ -177,19 +177,17 @@ def rated(
     """Safety of a link in numbers; results after a factor that is not ``enough`` are left out."""
     if criterion not in (known := (*CRITERIA, FINDLEY)):
         raise UnknownNameError("fatigue criterion", criterion, known)
-    member, link = member.counted, member.link
-    found = Stress(member)
-    material = member.beam.material
-    verdicts = [yielded(member, found.peak(yield_criterion))]
-    if verdicts[0].factor < enough:
-        return Safety(link, tuple(verdicts))
-    verdicts.append(buckling(member, of))
-    if verdicts[1].factor < enough:
-        return Safety(link, tuple(verdicts))
-    if not_evaluated := lacking(material, criterion):
-        return Safety(link, tuple(verdicts), (not_evaluated,))
-    verdicts.append(tired(member, criterion))
-    return Safety(link, tuple(verdicts))
+    member = member.counted
+    missing, verdicts = lacking(member.beam.material, criterion), list[Verdict]()
+    for verdict in (
+        lambda: yielded(member, Stress(member).peak(yield_criterion)),
+        lambda: buckling(member, of),
+        *(() if missing else (lambda: tired(member, criterion),)),
+    ):
+        verdicts.append(verdict())
+        if verdicts[-1].factor < enough:
+            return Safety(member.link, tuple(verdicts))
+    return Safety(member.link, tuple(verdicts), (missing,) if missing else ())
 
 
 def tired(member: Member, criterion: str) -> Verdict:
