@@ -10,7 +10,6 @@ derivatives of F(T(p), p).
 from __future__ import annotations
 
 import enum
-import itertools
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -189,22 +188,20 @@ class MovingPeaks:
         free = ~stay
         q, moving = t.size, free.nonzero()[0]
         inner = (free & (np.abs(xi - 0.5) < 0.5 - _NUDGE)).nonzero()[0]
-        ends = list(itertools.accumulate([q, moving.size, inner.size, inner.size]))
-        of = np.concatenate([np.arange(q), moving, inner, inner])
+        later_on = q + moving.size
+        of = np.concatenate([np.arange(q), moving, inner])
         times, places = t[of], xi[of]
         nudge = _NUDGE * self.step
         later = np.where(t[moving] + nudge <= self.instants[-1], nudge, -nudge)
-        times[q : ends[1]] += later
-        places[ends[1] : ends[2]] += _NUDGE
-        places[ends[2] :] -= _NUDGE
+        times[q:later_on] += later
+        places[later_on:] += _NUDGE
         z = self.slopes.loops.at(self.instants, self.p, times)
         found = self.slopes.at(times, z, self.p, chosen[of], places, value[of])
-        here, after, further, nearer = (
-            found.gradient[a:b] for a, b in itertools.pairwise([0, *ends])
-        )
+        gradient = found.gradient
+        here, after, further = gradient[:q], gradient[q:later_on], gradient[later_on:]
         changes, free_xi = np.zeros((q, 2, here.shape[1])), np.zeros(q, bool)
         changes[moving, 0] = (after - here[moving]) / later[:, None]
-        changes[inner, 1] = (further - nearer) / (2.0 * _NUDGE)
+        changes[inner, 1] = (further - here[inner]) / _NUDGE
         # A place that moves with a station has no slope along the link.
         free_xi[inner] = here[inner, 1] != 0.0
         _, away, _ = self._turned(Bends(here, changes), free, free_xi, value, _NEARER_XI)
@@ -239,7 +236,7 @@ class MovingPeaks:
                 if not far.any():
                     break
                 free_xi = free_xi & ~far
-        far = np.abs(away_t) > _NEAR_T * self.step
+        far = ~(np.abs(away_t) <= _NEAR_T * self.step)
         away_t[far], away_xi[far] = 0.0, 0.0
         return (inner_t, across, inner_xi), (away_t, away_xi), free_xi & ~far
 
@@ -314,17 +311,9 @@ class MovingPeaks:
         NaN where a peak has none; one that is ``nothing`` (q,) but rounding stays where it is.
         """
         value, t, xi = peaks
-        found = np.full((t.size, self.p.size, self.p.size), np.nan)
         sound = np.isfinite(first_order.slopes).all(axis=1) & np.isfinite(value)
-        if sound.any() and self.p.size:
-            there = PeakSlopes._make(array[sound] for array in first_order)
-            second = self._curvature(chosen[sound], value[sound], xi[sound], there, nothing[sound])
-            found[sound] = (second + np.swapaxes(second, 1, 2)) / 2
-        return found
-
-    def _curvature(
-        self, chosen: Numbers, value: Array, xi: Array, first_order: PeakSlopes, nothing: Flags
-    ) -> Array:
+        if not sound.any() or not self.p.size:
+            return np.full((t.size, self.p.size, self.p.size), np.nan)
         first, last = self.instants[[0, -1]]
         smooth = np.isin(first_order.kinds, (_SMOOTH, _LINK_END))
         inside = (xi > SAME_PLACE) & (xi < 1.0 - SAME_PLACE)
@@ -356,8 +345,8 @@ class MovingPeaks:
         # A level peak that slopes elsewhere for other parameters jumps there.
         level = free_t & (inner_t == 0.0)
         tilts = np.abs(pulled[:, :, 0] * self.p) * (last - first) > _STILL * np.abs(value)[:, None]
-        second[level & tilts.any(axis=1)] = np.nan
-        return np.asarray(second)
+        second[~sound | (level & tilts.any(axis=1))] = np.nan
+        return np.asarray((second + np.swapaxes(second, 1, 2)) / 2)
 
     def _bends(self, chosen: Numbers, t: Array, xi: Array, value: Array | None) -> Bends:
         """The second derivatives by time, xi/l and all parameters of what is ``chosen``."""

@@ -69,16 +69,12 @@ def at_instants(
     method: EvaluationMethod,
 ) -> Array:
     """Rows of a graph at instants, and their derivatives, (t, rows, 1 + parameters)."""
-    inner = total(program, [program.outputs[output] for output in rows], by)
-    time, *driven, z, values = inner.sx_in()
-    local = differentiable(program.instant)(time, *driven, z, values)[
-        [program.outputs[output] for output in rows]
-    ]
-    inner = ca.Function(
-        "both", inner.sx_in(), [ca.vertcat(local.T, inner(time, *driven, z, values))]
-    )
-    slopes = inner(time, *program.motion.call([time, values]), z, values)
-    function = graph("at_once", {"t": time, "z": z, "p": values}, found=slopes)
+    numbers = [program.outputs[output] for output in rows]
+    slopes = total(program, numbers, by)
+    time, *_, z, values = slopes.sx_in()
+    inputs = time, *program.motion.call([time, values]), z, values
+    both = ca.vertcat(differentiable(program.instant)(*inputs)[numbers].T, slopes(*inputs))
+    function = graph("at_once", {"t": time, "z": z, "p": values}, found=both)
     place = Loops.of(program, method).at(t, p, t)
     given = {"t": (t[:, None], 1), "z": (place, 1), "p": (p[None], 0)}
     found = Batch.of(function, method).at(t.size, given)

@@ -40,11 +40,6 @@ class Batch:
     function: Any
     library: codegen.BatchLibrary | None = None
 
-    @cached_property
-    def _size(self) -> int:
-        """Numbers of a result."""
-        return int(self.function.numel_out(0))
-
     @classmethod
     def of(cls, function: ca.Function, method: EvaluationMethod) -> Batch:
         """Compile it by the compiler of a method; always in doubles."""
@@ -56,7 +51,7 @@ class Batch:
         """Result at n points, (n, result): of each argument its rows, and the number of points that
         one is for, 0 for all. Of what is ``chosen`` the numbers are given.
         """
-        into = np.full((n, self._size), np.nan)
+        into = np.full((n, self.function.numel_out(0)), np.nan)
         if not n:
             return into
         if self.library is not None:
@@ -183,13 +178,13 @@ class Slopes(Brief):
         if finite.all():
             return AtPoints(found[:, 0], found[:, 1:])
         broken = ~finite.all(axis=1) & (chosen < len(self.points.quantities))
-        for k in np.unique(chosen[broken]):
+        for k in set(chosen[broken].tolist()):
             here = np.flatnonzero(broken & (chosen == k))
             local = {
                 name: (rows[here] if each else rows, each) for name, (rows, each) in given.items()
             }
             local[codegen.CHOSEN] = np.zeros(here.size, np.intc), 1
-            found[here] = self._alone(int(k)).at(here.size, local)
+            found[here] = self._alone(k).at(here.size, local)
         return AtPoints(found[:, 0], found[:, 1:])
 
     def bends(

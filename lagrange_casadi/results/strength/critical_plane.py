@@ -13,9 +13,8 @@ largest normal stress in compression counts as none.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, TypeAlias
 
 import numpy as np
 
@@ -31,9 +30,11 @@ FINDLEY = "findley"
 DUCTILE = 0.3
 """k of ductile steels."""
 
-_FLAT = (90,)
-_SPACE = (9, 24, 12)
-"""Numbers of angles that are tried first: with one shear stress, and with two."""
+_Grid: TypeAlias = tuple[tuple[float, int], ...]
+
+_FLAT: _Grid = ((math.pi, 90),)
+_SPACE: _Grid = ((math.pi / 2, 9), (math.tau, 24), (math.pi, 12))
+"""Spans and numbers of angles that are tried first: with one shear stress, and with two."""
 
 _ROUNDS, _BESIDE, _NEARER = 8, 2, 2.5
 """Number of refinements of the worst plane, of planes on each side, and the factor by which they
@@ -98,14 +99,11 @@ def critical_plane(values: Annotated[Numeric, "Pa"], share: NotNegative = DUCTIL
         raise DeclarationError(
             f"critical_plane: expected finite stresses (3, t), got {shown(values)}"
         )
-    sheared = [bool(row.any()) for row in values[1:]]
-    if not all(sheared):
-        # All planes that count go through the direction without stress.
-        shear = values[2] if sheared[1] else values[1]
-        return _best(
-            np.stack([values[0], shear, np.zeros_like(shear)]), share, _turned, [math.pi], _FLAT
-        )
-    return _best(values, share, _around, [math.pi / 2, 2 * math.pi, math.pi], _SPACE)
+    if values[1:].any(axis=1).all():
+        return _best(values, share, _SPACE)
+    # All planes that count go through the direction without stress.
+    shear = values[1] if values[1].any() else values[2]
+    return _best(np.stack([values[0], shear, np.zeros_like(shear)]), share, _FLAT)
 
 
 @public
@@ -155,20 +153,14 @@ def plane_score(share: float = DUCTILE) -> Score:
     return Score(of, bound, lambda amplitude, mean: amplitude + share * mean)
 
 
-def _best(
-    values: Array,
-    share: float,
-    planes: Callable[[Array], tuple[Array, Array]],
-    spans: Sequence[float],
-    counts: Sequence[int],
-) -> Plane:
+def _best(values: Array, share: float, tried: _Grid) -> Plane:
     """The worst of planes given by angles: first of an even grid, then of finer ones near it."""
-    grids = [(np.arange(n) + 0.5) * span / n for span, n in zip(spans, counts, strict=True)]
+    grids = [(np.arange(n) + 0.5) * span / n for span, n in tried]
     steps = np.array([grid[1] - grid[0] for grid in grids])
     angles = np.stack(np.meshgrid(*grids, indexing="ij"), -1).reshape(-1, len(grids))
     best, middle = Plane(-1.0, 0.0, 0.0), angles[0]
     for _ in range(_ROUNDS + 1):
-        normal, direction = planes(angles)
+        normal, direction = _planes(angles)
         across = np.maximum((_plane_weights(normal, normal) @ values).max(axis=1), 0.0)
         amplitude = np.ptp(_plane_weights(normal, direction) @ values, axis=1) / 2
         k = int(np.argmax(amplitude + share * across))
@@ -183,16 +175,12 @@ def _best(
     return best
 
 
-def _turned(angles: Array) -> tuple[Array, Array]:
-    """Normals in the plane of x and the shear stress, and the directions across them there."""
-    c, s = np.cos(angles[:, 0]), np.sin(angles[:, 0])
-    zero = np.zeros_like(c)
-    return np.stack([c, s, zero], 1), np.stack([-s, c, zero], 1)
-
-
-def _around(angles: Array) -> tuple[Array, Array]:
-    """Normals by their angle to x and around it, and directions in their planes."""
-    (c, s), (cy, cz), (u, v) = ((np.cos(a), np.sin(a)) for a in angles.T)
+def _planes(angles: Array) -> tuple[Array, Array]:
+    """Normals of planes by their angle to x and around it, and directions in the planes; by the
+    first alone those in the plane of x and y.
+    """
+    every = np.pad(angles, [(0, 0), (0, len(_SPACE) - angles.shape[1])])
+    (c, s), (cy, cz), (u, v) = ((np.cos(a), np.sin(a)) for a in every.T)
     normal = np.stack([c, s * cy, s * cz], 1)
     down, across = np.stack([-s, c * cy, c * cz], 1), np.stack([np.zeros_like(c), -cz, cy], 1)
     return normal, u[:, None] * down + v[:, None] * across
