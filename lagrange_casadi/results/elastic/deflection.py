@@ -19,7 +19,7 @@ import numpy as np
 
 from ...base.arguments import Numeric, public
 from ...base.arrays import Array
-from ...base.bernstein import interpolated, nodes, product, raised, value, zeros
+from ...base.bernstein import interpolated, nodes, product, raised, slope, value, zeros
 from ...errors import DeclarationError, UnknownNameError
 from ...model.end_conditions import ends_of
 from ..histories import Histories
@@ -129,16 +129,12 @@ class Deflection:
         """The deflection across the link that is largest in size at every instant, and its ratio
         xi/l, both (t,).
         """
-        edges, curves = self.member.edges, self._curves
+        edges, curves = self.member.edges, [self._curves[n] for n in self.names if n in _SLOPES]
         low, high = edges[:, :-1], edges[:, 1:]
-        across = [name for name in self.names if name in _SLOPES]
-        slopes = []
-        for turn, sign, shear in map(_SLOPES.__getitem__, across):
-            slopes.append(sign * curves[turn] + raised(self._strains[shear], len(curves[turn]) - 1))
-        slope = slopes[0]
+        rate = slope(curves[0])
         if self.member.space:
-            slope = np.asarray(sum(map(product, map(curves.__getitem__, across), slopes)))
-        inner = low + (high - low) * zeros(slope).places
+            rate = np.asarray(sum(product(curve, slope(curve)) for curve in curves))
+        inner = low + (high - low) * zeros(rate).places
         places = np.concatenate([edges, np.concatenate([*inner], axis=1)], axis=1)
         values = self.size(places)
         best = np.argmax(np.abs(values), axis=1)[:, None]
@@ -175,8 +171,8 @@ class Deflection:
             found[bending.replace("bending", "turn")] = self._sum(strains[bending])
         for across, (turn, sign, shear) in _SLOPES.items():
             if turn in found:
-                slope = sign * found[turn]
-                found[across] = self._sum(slope + raised(strains[shear], len(slope) - 1))
+                turned = sign * found[turn]
+                found[across] = self._sum(turned + raised(strains[shear], len(turned) - 1))
         if self.against == "base":
             return found
         for across, (turn, sign, _) in _SLOPES.items():

@@ -245,17 +245,13 @@ def _rows(
         here = {
             id(place): [link.at(name, place, END["double"]) for name in names] for place in marks
         }
-        sizes = {key: resultant(parts) for key, parts in here.items()}
+        gaps = {key: ca.fabs(resultant(parts) - value) for key, parts in here.items()}
         for place in marks:
-            twins = [
-                other
-                for other in marks
-                if other.load_point == place.load_point and other is not place and place.load_point
-            ]
-            nearer = ca.SX(1.0)
-            for twin in twins:
-                values_here, others = (ca.fabs(sizes[id(each)] - value) for each in (place, twin))
-                nearer = values_here < others if place.side == "base" else values_here <= others
+            nearer, gap = ca.SX(1.0), gaps[id(place)]
+            for other in marks if place.load_point else ():
+                if other.load_point == place.load_point and other is not place:
+                    beside = gaps[id(other)]
+                    nearer = gap < beside if place.side == "base" else gap <= beside
             taken = factor * moving * (ca.fabs(xi - place.ratio) <= SAME_PLACE) * nearer
             factor = factor - taken
             add(here[id(place)], chosen[k] * taken)

@@ -43,13 +43,11 @@ def series_slopes(
         "the sensitivities", (len(by), histories.t.size, len(rows) + sections * histories.xi.size)
     )
     numbers = [list(program.data.parameters).index(name) for name in by]
-    found: dict[Output, Array] = {}
-    for output, column in zip(
-        rows,
-        np.moveaxis(at_instants(program, rows, histories.t, p, numbers, method), 1, 0),
-        strict=True,
-    ):
-        found[output] = np.where(np.isnan(histories.outputs[output])[:, None], np.nan, column)
+    columns = np.moveaxis(at_instants(program, rows, histories.t, p, numbers, method), 1, 0)
+    found = {
+        output: np.where(np.isnan(histories.outputs[output])[:, None], np.nan, column)
+        for output, column in zip(rows, columns, strict=True)
+    }
     changes = {output: found[output][:, 1:] for output in series}
     for link in histories.links_with_sections:
         changes |= dict(_along(program, histories, link, found, p, numbers, method))

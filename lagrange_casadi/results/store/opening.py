@@ -143,8 +143,6 @@ def opened_file(
                     f"{path}: schema version {stored}, this program reads version {VERSION}: run it"
                     " again"
                 )
-            if not file.attrs.get("complete", False):
-                raise StoreError(f"{path}: was not written to its end")
             yield file
 
 
@@ -152,7 +150,7 @@ def kind_of(path: str | os.PathLike[str]) -> str | None:
     """Kind of a file, by its seal alone; None if there is no file, or none with a seal."""
     try:
         with _opened(path) as file:
-            return _kind(_last(file))
+            return _stated(file)[1]
     except (PathError, StoreError):
         return None
 
@@ -166,8 +164,7 @@ def verify(path: str | os.PathLike[str]) -> VerifiedFile:
     with _opened(path) as file:
         if is_locked(path):
             raise StoreError(f"{path}: another program has it open to write")
-        found, last = VerifiedFile.of(file.fileno()), _last(file)
-        kind = _kind(last)
+        found, (last, kind) = VerifiedFile.of(file.fileno()), _stated(file)
         if kind is None:
             raise StoreError(f"{path}: {_unsealed(file)}")
         if _seal(path, kind, found.size - SIZE) != last:
@@ -187,16 +184,14 @@ def _opened(path: str | os.PathLike[str]) -> Iterator[FileIO]:
         raise StoreError(f"{path}: cannot be read: {one_line(error)}") from None
 
 
-def _last(file: FileIO) -> bytes:
-    """The last bytes of a file, as many as a seal has."""
+def _stated(file: FileIO) -> tuple[bytes, str | None]:
+    """The last bytes of a file, as many as a seal has, and the kind that they state; None where
+    they are no seal.
+    """
     file.seek(max(0, file.seek(0, os.SEEK_END) - SIZE))
-    return file.read(SIZE)
-
-
-def _kind(last: bytes) -> str | None:
-    """The kind of a file, by its last bytes; None where they are no seal."""
+    last = file.read(SIZE)
     found = _SEAL.fullmatch(last)
-    return found[1].decode(errors="replace") if found else None
+    return last, found[1].decode(errors="replace") if found else None
 
 
 def _seal(path: str | os.PathLike[str], kind: str, length: int) -> bytes:

@@ -190,9 +190,8 @@ class Member(Brief):
             )
         member = cls(link, body.beam, law, solution.t, solution.xi, space)
         member._check_torsion()
-        two_force_links = solution.description.bars
-        aimed = solution.description.beside
-        if link in two_force_links and link not in aimed and not (spun or member.beam.round):
+        bar = link in solution.description.bars and link not in solution.description.beside
+        if bar and not (spun or member.beam.round):
             raise DeclarationError(unaimed(link))
         return member
 

@@ -273,15 +273,16 @@ class Stress:
         """
         weights, count, names = _weights(kind), self.member.t.size, list[str]()
         parts = [*self._parts()]
-        bounds = [part.bounds(weights) for part in parts]
-        least = np.max([low for low, _ in bounds], axis=0)
+        ends = [squared(np.moveaxis(part[-1][[0, -1]], 1, 0), weights) for part in parts]
+        least = np.max([squares.max(axis=(0, 1, 2)) for squares in ends], axis=0)
         if floor is not None:
             least = np.full(count, max(floor, least.max()))
         best, place, signs = np.full(count, -1.0), np.zeros(count), np.zeros(count)
         fibre = np.zeros(count, int)
-        for part, (_, high) in zip(parts, bounds, strict=True):
-            f, p, t = np.nonzero(high >= least)
-            normal, *shears = np.moveaxis(part.stresses[:, :, f, p, t], 1, 0)
+        for names_here, low, high, stresses in parts:
+            bound = squared(np.abs(stresses).max(axis=0), weights)
+            f, p, t = np.nonzero(bound >= least)
+            normal, *shears = np.moveaxis(stresses[:, :, f, p, t], 1, 0)
             c = weights[0] * product(normal, normal)
             c += weights[1] * sum(product(shear, shear) for shear in shears)
             inner = zeros(slope(c)).places
@@ -294,38 +295,21 @@ class Stress:
             higher = last[values[last] > best[t[last]]]
             at, x, f, p = t[higher], x[higher], f[higher], p[higher]
             best[at], fibre[at] = values[higher], len(names) + f
-            place[at] = part.high[p, at] - (part.high - part.low)[p, at] * x
-            signs[at] = value(part.stresses[:, 0, f, p, at], x[None])[0]
-            names += part.names
+            place[at] = high[p, at] - (high - low)[p, at] * x
+            signs[at] = value(stresses[:, 0, f, p, at], x[None])[0]
+            names += names_here
         return _signed(kind, best, signs), place, [names[k] for k in fibre.tolist()]
 
-    def _parts(self) -> Iterator[_Part]:
-        """The parts of the link between two marks, in each cell of its cross-section."""
+    def _parts(self) -> Iterator[tuple[tuple[str, ...], Array, Array, Array]]:
+        """The parts of the link between two marks, in each cell of its cross-section: the names of
+        fibres, begins and ends (parts, t), and stresses, ordinates (degree + 1, 3, fibres, parts,
+        t).
+        """
         for cell in self.member.cells:
             low, high = cell.parts(self.member.pieces[0].ends)
             stresses = cell.stresses(cell.forces(low, high), low, high)
             low, high = (np.broadcast_to(end, stresses.shape[3:]) for end in (low, high))
-            yield _Part(cell.names, low, high, stresses)
-
-
-@dataclass(frozen=True, eq=False)
-class _Part:
-    """Parts of a link from ``low`` to ``high`` (parts, t) with the fibres ``names``, on which
-    ``stresses`` are polynomials, ordinates (degree + 1, 3, fibres, parts, t).
-    """
-
-    names: tuple[str, ...]
-    low: Array
-    high: Array
-    stresses: Array
-
-    def bounds(self, weights: tuple[float, float]) -> tuple[Array, Array]:
-        """The largest square of a kind of stress at ends of parts (t,), and a bound on it in each
-        part (fibres, parts, t).
-        """
-        ends = [squared(self.stresses[k], weights) for k in (0, -1)]
-        most = squared(np.abs(self.stresses).max(axis=0), weights)
-        return np.max(ends, axis=(0, 1, 2)), np.asarray(most)
+            yield cell.names, low, high, stresses
 
 
 def _weights(kind: str) -> tuple[float, float]:
