@@ -157,7 +157,11 @@ def _best(values: Array, share: float, tried: _Grid) -> Plane:
     """The worst of planes given by angles: first of an even grid, then of finer ones near it."""
     grids = [(np.arange(n) + 0.5) * span / n for span, n in tried]
     steps = np.array([grid[1] - grid[0] for grid in grids])
-    angles = np.stack(np.meshgrid(*grids, indexing="ij"), -1).reshape(-1, len(grids))
+    beside = [np.arange(-_BESIDE, _BESIDE + 1) / _BESIDE] * len(grids)
+    angles, around = (
+        np.stack(np.meshgrid(*rows, indexing="ij"), -1).reshape(-1, len(grids))
+        for rows in (grids, beside)
+    )
     best, middle = Plane(-1.0, 0.0, 0.0), angles[0]
     for _ in range(_ROUNDS + 1):
         normal, direction = _planes(angles)
@@ -169,8 +173,7 @@ def _best(values: Array, share: float, tried: _Grid) -> Plane:
         )
         if found.value(share) > best.value(share):
             best, middle = found, angles[k]
-        beside = [np.arange(-_BESIDE, _BESIDE + 1) / _BESIDE * step for step in steps]
-        angles = middle + np.stack(np.meshgrid(*beside, indexing="ij"), -1).reshape(-1, len(grids))
+        angles = middle + around * steps
         steps = steps / _NEARER
     return best
 
@@ -179,11 +182,10 @@ def _planes(angles: Array) -> tuple[Array, Array]:
     """Normals of planes by their angle to x and around it, and directions in the planes; by the
     first alone those in the plane of x and y.
     """
-    every = np.pad(angles, [(0, 0), (0, len(_SPACE) - angles.shape[1])])
-    (c, s), (cy, cz), (u, v) = ((np.cos(a), np.sin(a)) for a in every.T)
+    (c, s), *others = ((np.cos(a), np.sin(a)) for a in angles.T)
+    (cy, cz), (u, v) = others or [(1.0, 0.0), (1.0, 0.0)]
     normal = np.stack([c, s * cy, s * cz], 1)
-    down, across = np.stack([-s, c * cy, c * cz], 1), np.stack([np.zeros_like(c), -cz, cy], 1)
-    return normal, u[:, None] * down + v[:, None] * across
+    return normal, np.stack([-s * u, c * cy * u - cz * v, c * cz * u + cy * v], 1)
 
 
 def _plane_weights(n: Array, m: Array) -> Array:
