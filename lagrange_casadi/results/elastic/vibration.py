@@ -210,10 +210,7 @@ def _swung(
         more = np.where(harmonics == 0.0, 0.0, harmonics * (ratio**2 / (1.0 - ratio**2)))
     most, shares = int(np.argmax(np.abs(more))), np.abs(harmonics) / whole
     shares[1:] *= 2.0
-    if not np.isfinite(more).all():
-        return math.inf, most, tuple(shares.tolist())
-    return (
-        float(np.abs(np.fft.irfft(more * force.size, force.size)).max() / whole),
-        most,
-        tuple(shares.tolist()),
-    )
+    excess = math.inf
+    if np.isfinite(more).all():
+        excess = float(np.abs(np.fft.irfft(more * force.size, force.size)).max() / whole)
+    return excess, most, tuple(shares.tolist())

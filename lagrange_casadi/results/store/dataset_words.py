@@ -24,9 +24,7 @@ def conventions(table: Table) -> dict[str, str]:
 
 def say(dataset: h5py.Dataset, unit: str, words: Mapping[str, str]) -> None:
     """Write the unit of a dataset, and other words about it, by attribute."""
-    dataset.attrs["units"] = unit
-    for key, text in words.items():
-        dataset.attrs[key] = text
+    dataset.attrs.update({"units": unit, **words})
 
 
 def unlike(dataset: h5py.Dataset, unit: str, words: Mapping[str, str]) -> Iterator[str]:

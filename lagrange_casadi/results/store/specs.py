@@ -188,15 +188,8 @@ class UtilisationPlot(_Drawn):
 
     def needs(self) -> tuple[str, ...]:
         """Full names of the quantities it draws."""
-        reactions = [
-            str(Output("reaction", joint, member))
-            for joint in self.joints
-            for member in ("fx", "fy")
-        ]
-        return (
-            *(name for link in self.links for name in SectionMaps(self.name, link).needs()),
-            *reactions,
-        )
+        sections = SectionDiagrams(self.name, self.links).needs()
+        return (*sections, *PolarPlots(self.name, self.joints).needs())
 
 
 @public

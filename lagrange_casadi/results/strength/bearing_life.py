@@ -214,18 +214,18 @@ def joint_safety(solution: Histories, joint: str, parts: Sequence[Fitted] | None
         is indeterminate, or if a number that depends on parameters is not positive.
     """
     joints = solution.description.joints
-    fitted = joints[joint].fitted if joint in joints else None
-    if not fitted and parts is None:
-        having = ", ".join(solution.description.fitted)
-        raise DeclarationError(
-            f"nothing is fitted to joint '{joint}'; joints with a pin or a bearing:"
-            f" {having or 'none'}"
-        )
+    if parts is None:
+        fitted = joints[joint].fitted if joint in joints else None
+        if not fitted:
+            having = ", ".join(solution.description.fitted)
+            raise DeclarationError(
+                f"nothing is fitted to joint '{joint}'; joints with a pin or a bearing:"
+                f" {having or 'none'}"
+            )
+        parts = fitted.parts
     across, along = _reaction_sizes(solution, joint)
     rate, slide = (_joint_rate(solution, joint, kind) for kind in ("angle", "slide"))
     found: list[Verdict | str] = []
-    if parts is None:
-        parts = fitted.parts if fitted else ()
     for part in parts:
         _check(joint, part)
         if isinstance(part, Pin):

@@ -32,49 +32,35 @@ _NOTHING = 1e-300
 """Amplitude [Pa] in the place of none."""
 
 
-@dataclass(frozen=True)
-class Criterion:
-    """Treatment of a mean stress: ``strength`` is the material's number for a mean stress alone;
-    ``square`` if it counts squared.
-    """
-
-    strength: str
-    square: bool = False
-
-
 CRITERIA = {
-    "goodman": Criterion("ultimate"),
-    "gerber": Criterion("ultimate", square=True),
-    "soderberg": Criterion("yield_strength"),
-    "morrow": Criterion("fatigue_strength"),
+    "goodman": "ultimate",
+    "gerber": "ultimate",
+    "soderberg": "yield_strength",
+    "morrow": "fatigue_strength",
 }
+"""Treatments of a mean stress, and the material's number for a mean stress alone."""
 
-
-def criterion_of(name: str) -> Criterion:
-    """A criterion by its name. Raises :class:`.UnknownNameError` for none."""
-    if name not in CRITERIA:
-        raise UnknownNameError("fatigue criterion", name, CRITERIA)
-    return CRITERIA[name]
+_SQUARED = "gerber"
+"""The treatment by which the mean counts squared."""
 
 
 def strengths(material: Material, criterion: str) -> tuple[float, float]:
     """The endurance limit, and the strength that bears a mean stress alone.
 
-    Raises :class:`.DeclarationError` for numbers that the material has not.
+    Raises :class:`.UnknownNameError` for no criterion, :class:`.DeclarationError` for numbers that
+    the material has not.
     """
-    endurance, strength = material.needs(f"fatigue by {criterion}", *_needed(material, criterion))
-    by_ultimate = (
-        criterion_of(criterion).strength == "fatigue_strength" and material.fatigue_strength is None
-    )
-    return endurance, strength + 345e6 if by_ultimate else strength
+    names = _needed(material, criterion)
+    endurance, strength = material.needs(f"fatigue by {criterion}", *names)
+    return endurance, strength if names[1] == CRITERIA[criterion] else strength + 345e6
 
 
 def _needed(material: Material, criterion: str) -> tuple[str, str]:
-    name = criterion_of(criterion).strength
-    return (
-        "endurance",
-        "ultimate" if name == "fatigue_strength" and material.fatigue_strength is None else name,
-    )
+    if criterion not in CRITERIA:
+        raise UnknownNameError("fatigue criterion", criterion, CRITERIA)
+    name = CRITERIA[criterion]
+    missing = name == "fatigue_strength" and material.fatigue_strength is None
+    return "endurance", "ultimate" if missing else name
 
 
 @public
@@ -126,11 +112,10 @@ def used(amplitude: Array, mean: Array, material: Material, criterion: str = "go
 def _use(material: Material, criterion: str) -> Callable[[Operand, Operand], Operand]:
     """The function of amplitude and mean that gives the utilisation of a material."""
     endurance, strength = strengths(material, criterion)
-    square = criterion_of(criterion).square
 
     def use(amplitude: Operand, mean: Operand) -> Operand:
         a, m = amplitude / endurance, larger(mean, 0.0) / strength
-        return (a + (a * a + 4.0 * m * m) ** 0.5) / 2 if square else a + m
+        return (a + (a * a + 4.0 * m * m) ** 0.5) / 2 if criterion == _SQUARED else a + m
 
     return use
 
@@ -178,7 +163,7 @@ def reversed_amplitude(
     """
     _, strength = strengths(material, criterion)
     m = np.maximum(mean, 0.0) / strength
-    remaining = 1.0 - (m * m if criterion_of(criterion).square else m)
+    remaining = 1.0 - (m * m if criterion == _SQUARED else m)
     return np.where(
         remaining > 0.0, np.asarray(amplitude) / np.where(remaining > 0.0, remaining, 1.0), np.inf
     )
@@ -337,7 +322,7 @@ def use_score(material: Material, criterion: str = "goodman") -> Score:
     worst, as long as means count for less than amplitudes.
     """
     endurance, strength = strengths(material, criterion)
-    exact = strength >= (2.0 if criterion_of(criterion).square else 1.0) * endurance
+    exact = strength >= (2.0 if criterion == _SQUARED else 1.0) * endurance
     swing = _use(material, criterion)
 
     def of(values: Array) -> float:

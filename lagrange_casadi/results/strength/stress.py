@@ -98,7 +98,6 @@ class Stress:
         DeclarationError
             If a ratio is out of 0 to 1.
         """
-        _weights(kind)
         u = self.member.xi if xi is None else np.atleast_1d(xi)
         if u.ndim != 1 or not ((u >= 0.0) & (u <= 1.0)).all():
             raise DeclarationError(
@@ -231,7 +230,6 @@ class Stress:
 
     def _at_notches(self, kind: str) -> Largest:
         """The stress that is largest in size at notches, at every instant."""
-        _weights(kind)
         if not self.member.beam.notches:
             raise DeclarationError(f"the beam of link '{self.member.link}' has no notches")
         every = [*itertools.product(self.member.beam.notches, SIDES)]
@@ -322,7 +320,7 @@ def _of_fibres(kind: str, stresses: Array) -> tuple[npt.NDArray[np.intp], Array]
     """The stress that is largest in size of all fibres, whose stresses are (3, fibres, ...): the
     fibre's number, and the value.
     """
-    squares = squared(stresses, KINDS[kind])
+    squares = squared(stresses, _weights(kind))
     best = np.argmax(squares, axis=0)
     square, normal = (np.take_along_axis(rows, best[None], 0)[0] for rows in (squares, stresses[0]))
     return best, _signed(kind, square, normal)
