@@ -32,7 +32,7 @@ _HELD = {
     "free": (False, False),
     "guided": (False, True),
 }
-"""Whether an end holds its place, and its slope."""
+"""Marks of an end: true if it holds its place, and its slope."""
 
 _LINES = np.array([[1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [0.0, 1.0]])
 """Place and slope of a + b u at the base, and at the tip."""

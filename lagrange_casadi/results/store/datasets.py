@@ -106,7 +106,7 @@ class Stored:
             dataset[block] = self.values[block]
 
     def faults(self, file: h5py.File, solution: Histories) -> Iterator[str]:
-        """What the dataset of a file is otherwise, a line each."""
+        """Yield the faults of the dataset in a file, a line each."""
         dataset = file[self.place]
         check_dataset(dataset, self.values.shape)
         check_chunks(dataset)

@@ -365,8 +365,8 @@ def _bound(swing: Callable[[Array, Array], Operand], stresses: Array) -> Array:
     low, high = stresses.min(axis=-1), stresses.max(axis=-1)
     ranges = 3.0 * np.sum((high[1:] - low[1:]) ** 2, axis=0)
     sizes = 3.0 * np.sum(np.maximum(high[1:], -low[1:]) ** 2, axis=0)
-    swings = [
+    corners = [
         swing(np.sqrt((high[0] - first) ** 2 + ranges) / 2, np.sqrt(larger(mean, 0.0) ** 2 + sizes))
         for first, mean in ((low[0], (low[0] + high[0]) / 2), (high[0], high[0]))
     ]
-    return np.asarray(np.maximum(*swings))
+    return np.asarray(np.maximum(*corners))
