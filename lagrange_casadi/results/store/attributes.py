@@ -28,20 +28,12 @@ _PROVENANCE = {key: key for key in ("backend", "precision", "compiler", "flags")
 
 
 def attributes_to_write(solution: Solution, figures: str, grids: Sequence[str]) -> Attributes:
-    """Attributes of the file of a solution, with section grids of the links ``grids``.
+    """Attributes of the file of a solution, with section grids of the links ``grids``; those of the
+    datasets are apart.
 
     Raises ``ValueError``, ``TypeError`` or ``KeyError`` for attributes that a reader refuses.
     """
     structured(Mapping[str, float], dict(solution.errors), "errors")
-    found = _attributes(solution, figures, grids)
-    fields, _ = read_attributes(found)
-    for fault in check_attributes(found, fields["description"]):
-        raise ValueError(fault)
-    return found
-
-
-def _attributes(solution: Solution, figures: str, grids: Sequence[str]) -> Attributes:
-    """Attributes of the file of a solution; those of its datasets are apart."""
     provenance, elasticity = solution.provenance, solution.elasticity
     found: dict[str, Any] = {
         "case": solution.case,
@@ -70,7 +62,11 @@ def _attributes(solution: Solution, figures: str, grids: Sequence[str]) -> Attri
         found["holding"] = json.dumps(reasons)
     found["versions"] = json.dumps(dict(provenance.versions))
     stated = {key: getattr(provenance, name) for key, name in _PROVENANCE.items()}
-    return found | stated | {"figures": figures}
+    found |= stated | {"figures": figures}
+    fields, _ = read_attributes(found)
+    for fault in check_attributes(found, fields["description"]):
+        raise ValueError(fault)
+    return found
 
 
 def read_attributes(attributes: Attributes) -> tuple[dict[str, Any], dict[str, Any]]:

@@ -260,7 +260,17 @@ def _reaction_sizes(solution: Histories, joint: str) -> tuple[Array, Array]:
             f"the reaction of joint '{joint}' is statically indeterminate, so its strength is not"
             " evaluated"
         )
-    across, along = _forces(solution, joint)
+    if solution.description.space:
+        # In space reactions are given on the joint's own axes too, of which the first is the one it
+        # turns about.
+        nothing = np.zeros_like(solution.t)
+        u, v, w = (
+            solution.outputs.get(Output("reaction", joint, f"f{axis}"), nothing) for axis in "uvw"
+        )
+        across, along = np.hypot(v, w), np.abs(u)
+    else:
+        found = solution.reaction(joint)
+        across, along = np.hypot(found.fx, found.fy), np.zeros_like(found.fx)
     if not (counts := counted(np.stack([across, along]))).any():
         raise DeclarationError(
             f"joint '{joint}': friction is at rest at all instants, so its strength is"
@@ -286,20 +296,6 @@ def _joint_rate(solution: Histories, joint: str, kind: str) -> Array | None:
     if kind == "angle":
         name = entry.turning or name
     return None if name is None else solution.outputs.get(Output("motion", name, "rate"))
-
-
-def _forces(solution: Histories, joint: str) -> tuple[Array, Array]:
-    """The sizes of a reaction across the pin's axis, and along it."""
-    if not solution.description.space:
-        found = solution.reaction(joint)
-        return np.hypot(found.fx, found.fy), np.zeros_like(found.fx)
-    # In space reactions are given on the joint's own axes too, of which the first is the one it
-    # turns about.
-    nothing = np.zeros_like(solution.t)
-    u, v, w = (
-        solution.outputs.get(Output("reaction", joint, f"f{axis}"), nothing) for axis in "uvw"
-    )
-    return np.hypot(v, w), np.abs(u)
 
 
 def _verdict(

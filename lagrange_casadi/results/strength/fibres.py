@@ -142,8 +142,11 @@ def maxima(member: Member, score: Score, beside: float = 1.0) -> list[list[Maxim
     best = np.full(member.shape[:-1] or 1, -np.inf)
     found: list[list[Maximum]] = [[] for _ in best]
     for strips in _strips(member):
-        search = _halved if score.exact and len(strips.ordinates[0]) == 1 else _counted
-        scores, places = search(strips, score, best, beside)
+        scores, places = (
+            _largest(strips.ordinates, score.bound, strips.design, best, beside)
+            if score.exact and len(strips.ordinates[0]) == 1
+            else _counted(strips, score, best, beside)
+        )
         higher = np.isfinite(scores) & (scores >= beside * best[strips.design])
         for k in np.flatnonzero(higher).tolist():
             maximum = Maximum(float(scores[k]), strips, k, float(places[k]))
@@ -187,15 +190,11 @@ def _strips(member: Member) -> Iterator[Strips]:
         yield from Strips.of(cell, at, at, side, notch_factor(notch))
 
 
-def _halved(strips: Strips, score: Score, best: Array, beside: float) -> tuple[Array, Array]:
-    """The scores of strips (strips,) whose bounds are scores, and their places from 0 to 1; what is
-    below ``beside`` times the ``best`` of a design, which they raise, may be less than its maximum.
-    """
-    return _largest(strips.ordinates, score.bound, strips.design, best, beside)
-
-
 def _counted(strips: Strips, score: Score, best: Array, beside: float) -> tuple[Array, Array]:
-    """As :func:`_halved`, by counting swings; -inf of strips that are not looked at."""
+    """The scores of strips (strips,) by counting swings, -inf of those that are not looked at, and
+    their places from 0 to 1; what is below ``beside`` times the ``best`` of a design, which they
+    raise, may be less than its maximum.
+    """
     scores, places = np.full(strips.design.size, -np.inf), np.zeros(strips.design.size)
     bounds = score.bound(np.moveaxis(strips.ordinates, 1, 0)).max(axis=0)
     x, order = strips.places, np.argsort(-bounds, kind="stable")
