@@ -329,7 +329,7 @@ def use_score(material: Material, criterion: str = "goodman") -> Score:
         found = loaded(values)
         return float(np.max(swing(found.amplitude, found.mean)))
 
-    return Score(of, lambda stresses: _bound(swing, stresses), swing, exact)
+    return Score(of, lambda stresses: _bound(swing, stresses, exact=exact), swing, exact)
 
 
 def damage_score(material: Material, criterion: str = "goodman") -> Score:
@@ -356,13 +356,18 @@ def damage_score(material: Material, criterion: str = "goodman") -> Score:
     return Score(of, bound, _use(material, criterion))
 
 
-def _bound(swing: Callable[[Array, Array], Operand], stresses: Array) -> Array:
+def _bound(
+    swing: Callable[[Array, Array], Operand], stresses: Array, *, exact: bool = False
+) -> Array:
     """Bound on how bad any ``swing`` in stresses (k, ..., t) is.
 
     Shear stress counts as the widest, about the largest. Then a swing is no worse than one between
-    the smallest and the largest normal stress, or than one of shear alone at the largest.
+    the smallest and the largest normal stress, or than one of shear alone at the largest. The
+    first is the worst of normal stress alone if a score is ``exact``.
     """
     low, high = stresses.min(axis=-1), stresses.max(axis=-1)
+    if exact and len(stresses) == 1:
+        return np.asarray(swing((high[0] - low[0]) / 2, (high[0] + low[0]) / 2))
     ranges = 3.0 * np.sum((high[1:] - low[1:]) ** 2, axis=0)
     sizes = 3.0 * np.sum(np.maximum(high[1:], -low[1:]) ** 2, axis=0)
     corners = [

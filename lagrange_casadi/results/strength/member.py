@@ -292,21 +292,15 @@ class Member(Brief):
         """The degree along the link of its section forces, between two marks."""
         return len(self.law.functions.moment) - 1
 
-    @property
-    def marks(self) -> list[Array]:
-        """Ratios (t,) between which section forces are polynomials: stations, ends of loads, and
-        breaks of the density.
-        """
-        still = np.zeros_like(self.t)
-        breaks = [still + ratio for ratio in self.law.functions.breaks[0, 1:-1]]
-        return [*(np.clip(load.station, 0.0, 1.0) for load in self.law.loads), *breaks]
-
     @cached_property
     def edges(self) -> Array:
-        """Ratios (t, m) from 0 to 1 between which strains are smooth, in order at every instant."""
-        still = np.zeros_like(self.t)
-        fixed = [0.0, 1.0, *(cell.high for cell in self.cells[:-1])]
-        return np.sort(np.stack([*self.marks, *(still + ratio for ratio in fixed)], axis=1), axis=1)
+        """Ratios (t, m) from 0 to 1 between which strains are smooth, in order at every instant:
+        stations, ends of loads, and breaks of the density and of the cross-section.
+        """
+        cuts = [*(cell.high for cell in self.cells[:-1]), *self.law.functions.breaks[0, 1:-1]]
+        fixed = np.tile([0.0, 1.0, *cuts], (self.t.size, 1))
+        stations = [np.clip(load.station, 0.0, 1.0) for load in self.law.loads]
+        return np.sort(np.column_stack([fixed, *stations]), axis=1)
 
     @property
     def strain_degree(self) -> int:

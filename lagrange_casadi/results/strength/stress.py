@@ -244,7 +244,8 @@ class Stress:
         """The stresses over few instants after another."""
         member = self.member
         each = sum((2 * (member.degree + c.degree) + 1) * len(c.names) for c in member.cells)
-        height = max(1, _BLOCK // (each * (len(member.marks) + 1)))
+        parts = len(member.law.loads) + member.law.functions.breaks.shape[1]
+        height = max(1, _BLOCK // (each * parts))
         for start in range(0, member.t.size, height):
             yield (
                 self
