@@ -299,8 +299,8 @@ class Member(Brief):
         """
         cuts = [*(cell.high for cell in self.cells[:-1]), *self.law.functions.breaks[0, 1:-1]]
         fixed = np.tile([0.0, 1.0, *cuts], (self.t.size, 1))
-        stations = [np.clip(load.station, 0.0, 1.0) for load in self.law.loads]
-        return np.sort(np.column_stack([fixed, *stations]), axis=1)
+        load_points = [np.clip(load.station, 0.0, 1.0) for load in self.law.loads]
+        return np.sort(np.column_stack([fixed, *load_points]), axis=1)
 
     @property
     def strain_degree(self) -> int:
