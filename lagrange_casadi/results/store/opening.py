@@ -143,6 +143,8 @@ def opened_file(
                     f"{path}: schema version {stored}, this program reads version {VERSION}: run it"
                     " again"
                 )
+            if not file.attrs.get("complete", False):
+                raise StoreError(f"{path}: was not written to its end")
             yield file
 
 
