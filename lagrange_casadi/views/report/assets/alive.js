@@ -293,7 +293,6 @@ class Alive {
       if (contents.live.poses[name].slice(6).some((source) => source < 0)) complete(numbers);
       body.pose.forEach((column, k) => (column[posture.instant] = numbers[k]));
     }
-    framesOf = -1;
   }
 
   loops() {
@@ -321,9 +320,7 @@ class Alive {
     this.carries = this.carriedNow(numbers) === this.carried;
     contents.paths.forEach((path, k) => (path.at = at(picture.paths[k])));
     const spots = [
-      ...contents.joints.flatMap((joint) => [joint.parent, joint.child]),
-      ...contents.loads.filter((load) => load.kind === "spring").flatMap((load) => load.spots),
-      ...contents.paths,
+      ...spotsNow(),
       ...picture.rollers.map((roller) => ({ body: roller.body, at: at(roller.at), radius: numbers[roller.radius] })),
     ];
     for (const body of contents.bodies) {

@@ -66,7 +66,7 @@ function drawActions(paper, instant, kinds, scale, values) {
 /** The ends of arrows at some instants, so that all have room. */
 function arrowEnds(kinds, scale) {
   const found = [];
-  for (let i = 0; i < instants.count; i += Math.max(1, Math.floor(instants.count / 40))) {
+  for (const i of someInstants(40)) {
     for (const action of actions) {
       if (!kinds[action.kind] || (action.moment && !contents.space)) continue;
       const way = times(vectorOf(action, i), action.moment ? scale.moment : scale.force);

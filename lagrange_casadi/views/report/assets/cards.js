@@ -56,7 +56,7 @@ class MovingCard extends Card {
 
   mark(instant) {
     if (!this.plot || !this.seen) return;
-    if (this.plot.across || this.plot.middle) this.plot.mark(instant);
+    if (this.plot.sheet.width) this.plot.mark(instant);
     this.values?.forEach(([curve, place]) => {
       say(place, shownOf(curve.values[instant], curve.unit, largestOf(curve.values)));
     });
@@ -78,7 +78,9 @@ class MovingCard extends Card {
   }
 }
 
-function addCard(kind, card, focus) {
+/** Add a card of a kind, with what is to be chosen on it at first: names and numbers, so that these can be kept. */
+function addCard(kind, chosen, focus = false) {
+  const card = CARDS[kind](structuredClone(chosen));
   card.kind = kind;
   deck.cards.push(card);
   deck.list.append(card.body);
@@ -87,10 +89,11 @@ function addCard(kind, card, focus) {
   return card;
 }
 
-/** Quantities over the instants, or over another one. */
-function chartCard(names, along = alongInstants, focus = false) {
+const CARDS = { chart: chartCard, section: sectionCard, map: mapCard, diagram: diagramCard, polar: polarCard };
+
+/** Quantities over the instants, or over another one: their names, and that of the other. */
+function chartCard(state) {
   const axes = [["Instants", [["t", "time"], ...(over ? [["over", over.joint]] : [])]], ...seriesEntries()];
-  const state = { x: along, names: [...names] };
   const card = new MovingCard("", state, () => {
     const groups = [...new Set(state.names.map((name) => contents.groups[seriesByName.get(name).group]))];
     card.title.textContent = groups.length === 1 ? groups[0] : "Chart";
@@ -107,50 +110,51 @@ function chartCard(names, along = alongInstants, focus = false) {
     state.names.splice(k, 1);
     card.renew();
   };
-  return addCard("chart", card, focus);
+  return card;
 }
 
 const linkEntries = (links) => links.map(({ link }) => [link, link]);
 
-/** All forces of one section over the instants. */
-function sectionCard(section, ratio, focus = false) {
-  const state = { section, ratio };
+/** All forces of one section over the instants: its link, and the number of its ratio. */
+function sectionCard(state) {
   const described = element("output", { class: "ratio" });
   const card = new MovingCard("A section", state, () => {
-    const xi = state.section.xi[state.ratio];
-    described.textContent = `ξ/l = ${format(xi, 3)}, ${shown(xi * state.section.length, "m", 4, state.section.length)} from the base`;
-    const forces = knownForces(state.section).filter((force) => !contents.space || ["axial", "shear", "torsion", "bending"].includes(force.name));
-    return forces.length ? new Chart(curveOf(alongInstants), forces.map((force) => curveOfSection(state.section, force, state.ratio))) : null;
+    const section = sectionByLink.get(state.link);
+    const xi = section.xi[state.ratio];
+    described.textContent = `ξ/l = ${format(xi, 3)}, ${shown(xi * section.length, "m", 4, section.length)} from the base`;
+    const forces = knownForces(section).filter((force) => !contents.space || ["axial", "shear", "torsion", "bending"].includes(force.name));
+    return forces.length ? new Chart(curveOf(alongInstants), forces.map((force) => curveOfSection(section, force, state.ratio))) : null;
   });
+  const last = sectionByLink.get(state.link).xi.length - 1;
   const slider = element("input", {
-    type: "range", min: 0, max: section.xi.length - 1, value: ratio, "aria-label": "Place along the link, ξ/l",
-    input: () => card.pin({ section: state.section, ratio: Number(slider.value) }),
+    type: "range", min: 0, max: last, value: state.ratio, "aria-label": "Place along the link, ξ/l",
+    input: () => card.pin({ ratio: Number(slider.value) }),
   });
-  const link = chooser("Link", linkEntries(sections), section.link, (name) => card.pin({ section: sectionByLink.get(name), ratio: state.ratio }));
+  const list = chooser("Link", linkEntries(sections), state.link, (link) => card.pin({ link }));
   card.pin = (pinned) => {
     Object.assign(state, pinned);
-    link.value = state.section.link;
+    list.value = state.link;
     slider.value = state.ratio;
     card.renew();
     deck.stage.pinned = { ...state };
     deck.stage.draw();
   };
-  card.choices.append(link, slider, described);
-  return addCard("section", card, focus);
+  card.choices.append(list, slider, described);
+  return card;
 }
 
 /** Show the section of a link at a ratio. */
 function showSection(link, xi) {
-  const section = sectionByLink.get(link);
-  pinSection({ section, ratio: Math.round(xi * (section.xi.length - 1)) }, false);
+  pinSection({ link, ratio: Math.round(xi * (sectionByLink.get(link).xi.length - 1)) }, false);
 }
 
 /** Pin a section: the card of sections shows it, and the picture marks it. */
 function pinSection(pinned, focus = true) {
-  const card = deck.cards.find((one) => one.pin) ?? sectionCard(pinned.section, pinned.ratio, focus);
-  card.pin(pinned);
-  const xi = format(pinned.section.xi[pinned.ratio], 3);
-  announce(`${pinned.section.link} at xi/l = ${xi}: ${sectionLines(pinned.section, pinned.ratio, player.instant).map((line) => line.join(" ")).join(", ")}`);
+  const { link, ratio } = pinned;
+  const card = deck.cards.find((one) => one.pin) ?? addCard("section", { link, ratio }, focus);
+  card.pin({ link, ratio });
+  const xi = format(sectionByLink.get(link).xi[ratio], 3);
+  announce(`${link} at xi/l = ${xi}: ${sectionLines(pinned, player.instant).map((line) => line.join(" ")).join(", ")}`);
 }
 
 /** What can be mapped of a link: its section forces, and what the page holds of it; each with a name, words and a field. */
@@ -162,8 +166,7 @@ function mappedOf(link) {
 }
 
 /** A map along a link: of a section force by its name, or of "stress" or "deflection". */
-function mapCard(link, name, focus = false) {
-  const state = { link, name };
+function mapCard(state) {
   const chosen = () => mappedOf(state.link).find((one) => one.name === state.name);
   const card = new MovingCard("Section map", state, () => {
     const one = chosen();
@@ -177,22 +180,21 @@ function mapCard(link, name, focus = false) {
     offer(what, offered(), state.name);
   });
   card.choices.append(links, what);
-  return addCard("map", card, focus);
+  return card;
 }
 
-/** N, V and M along a link, at the instant that governs it or at that which is shown. */
-function diagramCard(link, focus = false, when = "governs") {
-  const state = { link, when };
+/** N, V and M along a link, at the instant that "governs" it or at that which is "shown". */
+function diagramCard(state) {
   const card = new MovingCard("Diagrams", state, () => new Diagram(sectionByLink.get(state.link), state.when));
   card.choices.append(
     card.choose("link", "Link", linkEntries(diagramLinks())),
     card.choose("when", "Instant", [["governs", "at the instant that governs"], ["shown", "at the instant shown"]]),
   );
-  return addCard("diagram", card, focus);
+  return card;
 }
 
-function polarCard(joint, focus = false, way = "0") {
-  const state = { joint: joint.name, way };
+/** What a joint bears, by its name and the number of a way to look at that. */
+function polarCard(state) {
   const joints = polarJoints();
   const chosen = () => joints.find((one) => one.name === state.joint);
   const card = new MovingCard("Bearing load", state, () => new Polar(chosen(), polarWays(chosen())[state.way]));
@@ -203,7 +205,7 @@ function polarCard(joint, focus = false, way = "0") {
     offer(ways, offered(), "0");
   });
   card.choices.append(list, ways);
-  return addCard("polar", card, focus);
+  return card;
 }
 
 /** The first cards: efforts, what the joints bear, the section that bends most, and the bearing that bears most. */
@@ -213,26 +215,27 @@ function firstCards() {
   const largest = (names, count) => [...names].sort((a, b) => peakOf(b) - peakOf(a)).slice(0, count);
   const efforts = named("effort");
   const resultants = named("reaction", (one) => one.name.endsWith(":resultant"));
-  if (efforts.length) chartCard(largest(efforts, 6).sort((a, b) => efforts.indexOf(a) - efforts.indexOf(b)));
+  const chart = (names) => addCard("chart", { x: alongInstants, names });
+  if (efforts.length) chart(largest(efforts, 6).sort((a, b) => efforts.indexOf(a) - efforts.indexOf(b)));
   const forces = ["bending", "axial", "shear"].flatMap((name) => sections.map((section) => [section, section.forces.get(name)]));
   const bent = forces.filter(([, force]) => force && !force.open).map(([section, force]) => [section, force, peakOf(`section:${section.link}:${force.name}`)]);
   const worst = bent.filter(([, force]) => force.name === bent[0][1].name).sort((a, b) => b[2] - a[2])[0];
   if (worst) {
-    diagramCard(worst[0].link);
-    mapCard(worst[0].link, worst[1].name);
-    const peak = rowByName.get(`section:${worst[0].link}:${worst[1].name}`)?.peak;
-    sectionCard(worst[0], Math.round((peak?.xi ?? 0.5) * (worst[0].xi.length - 1)));
+    const [{ link, xi }, { name }] = worst;
+    addCard("diagram", { link, when: "governs" });
+    addCard("map", { link, name });
+    addCard("section", { link, ratio: Math.round((rowByName.get(`section:${link}:${name}`)?.peak?.xi ?? 0.5) * (xi.length - 1)) });
   }
   const stressed = contents.maps.filter((map) => map.name.startsWith("stress:")).sort((a, b) => b.peak.value - a.peak.value)[0];
-  if (stressed) mapCard(stressed.link, "stress");
-  if (resultants.length) chartCard(largest(resultants, 5));
+  if (stressed) addCard("map", { link: stressed.link, name: "stress" });
+  if (resultants.length) chart(largest(resultants, 5));
   const joints = polarJoints();
   const turning = joints.filter((joint) => joint.kind === "revolute");
   const most = [...(turning.length ? turning : joints)].sort((a, b) => peakOf(`reaction:${b.name}:resultant`) - peakOf(`reaction:${a.name}:resultant`))[0];
-  if (most) polarCard(most);
+  if (most) addCard("polar", { joint: most.name, way: "0" });
   const own = named("output");
-  if (own.length) chartCard(own.slice(0, 6));
-  if (!deck.cards.length) chartCard(named("motion").slice(0, 1));
+  if (own.length) chart(own.slice(0, 6));
+  if (!deck.cards.length) chart(named("motion").slice(0, 1));
 }
 
 /** The buttons that add cards. */
@@ -240,15 +243,17 @@ function addingBar() {
   const driven = contents.series.find((one) => one.group === "motion" && one.what === "coordinate");
   const effort = contents.series.find((one) => one.group === "effort") ?? contents.series[0];
   const section = sections.find((one) => knownForces(one).length);
+  const diagrams = diagramLinks()[0];
   const joint = polarJoints()[0];
   const button = (words, add) => element("button", { type: "button", class: "add", click: add }, `+ ${words}`);
+  const adds = (words, kind, chosen) => button(words, () => addCard(kind, chosen, true));
   return element(
     "div", { class: "adding", role: "group", "aria-label": "Add a plot" },
-    effort && button("chart", () => chartCard([effort.name], alongInstants, true)),
-    effort && driven && button("cross-plot", () => chartCard([effort.name], driven.name, true)),
-    section && button("section", () => pinSection({ section, ratio: 50 })),
-    section && diagramLinks().length > 0 && button("diagrams", () => diagramCard(diagramLinks()[0].link, true)),
-    section && button("section map", () => mapCard(section.link, knownForces(section)[0].name, true)),
-    joint && button("polar plot", () => polarCard(joint, true)),
+    effort && adds("chart", "chart", { x: alongInstants, names: [effort.name] }),
+    effort && driven && adds("cross-plot", "chart", { x: driven.name, names: [effort.name] }),
+    section && button("section", () => pinSection({ link: section.link, ratio: 50 })),
+    diagrams && adds("diagrams", "diagram", { link: diagrams.link, when: "governs" }),
+    section && adds("section map", "map", { link: section.link, name: knownForces(section)[0].name }),
+    joint && adds("polar plot", "polar", { joint: joint.name, way: "0" }),
   );
 }

@@ -24,14 +24,8 @@ function buildComparison() {
   const renew = () => cards.forEach((card) => card.draw());
   reading.watchers.add(renew);
   drawWith(root, renew);
-  window.addEventListener("beforeprint", () => {
-    document.documentElement.dataset.theme = "light";
-    cards.forEach((card) => card.draw(330));
-  });
-  window.addEventListener("afterprint", () => {
-    delete document.documentElement.dataset.theme;
-    renew();
-  });
+  window.addEventListener("beforeprint", () => cards.forEach((card) => card.draw(330)));
+  window.addEventListener("afterprint", renew);
 }
 
 function headOf(send) {
@@ -97,7 +91,7 @@ class Comparison {
 
   describe(at) {
     const most = Math.max(...this.curves.map(largestOf));
-    return [`${along[0].title} = ${shown(along[0].values[at[0]], along[0].unit)}`, runs.map((run, k) => [run.name, shownOf(this.curves[k][at[k]], this.unit, most)])];
+    return [`${along[0].title} = ${shown(along[0].values[at[0]], along[0].unit)}`, runs.map((run, k) => [run.name, shown(this.curves[k][at[k]], this.unit, 5, most)])];
   }
 
   /** What is saved as CSV: both runs below each other, for their instants may differ. */

@@ -2,12 +2,15 @@
 
 const contents = JSON.parse(document.getElementById("contents").textContent);
 
-const numbers = (() => {
-  const text = atob(contents.numbers);
-  const bytes = new Uint8Array(text.length);
-  for (let k = 0; k < text.length; k += 1) bytes[k] = text.charCodeAt(k);
-  return new Float64Array(bytes.buffer);
-})();
+/** The bytes of a text in base 64. */
+function bytesOf(text) {
+  const letters = atob(text);
+  const bytes = new Uint8Array(letters.length);
+  for (let k = 0; k < letters.length; k += 1) bytes[k] = letters.charCodeAt(k);
+  return bytes;
+}
+
+const numbers = new Float64Array(bytesOf(contents.numbers).buffer);
 
 const decoded = new Map();
 
@@ -23,14 +26,19 @@ function array(number) {
 /** Ends what listens to the whole window, where a viewer of other contents takes the place of this one. */
 const ended = new AbortController();
 
-let largest = new WeakMap();
+/** What is found of arrays and rows, each once, until they hold other numbers. */
+let remembered = new WeakMap();
+
+function once(of, find) {
+  if (!remembered.has(of)) remembered.set(of, find(of));
+  return remembered.get(of);
+}
 
 /** The largest size among values, those that are no numbers left out. */
 function largestOf(values) {
-  if (!largest.has(values)) {
-    let found = 0;
-    for (const value of values) if (Math.abs(value) > found) found = Math.abs(value);
-    largest.set(values, found);
-  }
-  return largest.get(values);
+  return once(values, () => {
+    let most = 0;
+    for (const value of values) if (Math.abs(value) > most) most = Math.abs(value);
+    return most;
+  });
 }

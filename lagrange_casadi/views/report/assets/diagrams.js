@@ -104,7 +104,7 @@ class Diagram {
   }
 
   mark() {
-    if (this.middle && this.sheet.width) this.draw(this.sheet.width);
+    if (this.middle) this.draw(this.sheet.width);
   }
 
   /** At which instant, and why then. */
@@ -125,7 +125,8 @@ class Diagram {
   }
 
   describe(ratio) {
-    return [`${placeWords({ section: this.section, ratio })}; ${whenIs(this.instant)}`, sectionLines(this.section, ratio, this.instant)];
+    const place = { link: this.section.link, ratio };
+    return [`${placeWords(place)}; ${whenIs(this.instant)}`, sectionLines(place, this.instant)];
   }
 
   /** What is saved as CSV. */

@@ -9,7 +9,7 @@ function fieldOfForce(section, force) {
     peak: () => (!row || row.open ? null : row.peak),
     column: instantOn,
     fill: (column, found, step) => (row && isNothing(row) ? found.fill(0) : sectionForces(section, force.name, column, found, step)),
-    describe: (column, ratio) => [whenIs(column), sectionLines(section, ratio, column)],
+    describe: (column, ratio) => [whenIs(column), sectionLines({ link: section.link, ratio }, column)],
     show: () => showRow(row),
   };
 }
@@ -168,26 +168,23 @@ class Heat {
 
 const LEVELS = 255;
 
-const palettes = new Map();
-
 /** The points of a map in the colours that the page has now: `plain` and `lined` have one for each level, from all negative to all positive. */
 function coloursNow() {
-  const names = ["map-positive", "map-negative", "map-none"].map((name) => deck.stage.paper.inks[name]);
-  const key = names.join();
-  if (!palettes.has(key)) {
-    const [positive, negative, none] = names.map(partsOfInk);
-    const point = (level, dark) => {
-      const share = Math.abs(level) / LEVELS;
-      const part = share ** 0.85;
-      const to = level < 0 ? negative : positive;
-      const light = dark && level < 0 && part > 0.04 ? 0.78 : 1;
-      const [r, g, b] = [0, 1, 2].map((k) => Math.round((none[k] + part * (to[k] - none[k])) * light));
-      return ((255 << 24) | (b << 16) | (g << 8) | r) >>> 0;
-    };
-    const all = (dark) => Uint32Array.from({ length: 2 * LEVELS + 1 }, (_, k) => point(k - LEVELS, dark));
-    palettes.set(key, { plain: all(false), lined: all(true), bars: new Map() });
-  }
-  return palettes.get(key);
+  const { inks } = deck.stage.paper;
+  inks.levels ??= levelsOf(...["map-positive", "map-negative", "map-none"].map((name) => partsOfInk(inks[name])));
+  return inks.levels;
+}
+
+function levelsOf(positive, negative, none) {
+  const point = (level, dark) => {
+    const part = (Math.abs(level) / LEVELS) ** 0.85;
+    const to = level < 0 ? negative : positive;
+    const light = dark && level < 0 && part > 0.04 ? 0.78 : 1;
+    const [r, g, b] = [0, 1, 2].map((k) => Math.round((none[k] + part * (to[k] - none[k])) * light));
+    return ((255 << 24) | (b << 16) | (g << 8) | r) >>> 0;
+  };
+  const all = (dark) => Uint32Array.from({ length: 2 * LEVELS + 1 }, (_, k) => point(k - LEVELS, dark));
+  return { plain: all(false), lined: all(true) };
 }
 
 /** A point of a map, by its part of the largest value: from nothing to positive or negative; what is negative has slanted darker lines. */
@@ -199,16 +196,13 @@ function pixelOf(part, slant, { plain, lined }) {
 
 /** The bar of colours beside a map, from the largest value to its negative or to nothing, as the address of a picture. */
 function barOf(colours, both) {
-  if (!colours.bars.has(both)) {
-    const canvas = element("canvas", { width: 12, height: 120 });
-    const context = canvas.getContext("2d");
-    const image = context.createImageData(12, 120);
-    const pixels = new Uint32Array(image.data.buffer);
-    for (let row = 0; row < 120; row += 1) {
-      for (let column = 0; column < 12; column += 1) pixels[12 * row + column] = pixelOf(1 - ((both ? 2 : 1) * row) / 119, column + row, colours);
-    }
-    context.putImageData(image, 0, 0);
-    colours.bars.set(both, canvas.toDataURL());
+  const canvas = element("canvas", { width: 12, height: 120 });
+  const context = canvas.getContext("2d");
+  const image = context.createImageData(12, 120);
+  const pixels = new Uint32Array(image.data.buffer);
+  for (let row = 0; row < 120; row += 1) {
+    for (let column = 0; column < 12; column += 1) pixels[12 * row + column] = pixelOf(1 - ((both ? 2 : 1) * row) / 119, column + row, colours);
   }
-  return colours.bars.get(both);
+  context.putImageData(image, 0, 0);
+  return canvas.toDataURL();
 }

@@ -13,7 +13,7 @@ function buildPage() {
   );
   const stage = new Stage(canvas);
   deck.stage = stage;
-  const gestures = listenTo(stage, { point: (found, event) => pointAt(stage, found, event), pin: (found) => pinSection(found) });
+  const gestures = listenTo(stage, { point: (found, event) => pointAt(stage, found, event), pin: pinSection });
   frame.append(viewBar(stage, gestures));
   left.append(transportBar(), showBar(stage));
   if (contents.live) {
@@ -75,12 +75,12 @@ function headOf() {
   const span = () => `${instants.total} instant${instants.total > 1 ? "s" : ""}${shownOf}, t = ${[0, -1].map((k) => timeWords(instants.t.at(k))).join(" to ")}`;
   const described = element("p", { class: "subtitle" }, span());
   reading.watchers.add(() => say(described, span()));
-  const themes = ["auto", "light", "dark"];
-  const theme = switchButton(`◐ ${document.documentElement.dataset.theme ?? "auto"}`, "Light or dark", () => {
-    const next = themes[(themes.indexOf(document.documentElement.dataset.theme ?? "auto") + 1) % 3];
-    if (next === "auto") delete document.documentElement.dataset.theme;
-    else document.documentElement.dataset.theme = next;
-    theme.textContent = `◐ ${next}`;
+  const next = { auto: "light", light: "dark", dark: "auto" };
+  const { dataset } = document.documentElement;
+  dataset.theme ??= "auto";
+  const theme = switchButton(`◐ ${dataset.theme}`, "Light or dark", () => {
+    dataset.theme = next[dataset.theme];
+    theme.textContent = `◐ ${dataset.theme}`;
     repaint();
   });
   return headWith(contents.case, described, badge, siSwitch(), theme, printSwitch());
@@ -98,13 +98,13 @@ function glanceOf() {
     place.tile = element("button", { type: "button", class: "tile", title: "Show when and where", click: () => showRow(place.row) }, place.what, place.value, place.where);
     return place;
   });
-  const fill = (sizes = sizesOfUnits()) => tiles().forEach((row, k) => {
+  const fill = () => tiles().forEach((row, k) => {
     const known = Number.isFinite(row.peak.value);
     const where = row.peak.xi === null ? "" : ` · ξ/l = ${row.peak.xi.toFixed(2)}`;
     places[k].row = row;
     say(places[k].what, `Largest ${row.what.replace("resultant ", "")}`);
-    say(places[k].value, peakWords(row, sizes));
-    say(places[k].where, isNothing(row, sizes) ? "" : known ? `${row.part}${where} · ${whenOf(row.peak.t, row.peak.over)}` : "no result");
+    say(places[k].value, peakWords(row));
+    say(places[k].where, isNothing(row) ? "" : known ? `${row.part}${where} · ${whenOf(row.peak.t, row.peak.over)}` : "no result");
   });
   fill();
   reading.watchers.add(fill);
@@ -127,13 +127,13 @@ function linksTable() {
   };
   const heads = columns.map((k) => element("th", { scope: "col" }, links.map(([, rows]) => rows[k]).find(Boolean).what.replace("resultant ", "")));
   const lines = links.map(([link, rows]) => element("tr", {}, element("th", { scope: "row" }, link), columns.map((k) => cellOf(rows[k]))));
-  const fill = (sizes = sizesOfUnits()) => cells.forEach(([row, value, when]) => {
+  const fill = () => cells.forEach(([row, value, when]) => {
     const { peak } = row;
-    say(value, peakWords(row, sizes));
-    say(when, !Number.isFinite(peak.value) || isNothing(row, sizes) ? "" : over ? shown(peak.over, over.unit, 4) : whenOf(peak.t, null));
+    say(value, peakWords(row));
+    say(when, !Number.isFinite(peak.value) || isNothing(row) ? "" : over ? shown(peak.over, over.unit, 4) : whenOf(peak.t, null));
   });
   fill();
-  reading.watchers.add(() => fill());
+  reading.watchers.add(fill);
   return element("section", { class: "card links" }, element("header", {}, element("h3", {}, "Largest in each link"), over && element("span", { class: "fine" }, `with the ${over.unit === "rad" ? "angle" : "place"} of ${over.joint}`)),
     element("div", { class: "scroll" }, element("table", { "aria-label": "Largest in each link" }, element("thead", {}, element("tr", {}, element("th", { scope: "col" }, "link"), heads)), element("tbody", {}, lines))));
 }
@@ -155,9 +155,9 @@ function showRow(row) {
 function pointAt(stage, found, event) {
   const { pointed } = stage;
   stage.pointed = found;
-  const same = found?.section === pointed?.section && found?.ratio === pointed?.ratio;
+  const same = found?.link === pointed?.link && found?.ratio === pointed?.ratio;
   if (!same && !player.playing) stage.draw();
-  if (found) showTip(event, placeWords(found), sectionLines(found.section, found.ratio, stage.instant));
+  if (found) showTip(event, placeWords(found), sectionLines(found, stage.instant));
   else showTip(null);
 }
 
@@ -239,8 +239,7 @@ function listenToPrinter(stage) {
   }, { signal: ended.signal });
   window.addEventListener("afterprint", () => {
     if (!before) return;
-    if (before.theme) document.documentElement.dataset.theme = before.theme;
-    else delete document.documentElement.dataset.theme;
+    document.documentElement.dataset.theme = before.theme;
     repaint();
     if (before.playing) player.play();
   }, { signal: ended.signal });

@@ -19,7 +19,11 @@ class Paper {
   /** Read the colours that the page has now. */
   readInks() {
     const style = getComputedStyle(this.canvas);
-    const ink = (name) => style.getPropertyValue(`--${name}`).trim();
+    // As a colour of an element what is light or dark is one of both.
+    const ink = (name) => {
+      this.canvas.style.color = `var(--${name})`;
+      return style.color;
+    };
     const names = ["ink", "soft", "faint", "sheet", "metal", "reaction", "effort", "load", "positive", "negative", "path", "accent", "bad", "map-positive", "map-negative", "map-none"];
     this.inks = Object.fromEntries(names.map((name) => [name, ink(name)]));
     this.inks.bodies = Array.from({ length: BODY_COLOURS }, (_, k) => ink(`body-${k}`));
@@ -121,8 +125,8 @@ class Paper {
   }
 }
 
-/** Red, green and blue of a colour like #1f5fbf, from 0 to 255. */
-const partsOfInk = (colour) => [1, 3, 5].map((k) => parseInt(colour.slice(k, k + 2), 16));
+/** Red, green and blue of a colour like rgb(31, 95, 191), from 0 to 255. */
+const partsOfInk = (colour) => colour.match(/\d+/g).map(Number);
 
 const shades = new Map();
 

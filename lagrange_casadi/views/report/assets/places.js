@@ -4,37 +4,29 @@ const bodies = new Map(
   contents.bodies.map((body, number) => [body.name, { ...body, number, pose: body.pose.map((column) => array(column)) }]),
 );
 
-const frames = new Map();
-let framesOf = -1;
+const GROUND = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]];
 
 /** Place and axes of a body at an instant: [origin, x, y, z]. */
 function frameOf(name, instant) {
-  if (framesOf !== instant) {
-    frames.clear();
-    framesOf = instant;
-  }
-  if (!frames.has(name)) frames.set(name, worked(name, instant));
-  return frames.get(name);
-}
-
-const GROUND = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]];
-
-function worked(name, instant) {
   const body = bodies.get(name);
   if (!body) return GROUND;
-  return frameFrom(body.pose.map((column) => column[instant]));
+  const at = body.pose.map((column) => column[instant]);
+  if (contents.space) return [at.slice(0, 3), at.slice(3, 6), at.slice(6, 9), at.slice(9, 12)];
+  const [c, s] = [Math.cos(at[2]), Math.sin(at[2])];
+  return [[at[0], at[1], 0], [c, s, 0], [-s, c, 0], [0, 0, 1]];
 }
 
-/** Place and axes of the numbers of a pose. */
-function frameFrom(at) {
-  if (at.length === 3) {
-    const [x, y, angle] = at;
-    const c = Math.cos(angle);
-    const s = Math.sin(angle);
-    return [[x, y, 0], [c, s, 0], [-s, c, 0], [0, 0, 1]];
-  }
-  return [at.slice(0, 3), at.slice(3, 6), at.slice(6, 9), at.slice(9, 12)];
+/** Every so manieth instant of all, so that they are about `most`. */
+function someInstants(most) {
+  const step = Math.max(1, Math.floor(instants.count / most));
+  return Array.from({ length: Math.ceil(instants.count / step) }, (_, k) => k * step);
 }
+
+/** The springs among the loads, and the like. */
+const springs = contents.loads.filter((load) => load.kind === "spring");
+
+/** The places on bodies at which something holds or pulls them, or that are declared. */
+const spotsNow = () => [...contents.joints.flatMap((joint) => [joint.parent, joint.child]), ...springs.flatMap((load) => load.spots), ...contents.paths];
 
 /** A place of a body in ground axes. */
 function placeOf(body, at, instant) {
@@ -84,18 +76,19 @@ function circleOf(middle, x, y, radius) {
 /** All places between which something is drawn, at some instants of the whole. */
 function cloud() {
   const found = [];
-  const step = Math.max(1, Math.floor(instants.count / 120));
-  for (let i = 0; i < instants.count; i += step) {
+  for (const i of someInstants(120)) {
     for (const body of bodies.values()) {
       const own = [...body.axis, ...body.arms.flat(), ...body.plates.flat()];
       if (!own.length) own.push(body.centre ?? [0, 0, 0]);
       if (body.around) for (const d of acrossOf(body.around)) own.push(plus(body.centre, d, body.disc), plus(body.centre, d, -body.disc));
-      for (const at of own) found.push(placeOf(body.name, at, i));
+      const frame = frameOf(body.name, i);
+      for (const at of own) found.push(placeIn(frame, at));
     }
-    for (const joint of contents.joints) found.push(spotOf(joint.parent, i), spotOf(joint.child, i));
-    for (const load of contents.loads) if (load.kind === "spring") found.push(...load.spots.map((spot) => spotOf(spot, i)));
-    for (const path of contents.paths) found.push(spotOf(path, i));
-    for (const line of contents.carried) for (let k = 0; k < line.points.length; k += 6) found.push(placeOf(line.body, line.points[k], i));
+    for (const spot of spotsNow()) found.push(spotOf(spot, i));
+    for (const line of contents.carried) {
+      const frame = frameOf(line.body, i);
+      for (let k = 0; k < line.points.length; k += 6) found.push(placeIn(frame, line.points[k]));
+    }
   }
   return found.filter((place) => place.every(Number.isFinite));
 }

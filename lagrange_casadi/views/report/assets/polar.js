@@ -36,7 +36,7 @@ class Polar {
     this.points = Array.from({ length: instants.count }, (_, i) => {
       const [x, y] = [way.columns[0][i], way.columns[1][i]];
       if (!way.body) return [x, y];
-      const [, e, n] = worked(way.body, i);
+      const [, e, n] = frameOf(way.body, i);
       return [x * e[0] + y * e[1], x * n[0] + y * n[1]];
     });
   }

@@ -74,25 +74,26 @@ function partsOf(values, axis, edge, sign) {
   return found;
 }
 
-/** What the section nearest to a point of the sheet is, within so many points of it: the link and the number of its ratio. */
-function sectionUnder(paper, instant, x, y, within = 18) {
-  let best = null;
+/** What the section nearest to a point of the sheet is, within 18 points of it: the link and the number of its ratio. */
+function sectionUnder(paper, instant, x, y) {
+  let [best, least] = [null, 18];
   for (const section of sections) {
     const [base, tip] = [0, section.length].map((at) => paper.on(placeOf(section.link, [at, 0, 0], instant)));
     const [dx, dy] = [tip[0] - base[0], tip[1] - base[1]];
     const along = Math.max(0, Math.min(1, ((x - base[0]) * dx + (y - base[1]) * dy) / (dx * dx + dy * dy || 1)));
     const away = Math.hypot(base[0] + along * dx - x, base[1] + along * dy - y);
-    if (away < within && (!best || away < best.away)) best = { section, ratio: Math.round(along * (section.xi.length - 1)), away };
+    if (away < least) [best, least] = [{ link: section.link, ratio: Math.round(along * (section.xi.length - 1)) }, away];
   }
   return best;
 }
 
 /** A section by its link and the number of its ratio, in words. */
-function placeWords({ section, ratio }) {
-  return `${section.link} at ξ/l = ${format(section.xi[ratio], 3)}`;
+function placeWords({ link, ratio }) {
+  return `${link} at ξ/l = ${format(sectionByLink.get(link).xi[ratio], 3)}`;
 }
 
 /** What a section bears at an instant, in words: lines of a name and a value. */
-function sectionLines(section, ratio, instant) {
+function sectionLines({ link, ratio }, instant) {
+  const section = sectionByLink.get(link);
   return knownForces(section).map((force) => [force.what, shown(sectionForce(section, force.name, instant, ratio), force.unit)]);
 }

@@ -20,8 +20,7 @@ const C = {
 /** Start the engine of a live page, and put its sliders under the picture; says so where a browser has none. */
 async function comeAlive(panel, stage) {
   try {
-    const text = atob(contents.live.module);
-    const { instance } = await WebAssembly.instantiate(Uint8Array.from(text, (letter) => letter.charCodeAt(0)), { Math, C });
+    const { instance } = await WebAssembly.instantiate(bytesOf(contents.live.module), { Math, C });
     live.engine = new Alive(instance);
     live.drag = new Drag(live.engine, stage);
     panel.append(...slidersOf(live.engine));
@@ -180,8 +179,7 @@ function arrive() {
 /** Have all that is shown show what the arrays hold now. */
 function renewAll() {
   const { why } = live.engine;
-  largest = new WeakMap();
-  framesOf = -1;
+  remembered = new WeakMap();
   deck.stage.trace();
   player.renew();
   const gaps = (why && live.engine.stand(player.instant)) || [];

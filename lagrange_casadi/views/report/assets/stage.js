@@ -121,16 +121,14 @@ class Stage {
     const { ribbon } = this.scale;
     if (known && shows.ribbon && ribbon) for (const section of sections) drawRibbon(paper, section, section.forces.get(shows.ribbon), instant, ribbon);
     for (const body of bodies.values()) drawBody(paper, body, instant);
-    for (const load of contents.loads) {
-      if (load.kind === "spring") between(paper, load, ...load.spots.map((spot) => spotOf(spot, instant)));
-    }
+    for (const load of springs) between(paper, load, ...load.spots.map((spot) => spotOf(spot, instant)));
     drawCarried(paper, instant);
     for (const joint of contents.joints) drawJoint(paper, joint, instant);
     for (const path of contents.paths) stamp(paper, "point", paper.on(spotOf(path, instant)), ORDER.joints, Infinity);
     drawActions(paper, instant, shows, this.scale, shows.values);
     if (shows.names) drawNames(paper, instant);
     live.drag?.draw(paper);
-    for (const section of [this.pinned, this.pointed]) if (section) drawSection(paper, section, instant, section === this.pinned);
+    for (const place of [this.pinned, this.pointed]) if (place) drawSection(paper, place, instant, place === this.pinned);
   }
 }
 
@@ -204,10 +202,11 @@ function drawGap(paper, { ends, size }) {
 }
 
 /** A section that is pointed at, or pinned: a cut across its link. */
-function drawSection(paper, { section, ratio }, instant, pinned) {
-  const at = placeOf(section.link, [section.xi[ratio] * section.length, 0, 0], instant);
+function drawSection(paper, { link, ratio }, instant, pinned) {
+  const { xi, length } = sectionByLink.get(link);
+  const at = placeOf(link, [xi[ratio] * length, 0, 0], instant);
   const [x, y] = paper.on(at);
-  const [, dx, dy] = wayTo([0, 0], paper.along(directionOf(section.link, [1, 0, 0], instant)));
+  const [, dx, dy] = wayTo([0, 0], paper.along(directionOf(link, [1, 0, 0], instant)));
   const half = 2.2 * pinSize(paper);
   paper.put(ORDER.names, -1, (context) => {
     if (!pinned) context.setLineDash([4, 3]);

@@ -95,11 +95,7 @@ const reaches = new Map();
 /** Between which places a joint slides over all instants, along its parent's axis [m]. */
 function reachOf(joint) {
   if (!reaches.has(joint.name)) {
-    const step = Math.max(1, Math.floor(instants.count / 240));
-    const ways = Array.from({ length: Math.ceil(instants.count / step) }, (_, k) => {
-      const axis = directionOf(joint.parent.body, joint.axes[0], k * step);
-      return dot(less(spotOf(joint.child, k * step), spotOf(joint.parent, k * step)), axis);
-    });
+    const ways = someInstants(240).map((i) => dot(less(spotOf(joint.child, i), spotOf(joint.parent, i)), directionOf(joint.parent.body, joint.axes[0], i)));
     reaches.set(joint.name, endsOf([ways], false));
   }
   return reaches.get(joint.name);
@@ -158,7 +154,8 @@ function block(paper, place, body) {
 function drawCarried(paper, instant) {
   if (live.engine && !live.engine.carries) return;
   for (const line of contents.carried) {
-    const points = line.points.map((at) => paper.on(placeOf(line.body, at, instant)));
+    const frame = frameOf(line.body, instant);
+    const points = line.points.map((at) => paper.on(placeIn(frame, at)));
     const depth = points.reduce((sum, [, , near]) => sum + near, 0) / points.length;
     const ink = line.of ? paper.inks.bodies[bodies.get(line.of).number % BODY_COLOURS] : paper.inks.soft;
     paper.put(ORDER.solids, depth, (context) => {

@@ -2,20 +2,22 @@
 
 /** The largest size of each unit. */
 function sizesOfUnits() {
-  const sizes = new Map();
-  for (const row of contents.rows) if (!row.open) sizes.set(row.unit, Math.max(sizes.get(row.unit) ?? 0, Math.abs(row.peak.value)));
-  return sizes;
+  return once(contents.rows, (rows) => {
+    const sizes = new Map();
+    for (const row of rows) if (!row.open) sizes.set(row.unit, Math.max(sizes.get(row.unit) ?? 0, Math.abs(row.peak.value)));
+    return sizes;
+  });
 }
 
 /** Whether a quantity is nothing but rounding: by its error, or beside the largest of its unit. */
-function isNothing(row, sizes = sizesOfUnits()) {
-  return !row.open && Math.abs(row.peak.value) <= Math.max(2 * (row.error ?? 0), UNSEEN * sizes.get(row.unit));
+function isNothing(row) {
+  return !row.open && Math.abs(row.peak.value) <= Math.max(2 * (row.error ?? 0), UNSEEN * sizesOfUnits().get(row.unit));
 }
 
 /** A peak in words; nothing is 0. */
-function peakWords(row, sizes = sizesOfUnits()) {
+function peakWords(row) {
   if (!Number.isFinite(row.peak.value)) return "–";
-  return isNothing(row, sizes) ? shown(0, row.unit) : shown(row.peak.value, row.unit, 4);
+  return isNothing(row) ? shown(0, row.unit) : shown(row.peak.value, row.unit, 4);
 }
 
 const whatOf = (row) => row.what || row.part;
@@ -24,8 +26,8 @@ const whatOf = (row) => row.what || row.part;
 function resultTables(show) {
   const state = { all: false, words: [] };
   const nothing = contents.rows.filter((row) => isNothing(row)).length;
-  const rows = (sizes = sizesOfUnits()) =>
-    contents.rows.filter((row) => !row.open && (state.all || !isNothing(row, sizes)) && state.words.every((word) => `${row.name} ${row.what}`.toLowerCase().includes(word)));
+  const rows = () =>
+    contents.rows.filter((row) => !row.open && (state.all || !isNothing(row)) && state.words.every((word) => `${row.name} ${row.what}`.toLowerCase().includes(word)));
   const tables = [];
   const renew = () => tables.forEach((table) => table.fill());
   const find = element("input", { type: "search", placeholder: "search, for example: rod bending", "aria-label": "Find a part or quantity", class: "find", title: "Find (/); Enter shows the first that is found", input: () => {

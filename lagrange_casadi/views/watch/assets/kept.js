@@ -1,42 +1,28 @@
 // What the reader of a viewer has chosen: it is kept over new contents, and what these lack until others have it again.
 
-/** Cards by kind: what is kept of the state of each, and how a card is made again; nothing where its parts are not there. */
-const CARDS = {
-  chart: {
-    kept: ({ x, names }) => ({ x, names: [...names] }),
-    made: ({ x, names }) => {
-      const known = names.filter((name) => seriesByName.has(name));
-      return known.length && chartCard(known, x === "t" || (x === "over" && over) || seriesByName.has(x) ? x : alongInstants);
-    },
+/** What can be chosen now of what was chosen on a card of each kind; nothing where its parts are not there. */
+const THERE = {
+  chart: ({ x, names }) => {
+    const known = names.filter((name) => seriesByName.has(name));
+    return known.length && { x: x === "t" || (x === "over" && over) || seriesByName.has(x) ? x : alongInstants, names: known };
   },
-  section: {
-    kept: ({ section, ratio }) => ({ link: section.link, ratio }),
-    made: ({ link, ratio }) => sectionByLink.has(link) && sectionCard(sectionByLink.get(link), Math.min(ratio, sectionByLink.get(link).xi.length - 1)),
-  },
-  map: {
-    kept: ({ link, name }) => ({ link, name }),
-    made: ({ link, name }) => sectionByLink.has(link) && mappedOf(link).some((one) => one.name === name) && mapCard(link, name),
-  },
-  diagram: {
-    kept: ({ link, when }) => ({ link, when }),
-    made: ({ link, when }) => diagramLinks().some((one) => one.link === link) && diagramCard(link, false, when),
-  },
-  polar: {
-    kept: ({ joint, way }) => ({ joint, way }),
-    made: ({ joint, way }) => {
-      const one = polarJoints().find(({ name }) => name === joint);
-      return one && polarCard(one, false, polarWays(one)[way] ? way : "0");
-    },
+  section: ({ link, ratio }) => sectionByLink.has(link) && { link, ratio: Math.min(ratio, sectionByLink.get(link).xi.length - 1) },
+  map: ({ link, name }) => sectionByLink.has(link) && mappedOf(link).some((one) => one.name === name) && { link, name },
+  diagram: ({ link, when }) => diagramLinks().some((one) => one.link === link) && { link, when },
+  polar: ({ joint, way }) => {
+    const one = polarJoints().find(({ name }) => name === joint);
+    return one && { joint, way: polarWays(one)[way] ? way : "0" };
   },
 };
 
-const keptOf = (card) => ({ kind: card.kind, state: CARDS[card.kind].kept(card.state) });
+const keptOf = ({ kind, state }) => structuredClone({ kind, state });
 
 /** Make the cards that were chosen; returns what to keep for later contents. */
 function takeCards(cards) {
   for (const card of [...deck.cards]) card.remove();
   return cards.map((wish) => {
-    const card = CARDS[wish.kind].made(wish.state);
+    const chosen = THERE[wish.kind](wish.state);
+    const card = chosen && addCard(wish.kind, chosen);
     return { wish, card, made: card && JSON.stringify(keptOf(card)) };
   });
 }
@@ -75,7 +61,7 @@ function keep(before) {
       Object.assign(camera, before.view.camera);
     }
     const { pinned } = before;
-    if (pinned && sectionByLink.has(pinned.link)) stage.pinned = { section: sectionByLink.get(pinned.link), ratio: pinned.ratio };
+    if (pinned && sectionByLink.has(pinned.link)) stage.pinned = pinned;
     player.seconds = Number((speed.value = before.seconds));
     if (before.si) si.click();
     search.value = before.search;
@@ -95,8 +81,7 @@ function keep(before) {
         shows: ribbonForces.length ? stage.shows : { ...stage.shows, ribbon: before?.shows.ribbon },
         view: { azimuth, elevation, touched: stage.touched, camera: { centre, scale, shift } },
         space: contents.space,
-        pinned: stage.pinned ? { link: stage.pinned.section.link, ratio: stage.pinned.ratio } : null,
-        seconds: speed.value, si: reading.si, search: search.value,
+        pinned: stage.pinned, seconds: speed.value, si: reading.si, search: search.value,
         time: player.time,
         playing: still ? before?.playing ?? true : player.playing,
       };
