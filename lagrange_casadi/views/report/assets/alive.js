@@ -16,13 +16,10 @@ class Alive {
     this.read();
     this.carries = true;
     this.carried = this.carriedNow(this.numbers(this.values));
-    const kept = [...this.targets, ...this.paths, ...this.curves.flatMap((curve) => [...curve.series.values()].flat())].map((one) => one.array);
-    // What the module does not compute, as residuals, is of the file's design alone.
-    const liveOf = new Set(live.of.map(([number]) => number));
-    this.unknown = contents.series.filter((one) => one.group !== "section" && !liveOf.has(one.values)).map((one) => array(one.values));
     const rowsTold = new Set([...this.targets.map((target) => target.row), ...this.curves.flatMap((curve) => [...curve.rowOf.values()])]);
     this.untold = contents.rows.filter((row) => !row.open && !rowsTold.has(row));
-    this.shown = [...kept, ...this.unknown];
+    const ends = this.curves.flatMap((curve) => [...curve.series.values()].flat());
+    this.shown = [...this.targets.map((target) => target.array), ...ends, ...this.bars.flat(), ...this.unknown];
     const rows = contents.sections.flatMap((entry) => entry.forces.flatMap((force) => force.terms.map(([, row]) => array(row))));
     this.kept = [...new Set([instants.t, ...(over ? [array(over.values)] : []), ...this.shown, ...rows])].map((values) => [values, values.slice()]);
   }
@@ -33,20 +30,20 @@ class Alive {
     const of = new Map(live.of);
     const single = (number) => of.get(number)[0] - live.layout.inputs;
     const named = new Map(contents.series.map((one) => [one.values, one.name]));
-    this.targets = live.of.map(([number, sources]) => ({ array: array(number), sources, row: rowByName.get(named.get(number)) }));
+    const poses = contents.bodies.flatMap((body) => body.pose.map((number, k) => [number, [live.poses[body.name][k]]]));
+    const read = [...live.of, ...poses.filter(([number, [source]]) => source >= 0 && !of.has(number))];
+    this.targets = read.map(([number, sources]) => ({ array: array(number), sources, row: rowByName.get(named.get(number)) }));
     this.column = new Float64Array(BLOCK);
-    this.paths = contents.bodies.flatMap((body) => {
-      const sources = live.poses[body.name];
-      return body.pose.map((number, k) => ({ array: array(number), source: sources[k], body: body.name }));
-    });
-    this.bars = contents.bodies.filter((body) => live.poses[body.name].slice(6).some((source) => source < 0)).map((body) => body.pose.map(array));
+    this.bars = contents.bodies.filter(({ name }) => this.lacksAxes(name)).map((body) => body.pose.map(array));
+    // What the module does not compute, as residuals, is of the file's design alone.
+    this.unknown = contents.series.filter((one) => one.group !== "section" && !of.has(one.values)).map((one) => array(one.values));
     // What equilibrium leaves open is not in the module.
     this.curves = contents.sections.filter((entry) => live.links[entry.link] && knownForces(sectionByLink.get(entry.link)).length).map((entry) => {
       const curve = new Along(entry, live.links[entry.link], this.engine, single);
       entry.forces.forEach((force, k) => {
         const one = seriesByName.get(`section:${entry.link}:${force.name}`);
         const row = rowByName.get(`section:${entry.link}:${force.name}`);
-        if (one) curve.series.set(k, [{ array: array(one.values) }, { array: array(one.places) }]);
+        if (one) curve.series.set(k, [array(one.values), array(one.places)]);
         if (row && !row.open) curve.rowOf.set(k, row);
       });
       return curve;
@@ -56,6 +53,11 @@ class Alive {
       this.position = new Int32Array(live.timing.count).fill(-1);
       live.shown.forEach((instant, k) => (this.position[instant] = k));
     }
+  }
+
+  /** Whether the engine gives no more of a body's axes than its x. */
+  lacksAxes(name) {
+    return this.live.poses[name].slice(6).some((source) => source < 0);
   }
 
   /** Whether the design is the file's own. */
@@ -141,20 +143,16 @@ class Alive {
     const { inputs: given, outputs: many } = live.layout;
     const [inputs, outputs] = [engine.inputs, engine.outputs];
     live.wrapped.forEach((output, k) => (this.turns[k] = unwrap(outputs, many, output, count, this.turns[k])));
-    const read = (source) => {
-      const [view, stride, start] = source < given ? [inputs, given, source] : [outputs, many, source - given];
-      for (let i = 0; i < count; i += 1) column[i] = view[i * stride + start];
-    };
     for (const { array: into, sources, tally } of this.targets) {
-      read(sources[0]);
-      if (sources.length > 1) sizesInto(column, outputs, many, sources.map((source) => source - given), count);
+      const size = sources.length > 1;
+      if (size) column.fill(0);
+      for (const source of sources) {
+        const [view, stride, start] = source < given ? [inputs, given, source] : [outputs, many, source - given];
+        for (let i = 0; i < count; i += 1) column[i] = size ? column[i] + view[i * stride + start] ** 2 : view[i * stride + start];
+      }
+      if (size) for (let i = 0; i < count; i += 1) column[i] = Math.sqrt(column[i]);
       this.put(into, column, from, count);
       if (tally) tally.take(column, from, count, weights);
-    }
-    for (const { array: into, source } of this.paths) {
-      if (source < 0) continue;
-      read(source);
-      this.put(into, column, from, count);
     }
     for (const curve of this.curves) curve.keep(outputs, many, from, count);
   }
@@ -169,8 +167,8 @@ class Alive {
         const ends = found[k];
         if (Number.isNaN(ends[0])) continue;
         if (series && place >= 0) {
-          series[0].array[place] = ends[4];
-          series[1].array[place] = ends[5];
+          series[0][place] = ends[4];
+          series[1][place] = ends[5];
         }
         if (tally) tally.reach(ends, i);
       }
@@ -290,7 +288,7 @@ class Alive {
     for (const [name, body] of bodies) {
       const [origin, x, y, z] = this.postures.frameOf(posture, name);
       const numbers = contents.space ? [...origin, ...x, ...y, ...z] : [...origin.slice(0, 2), Math.atan2(x[1], x[0])];
-      if (contents.live.poses[name].slice(6).some((source) => source < 0)) complete(numbers);
+      if (this.lacksAxes(name)) complete(numbers);
       body.pose.forEach((column, k) => (column[posture.instant] = numbers[k]));
     }
   }
@@ -404,15 +402,6 @@ function weightsOf(t) {
   }
   const sum = found.reduce((all, weight) => all + weight, 0);
   return sum ? found.map((weight) => weight / sum) : found.fill(1 / t.length);
-}
-
-/** Of the values in a column the sizes with others of the same instants; the first of the sources is the column's own. */
-function sizesInto(column, view, stride, sources, count) {
-  for (let i = 0; i < count; i += 1) {
-    let sum = column[i] * column[i];
-    for (let k = 1; k < sources.length; k += 1) sum += view[i * stride + sources[k]] ** 2;
-    column[i] = Math.sqrt(sum);
-  }
 }
 
 /** Let an angle go on where it jumps by a turn; `before` is where it was. Returns where it is at last. */

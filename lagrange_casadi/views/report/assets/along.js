@@ -6,7 +6,9 @@ class Along {
     Object.assign(this, { entry, live, engine });
     this.degree = live.degree;
     this.many = live.degree + 1;
-    this.plain = entry.forces.filter((force) => !force.parts.length);
+    const partsOf = (force) => (force.parts.length ? force.parts : [force.name]);
+    const asked = entry.forces.filter((force) => !force.open).flatMap(partsOf);
+    this.plain = entry.forces.filter((force) => asked.includes(force.name));
     const place = new Map(this.plain.map((force, k) => [force.name, k]));
     // Of all outputs it keeps its own, an instant after another.
     this.outputs = [];
@@ -25,10 +27,9 @@ class Along {
     this.factor = new Float64Array(this.many);
     this.tallies = entry.forces.map(() => new Float64Array(6).fill(NaN));
     this.asked = entry.forces.flatMap((force, k) => {
-      const parts = (force.parts.length ? force.parts : [force.name]).map((name) => this.scratch[place.get(name)]);
+      const parts = partsOf(force).map((name) => this.scratch[place.get(name)]);
       return force.open ? [] : [{ parts, tally: this.tallies[k], slope: new Float64Array(2 * this.many), known: new Float64Array(1) }];
     });
-    this.needed = this.scratch.map((c) => this.asked.some((one) => one.parts.includes(c)));
     this.series = new Map();
     this.rowOf = new Map();
     this.peaks = new Set();
@@ -138,10 +139,10 @@ class Along {
   look(piece, low, high, place, whole) {
     const { degree, scratch } = this;
     const edge = edgeAt(this.entry, low);
-    for (let k = 0; k < this.plain.length; k += 1) if (this.needed[k]) this.sum(k, piece, edge, place);
+    for (let k = 0; k < this.plain.length; k += 1) this.sum(k, piece, edge, place);
     if (low > piece.low || high < piece.high) {
       const [from, to] = [low, high].map((u) => (u - piece.low) / (piece.high - piece.low));
-      for (let k = 0; k < scratch.length; k += 1) if (this.needed[k]) cutTo(scratch[k], degree, from, to);
+      for (const c of scratch) cutTo(c, degree, from, to);
     }
     for (const { parts, tally, slope, known } of this.asked) {
       const bound = whole ? Infinity : boundOf(parts);

@@ -118,11 +118,7 @@ function scaled([low, high], [from, to], unit, title, room = 0) {
   const step = ticks.length > 1 ? Math.abs(ticks[1][1] - ticks[0][1]) : 1;
   const decimals = Math.max(0, Math.ceil(-Math.log10(step) - 1e-9));
   const size = Math.max(...ticks.map(([, tick]) => Math.abs(tick)), 0);
-  const describe = (tick) => {
-    if (size >= 1e6 || (size && size < 1e-4)) return format(tick, 3);
-    const text = stripped(tick.toFixed(Math.min(8, decimals + 1)));
-    return minus(text === "-0" ? "0" : text);
-  };
+  const describe = (tick) => (size >= 1e6 || (size && size < 1e-4) ? format(tick, 3) : plain(tick.toFixed(Math.min(8, decimals + 1))));
   return { at, back, ticks, describe, factor, unit: readable, title, label: labelled(title, readable), from, to, low: a, high: b };
 }
 

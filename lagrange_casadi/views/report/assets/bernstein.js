@@ -21,6 +21,18 @@ function valueAt(c, n, x) {
   return sum + power * c[n];
 }
 
+/** The solutions of equations, rows with their right sides last, by Gauss's elimination, which changes these rows. */
+function eliminated(rows) {
+  const many = rows.length;
+  rows.forEach((row, j) => {
+    for (const other of rows) {
+      const part = other[j] / row[j];
+      if (other !== row) for (let n = j; n < row.length; n += 1) other[n] -= part * row[n];
+    }
+  });
+  return rows.map((row, j) => Array.from(row.slice(many), (value) => value / row[j]));
+}
+
 const interpolations = [];
 
 /** Places from 0 to 1 for a degree, and the rows of factors that make ordinates of values there. */
@@ -28,13 +40,9 @@ function interpolation(n) {
   if (interpolations[n]) return interpolations[n];
   const places = Float64Array.from({ length: n + 1 }, (_, j) => (1 - Math.cos((Math.PI * j) / n)) / 2);
   const unit = (k) => Array.from(places, (_, j) => Number(j === k));
-  let rows = Array.from(places, (x, j) => [...unit(j).map((_, i) => valueAt(unit(i), n, x)), ...unit(j)]);
-  // Gauss's elimination: no pivot is small, for every minor is positive.
-  for (let k = 0; k <= n; k += 1) {
-    const pivot = rows[k].map((value) => value / rows[k][k]);
-    rows = rows.map((row, j) => (j === k ? pivot : row.map((value, i) => value - row[k] * pivot[i])));
-  }
-  interpolations[n] = { places, factors: rows.map((row) => Float64Array.from(row.slice(n + 1))) };
+  const rows = Array.from(places, (x, j) => [...unit(j).map((_, i) => valueAt(unit(i), n, x)), ...unit(j)]);
+  // No pivot is small, for every minor is positive.
+  interpolations[n] = { places, factors: eliminated(rows).map((row) => Float64Array.from(row)) };
   return interpolations[n];
 }
 

@@ -124,8 +124,7 @@ function lookedAt(body) {
   };
   picked.watchers.add(describe);
   picked.watchers.add(send);
-  reading.watchers.add(describe);
-  describe();
+  showing(describe);
 }
 
 buildSweep();

@@ -69,12 +69,11 @@ function headOf() {
     badge.className = `badge ${kind}`;
     say(badge, words);
   };
-  verdict();
-  reading.watchers.add(verdict);
+  showing(verdict);
   const shownOf = instants.count < instants.total ? `, ${instants.count} of them shown` : "";
   const span = () => `${instants.total} instant${instants.total > 1 ? "s" : ""}${shownOf}, t = ${[0, -1].map((k) => timeWords(instants.t.at(k))).join(" to ")}`;
-  const described = element("p", { class: "subtitle" }, span());
-  reading.watchers.add(() => say(described, span()));
+  const described = element("p", { class: "subtitle" });
+  showing(() => say(described, span()));
   const next = { auto: "light", light: "dark", dark: "auto" };
   const { dataset } = document.documentElement;
   dataset.theme ??= "auto";
@@ -106,8 +105,7 @@ function glanceOf() {
     say(places[k].value, peakWords(row));
     say(places[k].where, isNothing(row) ? "" : known ? `${row.part}${where} · ${whenOf(row.peak.t, row.peak.over)}` : "no result");
   });
-  fill();
-  reading.watchers.add(fill);
+  showing(fill);
   return element("div", { class: "glance" }, places.map((place) => place.tile));
 }
 
@@ -132,8 +130,7 @@ function linksTable() {
     say(value, peakWords(row));
     say(when, !Number.isFinite(peak.value) || isNothing(row) ? "" : over ? shown(peak.over, over.unit, 4) : whenOf(peak.t, null));
   });
-  fill();
-  reading.watchers.add(fill);
+  showing(fill);
   return element("section", { class: "card links" }, element("header", {}, element("h3", {}, "Largest in each link"), over && element("span", { class: "fine" }, `with the ${over.unit === "rad" ? "angle" : "place"} of ${over.joint}`)),
     element("div", { class: "scroll" }, element("table", { "aria-label": "Largest in each link" }, element("thead", {}, element("tr", {}, element("th", { scope: "col" }, "link"), heads)), element("tbody", {}, lines))));
 }

@@ -99,8 +99,7 @@ function transportBar() {
     say(readout, when);
   };
   player.watchers.add(describe);
-  reading.watchers.add(() => describe(player.instant));
-  describe(0);
+  showing(() => describe(player.instant));
   return element(
     "div", { class: "transport", role: "group", "aria-label": "Motion" },
     signButton(icon("back"), "One instant back (left arrow)", () => player.step(-1)),

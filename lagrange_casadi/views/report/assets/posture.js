@@ -161,16 +161,9 @@ class Postures {
   }
 }
 
-/** The solution of symmetric equations, rows with their right side last, by Gauss's elimination; damping makes their diagonal larger. */
+/** The solution of symmetric equations, rows with their right side last; damping makes their diagonal larger. */
 function solved(table, damping) {
-  const many = table.length;
   const size = Math.max(...table.map((row, j) => Math.abs(row[j])), 1e-300);
   table.forEach((row, j) => (row[j] += damping * (Math.abs(row[j]) || size)));
-  for (let j = 0; j < many; j += 1) {
-    for (let k = 0; k < many; k += 1) {
-      const part = table[k][j] / table[j][j];
-      if (k !== j) for (let n = j; n <= many; n += 1) table[k][n] -= part * table[j][n];
-    }
-  }
-  return table.map((row, j) => row[many] / row[j]);
+  return eliminated(table).map(([value]) => value);
 }

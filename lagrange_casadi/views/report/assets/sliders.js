@@ -68,8 +68,7 @@ function slidersOf(engine) {
     const reads = element("output", {});
     const describe = () => (reads.textContent = ["m", "rad", "1"].includes(one.unit) && !scaleFor(one.unit, Math.abs(engine.values[k])).unit ? "" : shown(engine.values[k], one.unit, 5));
     live.fields.push([slider, field]);
-    describe();
-    reading.watchers.add(describe);
+    showing(describe);
     const freed = `${one.name} follows whatever joint is dragged`;
     const free = element("input", { type: "checkbox", title: freed, "aria-label": freed, change: () => (live.drag.freed[k] = free.checked) });
     return element("label", {}, element("span", { class: "name" }, one.name), slider, field, reads, free);

@@ -20,6 +20,12 @@ function peakWords(row) {
   return isNothing(row) ? shown(0, row.unit) : shown(row.peak.value, row.unit, 4);
 }
 
+/** A value of a curve with its unit, by the largest of all; the rounding of nothing, also beside the largest of the unit, is nothing. */
+function shownOf(value, unit, most) {
+  const nothing = Math.abs(value) <= UNSEEN * Math.max(most, sizesOfUnits().get(unit) ?? 0);
+  return nothing ? shown(0, unit) : shown(value, unit, 5, most);
+}
+
 const whatOf = (row) => row.what || row.part;
 
 /** The two large tables: peaks, and what quantities are over the cycle. */
@@ -94,8 +100,8 @@ function resultTables(show) {
 /** How far each part is used, and what governs: of links that have a beam, of joints with pins or bearings. */
 function strengthTables() {
   if (!contents.strength.length) return [];
-  const ofFile = element("span", { class: "alarm", hidden: true }, "of the file's design");
-  reading.watchers.add(() => (ofFile.hidden = designState() === "file"));
+  const ofFile = element("span", { class: "alarm" }, "of the file's design");
+  showing(() => (ofFile.hidden = designState() === "file"));
   // What is open comes last.
   const used = (row) => (row.open ? -1 : row.used ?? Infinity);
   const words = (row) => (row.open ? "" : row.used === null ? "∞" : format(row.used, 4));
@@ -151,8 +157,8 @@ function certificateText() {
   const alarm = state === "failed" && element("p", { class: "alarm" }, words);
   const forces = "The reported motions, reactions, efforts and loads were inserted into the Newton-Euler equations of every body, by an independent program, at every instant.";
   const sentence = forcesChecked ? forces : "The positions of all bodies were recomputed from the reported motion, by an independent program, at every instant.";
-  const other = element("p", { class: "alarm other", hidden: true }, "This is the certificate of the file's design. Designs chosen by the sliders are evaluated by the same code and refused if they are impossible, but they are not certified: evaluate them from the command line for that.");
-  reading.watchers.add(() => (other.hidden = designState() === "file"));
+  const other = element("p", { class: "alarm other" }, "This is the certificate of the file's design. Designs chosen by the sliders are evaluated by the same code and refused if they are impossible, but they are not certified: evaluate them from the command line for that.");
+  showing(() => (other.hidden = designState() === "file"));
   return textSection("Certificate", other, element("p", { class: `verdict ${state}` }, head), alarm, state !== "none" && element("p", {}, sentence), listOf(lines), limit, ...loops);
 }
 

@@ -2,6 +2,12 @@
 
 const reading = { si: false, watchers: new Set(), tables: new Set() };
 
+/** Do something now, and whenever numbers are to be shown anew. */
+function showing(describe) {
+  describe();
+  reading.watchers.add(describe);
+}
+
 /** Switch between readable units and SI, and have all that shows numbers do it anew. */
 function setSi(si) {
   reading.si = si;
@@ -40,21 +46,21 @@ function prettyUnit(unit) {
   return unit.replace(/\^2/g, "²").replace(/\^3/g, "³").replace(/ /g, "\u00b7");
 }
 
-/** A number to so many digits that count, without noughts at its end, and with a sign that is as wide as a plus. */
+/** A number to so many digits that count. */
 function format(value, digits = 5) {
   if (!Number.isFinite(value)) return "–";
   if (value === 0) return "0";
   const size = Math.abs(value);
   if (size >= 1e7 || size < 1e-4) {
     const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
-    return `${minus(stripped(mantissa))}·10${raised(Number(exponent))}`;
+    return `${plain(mantissa)}·10${raised(Number(exponent))}`;
   }
-  const text = value.toPrecision(digits);
-  return minus(stripped(text.includes("e") ? String(Number(text)) : text));
+  return plain(value.toPrecision(digits));
 }
 
-function stripped(text) {
-  return text.includes(".") ? text.replace(/0+$/, "").replace(/\.$/, "") : text;
+/** The digits of a number without noughts at its end, with a sign that is as wide as a plus. */
+function plain(digits) {
+  return minus(String(Number(digits)));
 }
 
 function minus(text) {
@@ -74,12 +80,6 @@ function shown(value, unit, digits = 5, size = Math.abs(value)) {
 }
 
 const UNSEEN = 1e-12; // Over the largest value: what is smaller is the rounding of nothing.
-
-/** A value of a curve with its unit, by the largest of all; the rounding of nothing, also beside the largest of the unit, is nothing. */
-function shownOf(value, unit, most) {
-  const nothing = Math.abs(value) <= UNSEEN * Math.max(most, sizesOfUnits().get(unit) ?? 0);
-  return nothing ? shown(0, unit) : shown(value, unit, 5, most);
-}
 
 /** What stands at an axis: words, and the unit in brackets. */
 function labelled(words, unit) {
