@@ -12,33 +12,6 @@ function listenTo(stage, { point, pin }) {
     return [event.clientX - frame.left, event.clientY - frame.top];
   };
 
-  const zoom = shared("zoom", (factor, [x, y]) => {
-    const { camera, width, height } = paper;
-    const to = Math.max(1e-6, Math.min(1e9, camera.scale * factor));
-    const real = to / camera.scale;
-    camera.shift = [
-      x - width / 2 - real * (x - width / 2 - camera.shift[0]),
-      y - height / 2 - real * (y - height / 2 - camera.shift[1]),
-    ];
-    camera.scale = to;
-    changed();
-  });
-
-  const pan = shared("pan", (dx, dy) => {
-    paper.camera.shift = [paper.camera.shift[0] + dx, paper.camera.shift[1] + dy];
-    changed();
-  });
-
-  const orbit = shared("orbit", (dx, dy) => {
-    paper.turnTo(paper.camera.azimuth - 0.4 * dx, paper.camera.elevation + 0.4 * dy);
-    changed();
-  });
-
-  const changed = () => {
-    stage.touched = true;
-    stage.draw();
-  };
-
   canvas.addEventListener("pointerdown", (event) => {
     canvas.setPointerCapture(event.pointerId);
     pointers.set(event.pointerId, at(event));
@@ -63,10 +36,10 @@ function listenTo(stage, { point, pin }) {
     if (pointers.size === 2) {
       const other = [...pointers.entries()].find(([id]) => id !== event.pointerId)[1];
       const spread = (one) => Math.hypot(one[0] - other[0], one[1] - other[1]);
-      pan(dx / 2, dy / 2);
-      zoom(spread(now) / (spread(before) || 1), [(now[0] + other[0]) / 2, (now[1] + other[1]) / 2]);
-    } else if (!contents.space || event.shiftKey || event.buttons > 1) pan(dx, dy);
-    else orbit(dx, dy);
+      stage.pan(dx / 2, dy / 2);
+      stage.zoom(spread(now) / (spread(before) || 1), [(now[0] + other[0]) / 2, (now[1] + other[1]) / 2]);
+    } else if (!contents.space || event.shiftKey || event.buttons > 1) stage.pan(dx, dy);
+    else stage.orbit(dx, dy);
     pointers.set(event.pointerId, now);
   });
 
@@ -89,27 +62,26 @@ function listenTo(stage, { point, pin }) {
       // The page goes on scrolling over a picture in which nobody is at work.
       if (!event.ctrlKey && document.activeElement !== canvas) return;
       event.preventDefault();
-      zoom(Math.exp(-0.0015 * event.deltaY * (event.deltaMode ? 30 : 1)), at(event));
+      stage.zoom(Math.exp(-0.0015 * event.deltaY * (event.deltaMode ? 30 : 1)), at(event));
     },
     { passive: false },
   );
   canvas.addEventListener("keydown", (event) => {
-    const middle = [paper.width / 2, paper.height / 2];
+    const move = (x, y) => (contents.space ? stage.orbit(20 * x, 20 * y) : stage.pan(30 * x, 30 * y));
     const keys = {
-      "+": () => zoom(1.2, middle),
-      "=": () => zoom(1.2, middle),
-      "-": () => zoom(1 / 1.2, middle),
-      ArrowLeft: () => event.altKey && (contents.space ? orbit(20, 0) : pan(30, 0)),
-      ArrowRight: () => event.altKey && (contents.space ? orbit(-20, 0) : pan(-30, 0)),
-      ArrowUp: () => (contents.space ? orbit(0, 20) : pan(0, 30)),
+      "+": () => stage.zoom(1.2),
+      "=": () => stage.zoom(1.2),
+      "-": () => stage.zoom(1 / 1.2),
+      ArrowLeft: () => event.altKey && move(1, 0),
+      ArrowRight: () => event.altKey && move(-1, 0),
+      ArrowUp: () => move(0, 1),
+      ArrowDown: () => move(0, -1),
       Escape: () => {
         const undone = live.drag?.undo() ?? false;
         if (undone) pointers.clear();
         return undone;
       },
-      ArrowDown: () => (contents.space ? orbit(0, -20) : pan(0, -30)),
     };
     if (keys[event.key] && keys[event.key]() !== false) event.preventDefault();
   });
-  return { zoomBy: (factor) => zoom(factor, [paper.width / 2, paper.height / 2]) };
 }

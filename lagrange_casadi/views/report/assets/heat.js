@@ -60,7 +60,7 @@ class Heat {
       drawn("image", { x: width - FIELD.right - 44, y: up.to + 16, width: 12, height: up.from - up.to - 46, href: barOf(coloursNow(), this.field.signed), preserveAspectRatio: "none" }),
       this.marks,
     );
-    this.paint(Math.max(2, Math.round(place.width)));
+    this.paint();
     this.mark(player.instant);
   }
 
@@ -68,7 +68,7 @@ class Heat {
   follow(width) {
     const ends = endsOf([this.x.values], false);
     if (width !== this.sheet.width || ends[0] !== this.across.low || ends[1] !== this.across.high) this.draw(width);
-    else this.paint(Math.max(2, Math.round(this.across.to - this.across.from)));
+    else this.paint();
   }
 
   /** Write the ends of the colours, and where the force is largest. */
@@ -102,9 +102,10 @@ class Heat {
   }
 
   /** Paint the map, with its marks; a coarse one while a slider moves. */
-  paint(width) {
+  paint() {
     this.markEnds();
-    const { field, canvas, context, values } = this;
+    const { field, canvas, context, values, across } = this;
+    const width = Math.max(2, Math.round(across.to - across.from));
     const rows = field.xi.length;
     const step = live.moving ? 2 : 1;
     const columns = Math.min(width, Math.max(instants.count, 2), live.moving ? 140 : 700);
@@ -119,8 +120,7 @@ class Heat {
     const places = Array.from({ length: high }, (_, row) => step * Math.round(((high - 1 - row) / (high - 1)) * ((rows - 1) / step)));
     let known = -1;
     for (let column = 0; column < wide; column += 1) {
-      const x = this.across.back(this.across.from + ((column + 0.5) / wide) * (this.across.to - this.across.from));
-      const seen = field.column(x);
+      const seen = field.column(across.low + ((column + 0.5) / wide) * (across.high - across.low));
       if (seen !== known) field.fill(seen, values, step);
       known = seen;
       for (let row = 0; row < high; row += 1) pixels[row * wide + column] = pixelOf(values[places[row]] / this.most, column + row, colours);

@@ -13,8 +13,8 @@ function buildPage() {
   );
   const stage = new Stage(canvas);
   deck.stage = stage;
-  const gestures = listenTo(stage, { point: (found, event) => pointAt(stage, found, event), pin: pinSection });
-  frame.append(viewBar(stage, gestures));
+  listenTo(stage, { point: (found, event) => pointAt(stage, found, event), pin: pinSection });
+  frame.append(viewBar(stage));
   left.append(transportBar(), showBar(stage));
   if (contents.live) {
     const panel = element("section", { class: "alive", "aria-label": "Parameters" });
@@ -87,26 +87,23 @@ function headOf() {
 
 /** What is largest, at a glance: press one to see when and where it is. */
 function glanceOf() {
-  const groups = [["effort", () => true], ["reaction", (row) => row.name.endsWith(":resultant")], ["section", (row) => row.name.endsWith(":axial")], ["section", (row) => row.name.endsWith(":shear")], ["section", (row) => row.name.endsWith(":bending")], ["stress", () => true]];
-  const tiles = () => groups.flatMap(([group, filter]) => {
-    const rows = contents.rows.filter((row) => row.group === group && !row.open && filter(row));
-    return rows.length ? [rows.reduce((best, row) => (Math.abs(row.peak.value) > Math.abs(best.peak.value) ? row : best))] : [];
+  const groups = [["effort", ""], ["reaction", ":resultant"], ["section", ":axial"], ["section", ":shear"], ["section", ":bending"], ["stress", ""]];
+  const tiles = groups.flatMap(([group, ending]) => {
+    const rows = contents.rows.filter((row) => row.group === group && !row.open && row.name.endsWith(ending));
+    if (!rows.length) return [];
+    const largest = () => rows.reduce((best, row) => (Math.abs(row.peak.value) > Math.abs(best.peak.value) ? row : best));
+    const [what, value, where] = [element("span", { class: "what" }), element("b"), element("span", { class: "where" })];
+    showing(() => {
+      const row = largest();
+      const xi = row.peak.xi === null ? "" : ` · ξ/l = ${row.peak.xi.toFixed(2)}`;
+      const known = Number.isFinite(row.peak.value);
+      say(what, `Largest ${row.what.replace("resultant ", "")}`);
+      say(value, peakWords(row));
+      say(where, isNothing(row) ? "" : known ? `${row.part}${xi} · ${whenOf(row.peak.t, row.peak.over)}` : "no result");
+    });
+    return [element("button", { type: "button", class: "tile", title: "Show when and where", click: () => showRow(largest()) }, what, value, where)];
   });
-  const places = tiles().map((row) => {
-    const place = { row, what: element("span", { class: "what" }), value: element("b"), where: element("span", { class: "where" }) };
-    place.tile = element("button", { type: "button", class: "tile", title: "Show when and where", click: () => showRow(place.row) }, place.what, place.value, place.where);
-    return place;
-  });
-  const fill = () => tiles().forEach((row, k) => {
-    const known = Number.isFinite(row.peak.value);
-    const where = row.peak.xi === null ? "" : ` · ξ/l = ${row.peak.xi.toFixed(2)}`;
-    places[k].row = row;
-    say(places[k].what, `Largest ${row.what.replace("resultant ", "")}`);
-    say(places[k].value, peakWords(row));
-    say(places[k].where, isNothing(row) ? "" : known ? `${row.part}${where} · ${whenOf(row.peak.t, row.peak.over)}` : "no result");
-  });
-  showing(fill);
-  return element("div", { class: "glance" }, places.map((place) => place.tile));
+  return element("div", { class: "glance" }, tiles);
 }
 
 /** What is largest in each link, with when it is: a row a link, a button a force; nothing where no link has sections. */
@@ -116,21 +113,18 @@ function linksTable() {
   const links = contents.sections.map((entry) => [entry.link, rowsOf(entry.link)]);
   const columns = [0, 1, 2, 3, 4].filter((k) => links.some(([, rows]) => rows[k]));
   if (!columns.length) return null;
-  const cells = [];
   const cellOf = (row) => {
     if (!row || row.open) return element("td", {}, row ? "indeterminate" : "");
     const [value, when] = [element("b"), element("small")];
-    cells.push([row, value, when]);
+    showing(() => {
+      const { peak } = row;
+      say(value, peakWords(row));
+      say(when, !Number.isFinite(peak.value) || isNothing(row) ? "" : over ? shown(peak.over, over.unit, 4) : whenOf(peak.t, null));
+    });
     return element("td", {}, element("button", { type: "button", title: "Show when and where", click: () => showRow(row) }, value, when));
   };
   const heads = columns.map((k) => element("th", { scope: "col" }, links.map(([, rows]) => rows[k]).find(Boolean).what.replace("resultant ", "")));
   const lines = links.map(([link, rows]) => element("tr", {}, element("th", { scope: "row" }, link), columns.map((k) => cellOf(rows[k]))));
-  const fill = () => cells.forEach(([row, value, when]) => {
-    const { peak } = row;
-    say(value, peakWords(row));
-    say(when, !Number.isFinite(peak.value) || isNothing(row) ? "" : over ? shown(peak.over, over.unit, 4) : whenOf(peak.t, null));
-  });
-  showing(fill);
   return element("section", { class: "card links" }, element("header", {}, element("h3", {}, "Largest in each link"), over && element("span", { class: "fine" }, `with the ${over.unit === "rad" ? "angle" : "place"} of ${over.joint}`)),
     element("div", { class: "scroll" }, element("table", { "aria-label": "Largest in each link" }, element("thead", {}, element("tr", {}, element("th", { scope: "col" }, "link"), heads)), element("tbody", {}, lines))));
 }
@@ -158,11 +152,11 @@ function pointAt(stage, found, event) {
   else showTip(null);
 }
 
-function viewBar(stage, gestures) {
+function viewBar(stage) {
   return element("div", { class: "views", role: "group", "aria-label": "View" },
     VIEWS.map(([key, words, angles]) => element("button", { type: "button", title: `${words} (${key})`, click: () => stage.view(...angles) }, words)),
-    signButton("+", "Nearer (+)", () => gestures.zoomBy(1.25)),
-    signButton("−", "Farther (-)", () => gestures.zoomBy(0.8)),
+    signButton("+", "Nearer (+)", () => stage.zoom(1.25)),
+    signButton("−", "Farther (-)", () => stage.zoom(0.8)),
     element("button", { type: "button", title: "All of it (F, or a double click)", click: () => stage.fit() }, "Fit"));
 }
 
@@ -207,9 +201,8 @@ function watch(stage, canvas) {
     stage.draw();
     for (const card of deck.cards) card.follow();
   });
-  const watcher = new ResizeObserver(() => canvas.isConnected && stage.layOut());
-  // The sheet's own size too: it goes with the window's height, and with the controls below it.
-  for (const element of [deck.list.parentElement.parentElement, stage.paper.canvas]) watcher.observe(element);
+  // The sheet's size goes with the window's height too, and with the controls below it.
+  new ResizeObserver(() => canvas.isConnected && stage.layOut()).observe(canvas);
   drawWith(deck.list, repaint);
   listenToKeys(stage);
   listenToPrinter(stage);

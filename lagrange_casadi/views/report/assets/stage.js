@@ -18,7 +18,7 @@ class Stage {
     this.measure();
     this.ends = arrowEnds(this.shows, this.scale);
     this.trace();
-    for (const act of ["view", "fit", "show"]) this[act] = shared(act, this[act].bind(this));
+    for (const act of ["view", "fit", "show", "zoom", "pan", "orbit"]) this[act] = shared(act, this[act].bind(this));
     acts.agree = this.agree.bind(this);
   }
 
@@ -78,6 +78,34 @@ class Stage {
   fit() {
     this.touched = false;
     this.place();
+    this.draw();
+  }
+
+  /** Have all larger by a factor about a point of the sheet, by default its middle. */
+  zoom(factor, [x, y] = [this.paper.width / 2, this.paper.height / 2]) {
+    const { camera, width, height } = this.paper;
+    const before = camera.scale;
+    camera.scale = Math.max(1e-6, Math.min(1e9, before * factor));
+    const from = [x - width / 2, y - height / 2];
+    camera.shift = from.map((at, k) => at - (camera.scale / before) * (at - camera.shift[k]));
+    this.touch();
+  }
+
+  pan(dx, dy) {
+    const { camera } = this.paper;
+    camera.shift = [camera.shift[0] + dx, camera.shift[1] + dy];
+    this.touch();
+  }
+
+  orbit(dx, dy) {
+    const { azimuth, elevation } = this.paper.camera;
+    this.paper.turnTo(azimuth - 0.4 * dx, elevation + 0.4 * dy);
+    this.touch();
+  }
+
+  /** Leave the sheet as a reader has moved it. */
+  touch() {
+    this.touched = true;
     this.draw();
   }
 
