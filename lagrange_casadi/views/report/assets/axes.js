@@ -90,9 +90,9 @@ function seriesEntries(series = contents.series) {
   return found;
 }
 
-/** The ends of some values, and the room beside them. */
-function endsOf(arrays, withZero) {
-  let [low, high] = withZero ? [0, 0] : [Infinity, -Infinity];
+/** The ends of the values of some arrays. */
+function endsOf(...arrays) {
+  let [low, high] = [Infinity, -Infinity];
   for (const values of arrays) {
     for (const value of values) {
       if (value < low) low = value;

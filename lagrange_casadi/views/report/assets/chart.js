@@ -23,9 +23,9 @@ class Chart {
     for (const curve of [this.x, ...this.curves]) curve.renew?.();
     if (this.x.name !== "t" && this.x.name !== "over") this.order();
     const { across, fields } = this;
-    const ends = endsOf([this.x.values], false);
+    const ends = endsOf(this.x.values);
     const same = this.ordered ? ends[0] === across.low && ends[1] === across.high : fitsIn(ends, across);
-    if (width !== this.sheet.width || !same || !fields.every(({ up, own }) => fitsIn(endsOf(own.map((curve) => curve.values), true), up))) {
+    if (width !== this.sheet.width || !same || !fields.every(({ up, own }) => fitsIn(endsOf([0], ...own.map((curve) => curve.values)), up))) {
       this.draw(width);
       return;
     }
@@ -40,12 +40,12 @@ class Chart {
     const units = [...new Set(this.curves.map((curve) => curve.unit))];
     const high = units.length > 1 ? 0.8 * FIELD.height : FIELD.height * 1.15;
     const height = FIELD.top + units.length * high + (units.length - 1) * FIELD.between + FIELD.bottom;
-    const across = scaled(endsOf([this.x.values], false), [FIELD.left, width - FIELD.right], this.x.unit, this.x.title, this.ordered ? 0 : 0.03);
+    const across = scaled(endsOf(this.x.values), [FIELD.left, width - FIELD.right], this.x.unit, this.x.title, this.ordered ? 0 : 0.03);
     this.across = across;
     this.fields = units.map((unit, k) => {
       const top = FIELD.top + k * (high + FIELD.between);
       const own = this.curves.filter((curve) => curve.unit === unit);
-      const ends = endsOf(own.map((curve) => curve.values), true);
+      const ends = endsOf([0], ...own.map((curve) => curve.values));
       // The rounding of nothing is drawn as nothing.
       const nothing = Math.max(-ends[0], ends[1]) <= UNSEEN * (sizesOfUnits().get(unit) ?? 0);
       const up = scaled(nothing ? [0, 0] : ends, [top + high, top], unit, "", 0.06);
@@ -83,18 +83,16 @@ class Chart {
 
   describe(instant) {
     const lines = this.ordered ? [] : [[this.x.title, shown(this.x.values[instant], this.x.unit, 5, largestOf(this.x.values))]];
-    return [whenIs(instant), [...lines, ...this.curves.map((curve) => [curve.title, this.reads(curve, instant)])]];
+    const values = this.curves.map((curve) => {
+      const value = shownOf(curve.values[instant], curve.unit, largestOf(curve.values));
+      return [curve.title, curve.places ? `${value} at ξ/l = ${format(curve.places[instant], 3)}` : value];
+    });
+    return [whenIs(instant), [...lines, ...values]];
   }
 
   /** What is saved as CSV: of all instants that are shown, in SI. */
   table() {
     const curves = [this.x, ...this.curves];
     return { heads: curves.map(headOfCurve), rows: Array.from(this.x.values, (_, i) => curves.map((curve) => curve.values[i])) };
-  }
-
-  /** What a curve is at an instant, in words. */
-  reads(curve, instant) {
-    const value = shownOf(curve.values[instant], curve.unit, largestOf(curve.values));
-    return curve.places ? `${value} at ξ/l = ${format(curve.places[instant], 3)}` : value;
   }
 }

@@ -73,8 +73,8 @@ class Comparison {
 
   draw(width) {
     const height = 240;
-    this.across = scaled(endsOf(along.map(({ values }) => values), false), [FIELD.left, width - FIELD.right], along[0].unit, along[0].title);
-    this.up = scaled(endsOf(this.curves, true), [height - FIELD.bottom, FIELD.top], this.unit, "", 0.06);
+    this.across = scaled(endsOf(...along.map(({ values }) => values)), [FIELD.left, width - FIELD.right], along[0].unit, along[0].title);
+    this.up = scaled(endsOf([0], ...this.curves), [height - FIELD.bottom, FIELD.top], this.unit, "", 0.06);
     this.sheet.fill(width, height, axesOf(this.across, this.up),
       ...this.curves.map((values, k) => drawn("path", { d: pathOf(along[k].values, values, this.across, this.up, 0.5), ...lineOf(k) })));
   }

@@ -1,4 +1,4 @@
-// What the page holds. Arrays are decoded when they are first asked for.
+// What the page holds.
 
 const contents = JSON.parse(document.getElementById("contents").textContent);
 
@@ -12,16 +12,10 @@ function bytesOf(text) {
 
 const numbers = new Float64Array(bytesOf(contents.numbers).buffer);
 
-const decoded = new Map();
+const arrays = contents.arrays.map(({ at, count, value }) => (at === undefined ? new Float64Array(count).fill(value) : numbers.subarray(at, at + count)));
 
 /** An array by its number. */
-function array(number) {
-  if (!decoded.has(number)) {
-    const { at, count, value } = contents.arrays[number];
-    decoded.set(number, at === undefined ? new Float64Array(count).fill(value) : numbers.subarray(at, at + count));
-  }
-  return decoded.get(number);
-}
+const array = (number) => arrays[number];
 
 /** Ends what listens to the whole window, where a viewer of other contents takes the place of this one. */
 const ended = new AbortController();

@@ -44,9 +44,9 @@ class DesignMap extends DesignPlot {
     const places = [this.x, this.y].map((one) => [...new Set(rows.map((row) => one.values[row]))].sort((a, b) => a - b));
     const cells = contents.designs.grid;
     const field = { left: FIELD.left, right: width - FIELD.right - 62, top: FIELD.top, bottom: height - FIELD.bottom };
-    const scales = [[this.x, places[0], field.left, field.right], [this.y, places[1], field.bottom, field.top]].map(([one, at, from, to]) => (cells ? cellsOf(one, at, from, to) : scaled(endsOf([at], false), [from, to], one.unit, one.name, 0.04)));
+    const scales = [[this.x, places[0], field.left, field.right], [this.y, places[1], field.bottom, field.top]].map(([one, at, from, to]) => (cells ? cellsOf(one, at, from, to) : scaled(endsOf(at), [from, to], one.unit, one.name, 0.04)));
     const values = rows.filter((row) => status[row] === 0).map((row) => costOf(this.column, row)).filter(Number.isFinite);
-    const [low, high] = endsOf([values], false);
+    const [low, high] = endsOf(values);
     const part = (row) => (high > low ? (costOf(this.column, row) - low) / (high - low) : 0.5);
     this.spots = rows.map((row) => [scales[0].at(this.x.values[row]), scales[1].at(this.y.values[row]), row]);
     const [across, up] = cells ? [scales[0].step, scales[1].step] : [0, 0];
@@ -82,7 +82,7 @@ class DesignFront extends DesignPlot {
   draw(width) {
     const height = 280;
     const rows = comparable(this.x, this.y);
-    const ends = [this.x, this.y].map((one) => endsOf([rows.map((row) => costOf(one, row))], false));
+    const ends = [this.x, this.y].map((one) => endsOf(rows.map((row) => costOf(one, row))));
     const words = (one) => (one.sized ? `size of ${one.title}` : one.title);
     const across = scaled(ends[0], [FIELD.left, width - FIELD.right], this.x.unit, words(this.x), 0.04);
     const up = scaled(ends[1], [height - FIELD.bottom, FIELD.top], this.y.unit, "", 0.04);

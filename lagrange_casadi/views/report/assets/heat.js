@@ -47,7 +47,7 @@ class Heat {
 
   draw(width) {
     const height = 244;
-    this.across = scaled(endsOf([this.x.values], false), [FIELD.left, width - FIELD.right - 58], this.x.unit, this.x.title);
+    this.across = scaled(endsOf(this.x.values), [FIELD.left, width - FIELD.right - 58], this.x.unit, this.x.title);
     this.up = scaled([0, 1], [height - FIELD.bottom, FIELD.top], "1", "ξ/l, base to tip");
     const { across, up } = this;
     const place = { x: across.from, y: up.to, width: across.to - across.from, height: up.from - up.to };
@@ -66,7 +66,7 @@ class Heat {
 
   /** Take what the arrays hold now. */
   follow(width) {
-    const ends = endsOf([this.x.values], false);
+    const ends = endsOf(this.x.values);
     if (width !== this.sheet.width || ends[0] !== this.across.low || ends[1] !== this.across.high) this.draw(width);
     else this.paint();
   }

@@ -61,7 +61,7 @@ class Paper {
     const camera = this.camera;
     camera.centre = extent.middle;
     const at = [...allPlaces, ...others].map((place) => less(place, camera.centre));
-    const ends = [camera.right, camera.up].map((axis) => endsOf([at.map((from) => dot(from, axis))], false));
+    const ends = [camera.right, camera.up].map((axis) => endsOf(at.map((from) => dot(from, axis))));
     const [x, y] = ends.map(([low, high]) => Math.max(high - low, 0.25 * extent.size));
     const [wide, high] = [this.width, this.height].map((side) => side - 2 * Math.min(56, 0.12 * side));
     camera.scale = Math.min(wide / Math.max(x, reach[0]), high / Math.max(y, reach[1]));

@@ -93,23 +93,21 @@ function cloud() {
   return found.filter((place) => place.every(Number.isFinite));
 }
 
-let allPlaces = cloud();
+let allPlaces = [];
 
-/** The middle of the mechanism over all instants, and its largest extent [m]. */
-let extent = extentNow();
+/** The middle of the mechanism over all instants, its lowest level, and its largest extent [m]. */
+let extent = null;
 
-function extentNow() {
-  const endsAlong = (axis) => endsOf([allPlaces.map((place) => dot(place, axis))], false);
-  const ends = GROUND.slice(1).map(endsAlong);
-  const [floor] = endsAlong(contents.upright[2]);
-  return { middle: ends.map(([low, high]) => (low + high) / 2), floor, size: Math.max(...ends.map(([low, high]) => high - low)) || 1 };
-}
-
-/** Find both anew. */
+/** Find both for the motion that there is now. */
 function measureAll() {
   allPlaces = cloud();
-  extent = extentNow();
+  const endsAlong = (axis) => endsOf(allPlaces.map((place) => dot(place, axis)));
+  const ends = GROUND.slice(1).map(endsAlong);
+  const [floor] = endsAlong(contents.upright[2]);
+  extent = { middle: ends.map(([low, high]) => (low + high) / 2), floor, size: Math.max(...ends.map(([low, high]) => high - low)) || 1 };
 }
+
+measureAll();
 
 /** Half the width of a link as it is drawn [m]: of the mechanism's size, and no more than a short link bears. */
 const girth = 0.013 * extent.size;

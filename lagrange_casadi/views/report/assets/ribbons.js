@@ -1,29 +1,17 @@
 // Section forces as ribbons along moving links: ordinates to one scale, positive ones plain, negative ones hatched.
 
 /** The section forces that can be chosen, in the order of the table. */
-const ribbonForces = (() => {
-  const found = new Map();
-  for (const section of sections) for (const force of knownForces(section)) found.set(force.name, force);
-  const order = contents.sections.length ? contents.sections[0].forces.map((force) => force.name) : [];
-  return order.filter((name) => found.has(name)).map((name) => found.get(name));
-})();
-
-/** The largest size of a section force, over all links and instants: from the file's own peaks. */
-function largestSection(name) {
-  const peaks = sections.map((section) => rowByName.get(`section:${section.link}:${name}`)?.peak?.value ?? 0);
-  return largestOf(peaks);
-}
-
-/** Towards which side of a link the ordinates of a force are drawn: its y, or in space its z where the force lies in that plane. */
-function sideOf(link, name, instant) {
-  return directionOf(link, name === "shear_z" || name === "bending_y" ? [0, 0, 1] : [0, 1, 0], instant);
-}
+const ribbonForces = (contents.sections[0]?.forces ?? []).flatMap(({ name }) => {
+  const known = sections.map((section) => section.forces.get(name)).findLast((force) => force && !force.open);
+  return known ?? [];
+});
 
 /** The ribbon of a force on a link; `scale` is in metres of the sheet for a unit. */
 function drawRibbon(paper, section, force, instant, scale) {
   if (force.open) return;
   const { ratios, values } = forceAlong(section, force.name, instant);
-  const side = sideOf(section.link, force.name, instant);
+  // Ordinates are drawn along the link's y, or in space along its z where the force lies in that plane.
+  const side = directionOf(section.link, ["shear_z", "bending_y"].includes(force.name) ? [0, 0, 1] : [0, 1, 0], instant);
   const [base, tip] = [0, section.length].map((x) => placeOf(section.link, [x, 0, 0], instant));
   const axis = ratios.map((u) => paper.on([0, 1, 2].map((k) => base[k] + u * (tip[k] - base[k]))));
   const [dx, dy] = paper.along(side);
@@ -38,9 +26,7 @@ function drawRibbon(paper, section, force, instant, scale) {
         context.closePath();
       }
       fillWith(context, sheer(ink, sign > 0 ? 0.34 : 0.16));
-      if (sign < 0) {
-        fillWith(context, paper.hatched(ink));
-      }
+      if (sign < 0) fillWith(context, paper.hatched(ink));
       strokeWith(context, ink, 1.3);
     }
   });

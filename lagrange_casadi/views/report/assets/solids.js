@@ -49,9 +49,7 @@ function plate(paper, places, colour) {
   paper.put(ORDER.solids, depth - 0.02 * extent.size, (context) => {
     lineThrough(context, corners, true);
     fillWith(context, sheer(colour, contents.space ? 0.72 : 0.3));
-    if (contents.space) {
-      fillWith(context, `rgb(255 255 255 / ${0.22 * lit})`);
-    }
+    if (contents.space) fillWith(context, `rgb(255 255 255 / ${0.22 * lit})`);
     strokeWith(context, shade(colour, -0.2), 1.6);
   });
 }

@@ -25,7 +25,7 @@ class Stage {
   /** Find the scales anew, for what is shown now: with another picture beside this one, scales at which both have room. */
   measure() {
     const [force, moment] = [false, true].map((turning) => largestAction(this.shows, turning));
-    const most = this.shows.ribbon ? largestSection(this.shows.ribbon) : 0;
+    const most = largestOf(sections.map(({ link }) => rowByName.get(`section:${link}:${this.shows.ribbon}`)?.peak?.value ?? 0));
     const full = LONGEST * extent.size * this.shows.size;
     this.wanted = {
       force: force ? full / force : 0,

@@ -96,7 +96,7 @@ const reaches = new Map();
 function reachOf(joint) {
   if (!reaches.has(joint.name)) {
     const ways = someInstants(240).map((i) => dot(less(spotOf(joint.child, i), spotOf(joint.parent, i)), directionOf(joint.parent.body, joint.axes[0], i)));
-    reaches.set(joint.name, endsOf([ways], false));
+    reaches.set(joint.name, endsOf(ways));
   }
   return reaches.get(joint.name);
 }
