@@ -81,13 +81,11 @@ function titleOf(one) {
 
 /** The entries of a list of quantities, by kind. */
 function seriesEntries(series = contents.series) {
-  const found = [];
-  for (const [group, head] of Object.entries(contents.groups)) {
+  const groups = Object.entries(contents.groups).map(([group, head]) => {
     const own = series.filter((one) => one.group === group);
-    const words = group === "section" ? `${head}, largest along the link` : head;
-    if (own.length) found.push([words, own.map((one) => [one.name, titleOf(one)])]);
-  }
-  return found;
+    return [group === "section" ? `${head}, largest along the link` : head, own.map((one) => [one.name, titleOf(one)])];
+  });
+  return groups.filter(([, own]) => own.length);
 }
 
 /** The ends of the values of some arrays. */

@@ -38,7 +38,6 @@ function costOf(column, row) {
 
 /** Look at a design, by its row. */
 function pick(row) {
-  if (row === null || row === undefined || row < 0) return;
   picked.row = row;
   for (const watcher of picked.watchers) watcher();
 }

@@ -9,7 +9,7 @@ function buildSweep() {
   const looked = element("section", { class: "left looked-at" });
   const cards = element("div", { class: "cards" });
   root.append(sweepHead(), conditionBar(), element("div", { class: "desk" }, looked, element("div", { class: "right" }, cards)), element("div", { class: "tables" }, designTable()), tip, said);
-  const plots = [...mapCards(), frontCard()].filter(Boolean);
+  const plots = [mapCard(), frontCard()].filter(Boolean);
   cards.append(...plots.map((card) => card.body));
   plots.forEach((card) => card.renew());
   lookedAt(looked);
@@ -58,25 +58,25 @@ function sameLine() {
   return element("p", { class: "fine" }, `The same in all designs: ${same.map((one) => `${one.title} ${columnWords(one, Math.max(first, 0))}`).join("; ")}.`);
 }
 
-/** A card of designs: its state has columns by their names, and `make` takes these columns. */
-function designCard(title, state, make) {
-  return new Card(title, state, () => make(...Object.values(state).map((name) => columnOf.get(name))));
+/** A card of designs: its state has columns by their names, of which the plot is made. */
+function designCard(title, state, Plot) {
+  return new Card(title, state, () => new Plot(...Object.values(state).map((name) => columnOf.get(name))));
 }
 
-function mapCards() {
+function mapCard() {
   const [x, y] = contents.varied;
   const column = (ranked[0] ?? contents.columns[0])?.name;
-  if (!column || !x) return [];
-  const card = y ? designCard("Map", { column, x, y }, (...chosen) => new DesignMap(...chosen)) : designCard(`Over ${x}`, { x, column }, (...chosen) => new DesignFront(...chosen));
+  if (!column || !x) return null;
+  const card = y ? designCard("Map", { column, x, y }, DesignMap) : designCard(`Over ${x}`, { x, column }, DesignFront);
   const parameters = contents.varied.map((name) => [name, name]);
   card.choices.append(card.choose("column", "Column", columnEntries()));
   if (y) card.choices.append(element("label", {}, "over ", card.choose("x", "Across", parameters)), element("label", {}, "and ", card.choose("y", "Up", parameters)));
-  return [card];
+  return card;
 }
 
 function frontCard() {
   if (!pair.length) return null;
-  const card = designCard("Front: less is better", { x: pair[0].name, y: (pair[1] ?? contents.parameters[0]).name }, (...chosen) => new DesignFront(...chosen));
+  const card = designCard("Front: less is better", { x: pair[0].name, y: (pair[1] ?? contents.parameters[0]).name }, DesignFront);
   card.choices.append(card.choose("y", "Up", columnEntries()), element("label", {}, "against ", card.choose("x", "Across", columnEntries())));
   return card;
 }

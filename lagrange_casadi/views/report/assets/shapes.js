@@ -10,19 +10,20 @@ function shapeOf(kind, length, centre, spots, outlines) {
   const own = spots.map((spot) => spot.at);
   const rollers = spots.filter((spot) => spot.radius).map(({ at: [x, y], radius }) => circleOf([x, y, 0], [1, 0, 0], [0, 1, 0], radius));
   const places = own.filter((at, k) => own.findIndex((other) => other.every((value, i) => value === at[i])) === k);
-  if (kind === "point") return { length: null, axis: [], arms: [], plates: [], centre: [0, 0, 0], disc: 0 };
+  const shape = { length, axis: [], arms: [], plates: [], centre: null, disc: 0 };
+  if (kind === "point") return { ...shape, length: null, centre: [0, 0, 0] };
   if (kind === "rigid") {
     const plates = outlines.length ? outlines : platesOf(places);
     const ends = places.length === 2 ? [places] : places.filter((at) => sizeOf(less(at, centre))).map((at) => [centre, at]);
     const arms = plates.length ? [] : ends;
-    return { length, axis: [], arms, plates: [...plates, ...rollers], centre, disc: arms.length || plates.length ? 0 : Math.max(length, 0) };
+    return { ...shape, arms, plates: [...plates, ...rollers], centre, disc: arms.length || plates.length ? 0 : Math.max(length, 0) };
   }
-  if (outlines.length) return { length, axis: [], arms: [], plates: [...outlines, ...rollers], centre: null, disc: 0 };
+  if (outlines.length) return { ...shape, plates: [...outlines, ...rollers] };
   const axis = [[0, 0, 0], [length, 0, 0]];
   const beside = places.filter((at) => Math.hypot(at[1], at[2]) > FLAT * (Math.abs(length) || 1) || !(at[0] >= 0 && at[0] <= length));
   const plates = beside.length ? platesOf([...axis, ...beside]) : [];
   const arms = plates.length ? [] : beside.map((at) => [[Math.min(Math.max(at[0], 0), length), 0, 0], at]);
-  return { length, axis, arms, plates: [...plates, ...rollers], centre: null, disc: 0 };
+  return { ...shape, axis, arms, plates: [...plates, ...rollers] };
 }
 
 /** The convex polygon of three places or more that lie in one plane and not in a line; else nothing. */

@@ -27,11 +27,10 @@ function sortedTable(caption, heads, rows, { chosen = null, described = "Show th
     more.textContent = left > 0 ? `and ${left} more, which the copy has` : "";
   };
   const ordered = () => {
-    const found = [...rows()];
-    if (order.column < 0) return found;
+    if (order.column < 0) return rows();
     const [, describe, by] = heads[order.column];
     const key = by ?? describe;
-    found.sort((a, b) => {
+    const found = rows().toSorted((a, b) => {
       const [x, y] = [key(a), key(b)];
       return typeof x === "string" ? x.localeCompare(y) : (x ?? -Infinity) - (y ?? -Infinity);
     });
@@ -40,10 +39,7 @@ function sortedTable(caption, heads, rows, { chosen = null, described = "Show th
   const sort = (column) => {
     const numeric = Boolean(heads[column][2]);
     order = { column, down: order.column === column ? !order.down : numeric };
-    cells.forEach((cell, k) => {
-      if (k === column) cell.setAttribute("aria-sort", order.down ? "descending" : "ascending");
-      else cell.removeAttribute("aria-sort");
-    });
+    cells.forEach((cell, k) => (cell.ariaSort = k !== column ? null : order.down ? "descending" : "ascending"));
     fill();
   };
   const copy = copyButton("copy as CSV", () => csvOf(plain, ordered()), caption);

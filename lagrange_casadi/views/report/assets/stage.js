@@ -118,11 +118,15 @@ class Stage {
     this.draw();
   }
 
-  /** Show something or not, or a section force by its name, or all in another size. */
-  show(what, value) {
-    if (what === "ribbon" && value && !ribbonForces.some((force) => force.name === value)) return;
+  /** Choose what is shown: something or not, or a section force by its name, or all in another size. */
+  choose(what, value) {
+    if (what === "ribbon" && value !== "" && !ribbonForces.some((force) => force.name === value)) return;
     this.shows[what] = value;
     this.controls[what]?.(value);
+  }
+
+  show(what, value) {
+    this.choose(what, value);
     this.measure();
     this.askFor();
     this.trace();

@@ -67,11 +67,7 @@ function minus(text) {
   return text.replace("-", "\u2212");
 }
 
-function raised(exponent) {
-  const digits = "⁰¹²³⁴⁵⁶⁷⁸⁹";
-  const text = [...String(Math.abs(exponent))].map((digit) => digits[Number(digit)]).join("");
-  return exponent < 0 ? `⁻${text}` : text;
-}
+const raised = (exponent) => Array.from(String(exponent), (sign) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(sign)]).join("");
 
 /** A value with its unit. */
 function shown(value, unit, digits = 5, size = Math.abs(value)) {

@@ -48,18 +48,12 @@ function keep(before) {
   let taken = [];
   if (before) {
     if (before.cards) taken = takeCards(before.cards);
-    for (const [what, value] of Object.entries(before.shows)) {
-      if (what === "ribbon" && value !== "" && !ribbonForces.some((force) => force.name === value)) continue;
-      stage.shows[what] = value;
-      stage.controls[what]?.(value);
-    }
+    for (const [what, value] of Object.entries(before.shows)) stage.choose(what, value);
     stage.trace();
-    stage.paper.turnTo(before.view.azimuth, before.view.elevation);
+    stage.touched = before.touched && before.space === contents.space;
+    if (stage.touched) Object.assign(camera, before.camera);
+    stage.paper.turnTo(before.camera.azimuth, before.camera.elevation);
     stage.renew();
-    if (before.view.touched && before.space === contents.space) {
-      stage.touched = true;
-      Object.assign(camera, before.view.camera);
-    }
     const { pinned } = before;
     if (pinned && sectionByLink.has(pinned.link)) stage.pinned = pinned;
     player.seconds = Number((speed.value = before.seconds));
@@ -75,12 +69,10 @@ function keep(before) {
   return {
     state: () => {
       const cards = cardsNow(taken);
-      const { azimuth, elevation, centre, scale, shift } = camera;
       return {
         cards: JSON.stringify(cards) === first ? null : cards,
         shows: ribbonForces.length ? stage.shows : { ...stage.shows, ribbon: before?.shows.ribbon },
-        view: { azimuth, elevation, touched: stage.touched, camera: { centre, scale, shift } },
-        space: contents.space,
+        camera: { ...camera }, touched: stage.touched, space: contents.space,
         pinned: stage.pinned, seconds: speed.value, si: reading.si, search: search.value,
         time: player.time,
         playing: still ? before?.playing ?? true : player.playing,
