@@ -127,21 +127,20 @@ function fitsIn([low, high], scale) {
 
 /** The lines, numbers and words of two scales around a field; a scale upwards without a title has its unit above it. */
 function axesOf(x, y, bottom = true) {
-  const group = drawn("g", { class: "axes" });
-  for (const [at, tick] of y.ticks) {
-    group.append(drawn("line", { x1: x.from, x2: x.to, y1: at, y2: at, class: tick === 0 ? "zero" : "net" }));
-    group.append(drawn("text", { x: x.from - 7, y: at, class: "y" }, y.describe(tick)));
-  }
-  for (const [at, tick] of x.ticks) {
-    group.append(drawn("line", { x1: at, x2: at, y1: y.from, y2: y.to, class: "net" }));
-    if (bottom) group.append(drawn("text", { x: at, y: y.from + 15, class: "x" }, x.describe(tick)));
-  }
-  group.append(drawn("line", { x1: x.from, x2: x.to, y1: y.from, y2: y.from, class: "edge" }));
   const middle = (y.from + y.to) / 2;
-  if (y.title) group.append(drawn("text", { x: 14, y: middle, class: "label", transform: `rotate(-90 14 ${middle})` }, y.label));
-  else group.append(drawn("text", { x: x.from - 7, y: y.to - 7, class: "unit" }, y.unit || "1"));
-  if (bottom) group.append(drawn("text", { x: (x.from + x.to) / 2, y: y.from + FIELD.bottom - 6, class: "label" }, x.label));
-  return group;
+  return drawn("g", { class: "axes" },
+    y.ticks.flatMap(([at, tick]) => [
+      drawn("line", { x1: x.from, x2: x.to, y1: at, y2: at, class: tick === 0 ? "zero" : "net" }),
+      drawn("text", { x: x.from - 7, y: at, class: "y" }, y.describe(tick)),
+    ]),
+    x.ticks.flatMap(([at, tick]) => [
+      drawn("line", { x1: at, x2: at, y1: y.from, y2: y.to, class: "net" }),
+      bottom && drawn("text", { x: at, y: y.from + 15, class: "x" }, x.describe(tick)),
+    ]),
+    drawn("line", { x1: x.from, x2: x.to, y1: y.from, y2: y.from, class: "edge" }),
+    y.title ? drawn("text", { x: 14, y: middle, class: "label", transform: `rotate(-90 14 ${middle})` }, y.label)
+      : drawn("text", { x: x.from - 7, y: y.to - 7, class: "unit" }, y.unit || "1"),
+    bottom && drawn("text", { x: (x.from + x.to) / 2, y: y.from + FIELD.bottom - 6, class: "label" }, x.label));
 }
 
 /** The words at a bar of colours, whose middle is at `x`: the ends of its values, and their unit. */

@@ -1,10 +1,7 @@
 // The forces inside links: the law of each link summed up as the file's own grids are.
 
 const sections = contents.sections.map((entry) => {
-  const loads = entry.loads.map((load) => {
-    const { name, ...members } = load;
-    return { name, ...Object.fromEntries(Object.entries(members).map(([member, number]) => [member, array(number)])) };
-  });
+  const loads = entry.loads.map(({ name, ...members }) => Object.fromEntries(Object.entries(members).map(([member, number]) => [member, array(number)])));
   const forces = new Map(entry.forces.map((force) => [force.name, force]));
   const xi = array(entry.xi);
   // `own` is room for the parts of a size, one after another.

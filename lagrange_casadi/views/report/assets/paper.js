@@ -10,9 +10,7 @@ class Paper {
   constructor(canvas) {
     this.canvas = canvas;
     this.context = canvas.getContext("2d");
-    this.camera = { azimuth: -60, elevation: 25, centre: extent.middle, scale: 1, shift: [0, 0] };
-    this.inks = {};
-    this.items = [];
+    this.camera = { centre: extent.middle, scale: 1, shift: [0, 0] };
     this.turnTo(-60, 25);
   }
 

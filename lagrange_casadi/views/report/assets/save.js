@@ -31,10 +31,8 @@ function pictureOf(card) {
   const top = 43 + 17 * lines.length;
   const parts = styled(sheet.still);
   const chosen = [...card.choices.querySelectorAll("select:not(.curves)")].map((list) => list.selectedOptions[0]?.textContent);
-  const canvas = sheet.body.querySelector("canvas");
-  const { left, top: down, width: wide, height } = canvas?.style ?? {};
-  const share = (text, whole) => (parseFloat(text) / 100) * whole;
-  const map = canvas && drawn("image", { x: share(left, width), y: share(down, high), width: share(wide, width), height: share(height, high), href: canvas.toDataURL(), preserveAspectRatio: "none" });
+  const { canvas, across, up } = card.plot;
+  const map = canvas && drawn("image", { x: across.from, y: up.to, width: across.to - across.from, height: up.from - up.to, href: canvas.toDataURL(), preserveAspectRatio: "none" });
   return drawn("svg", { xmlns: "http://www.w3.org/2000/svg", width, height: high + top, viewBox: `0 0 ${width} ${high + top}` },
     drawn("rect", { width, height: high + top, fill: page.backgroundColor }),
     write([contents.case, card.title.textContent].join(", "), 8, 18, 650), write(chosen.join(", "), 8, 35, 400), lines.flat(),
