@@ -221,11 +221,10 @@ class Alive {
   /** Have iterated loops begin where they stand in this design: from that of the file in steps, the fewer the better. */
   close(time) {
     const { engine, file } = this;
-    const loops = () => this.loops();
     const closes = (values, from) => {
       const status = engine.prepare(values);
       if (status) return status;
-      if (from) loops().set(from);
+      if (from) this.loops.set(from);
       engine.fit(1);
       return engine.motion(time) || engine.evaluate(1);
     };
@@ -233,14 +232,14 @@ class Alive {
     for (let many = 4; status && many <= 64; many *= 4) {
       status = closes(file.values, null);
       for (let k = 1; k <= many && !status; k += 1) {
-        const before = loops().slice();
+        const before = this.loops.slice();
         status = closes(this.values.map((value, n) => file.values[n] + (k / many) * (value - file.values[n])), before);
       }
     }
-    const found = loops().slice();
+    const found = this.loops.slice();
     this.check(status, time);
     this.check(engine.prepare(this.values), null);
-    loops().set(found);
+    this.loops.set(found);
   }
 
   numbersNow() {
@@ -293,7 +292,8 @@ class Alive {
     }
   }
 
-  loops() {
+  /** The coordinates of iterated loops, in the engine's memory. */
+  get loops() {
     return new Float64Array(this.engine.calls.memory.buffer, this.engine.model + this.live.loops[0], this.live.loops[1]);
   }
 

@@ -84,12 +84,12 @@ class Diagram {
     const { factor } = scaleFor(force.unit, most);
     const at = (value) => y0 - (most ? (half * value) / most : 0);
     const path = (sign) => `M${across(0)} ${y0}${values.map((value, k) => `L${across(ratios[k])} ${at(sign * value > 0 ? value : 0)}`).join("")}L${across(1)} ${y0}Z`;
-    const parts = [];
-    for (const [sign, kind] of [[1, "positive"], [-1, "negative"]]) if (values.some((value) => sign * value > 0)) parts.push(drawn("path", { d: path(sign), class: `area ${kind}` }));
-    parts.push(
+    const sides = [[1, "positive"], [-1, "negative"]].filter(([sign]) => values.some((value) => sign * value > 0));
+    const parts = [
+      ...sides.map(([sign, kind]) => drawn("path", { d: path(sign), class: `area ${kind}` })),
       drawn("path", { d: `M${across(0)} ${y0}${values.map((value, k) => `L${across(ratios[k])} ${at(value)}`).join("")}L${across(1)} ${y0}`, class: "outline" }),
       drawn("line", { x1: across(0), x2: across(1), y1: y0, y2: y0, class: "beam" }),
-    );
+    ];
     if (!most) return [...parts, drawn("text", { x: across(0.5), y: y0 - 5, class: "x" }, "0")];
     const taken = [];
     for (const mark of marksOf({ ratios, values })) {

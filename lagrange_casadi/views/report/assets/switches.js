@@ -8,10 +8,9 @@ function switchButton(words, title, press) {
 function siSwitch(then = () => {}) {
   const si = switchButton("SI units", "Units of the file: SI, without prefixes", () => {
     setSi(!reading.si);
-    si.setAttribute("aria-pressed", String(reading.si));
     then();
   });
-  si.setAttribute("aria-pressed", "false");
+  showing(() => (si.ariaPressed = String(reading.si)));
   return si;
 }
 
