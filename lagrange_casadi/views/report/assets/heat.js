@@ -171,8 +171,7 @@ const LEVELS = 255;
 /** The points of a map in the colours that the page has now: `plain` and `lined` have one for each level, from all negative to all positive. */
 function coloursNow() {
   const { inks } = deck.stage.paper;
-  inks.levels ??= levelsOf(...["map-positive", "map-negative", "map-none"].map((name) => partsOfInk(inks[name])));
-  return inks.levels;
+  return (inks.levels ??= levelsOf(...["map-positive", "map-negative", "map-none"].map((name) => partsOfInk(inks[name]))));
 }
 
 function levelsOf(positive, negative, none) {

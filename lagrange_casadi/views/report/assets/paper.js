@@ -126,17 +126,13 @@ class Paper {
 /** Red, green and blue of a colour like rgb(31, 95, 191), from 0 to 255. */
 const partsOfInk = (colour) => colour.match(/\d+/g).map(Number);
 
-const shades = new Map();
+const shades = {};
 
 /** A colour with light (above 0) or dark (below 0) mixed in. */
 function shade(colour, part) {
-  const key = `${colour} ${part}`;
-  if (!shades.has(key)) {
-    const to = part > 0 ? 255 : 0;
-    const mixed = partsOfInk(colour).map((value) => Math.round(value + Math.abs(part) * (to - value)));
-    shades.set(key, `rgb(${mixed.join(" ")})`);
-  }
-  return shades.get(key);
+  const to = part > 0 ? 255 : 0;
+  const mixed = () => partsOfInk(colour).map((value) => Math.round(value + Math.abs(part) * (to - value)));
+  return (shades[`${colour} ${part}`] ??= `rgb(${mixed().join(" ")})`);
 }
 
 /** The same colour, through which one sees. */

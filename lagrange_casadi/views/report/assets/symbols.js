@@ -90,15 +90,10 @@ function screw(paper, place, axis, wide, colour) {
   }
 }
 
-const reaches = new Map();
-
 /** Between which places a joint slides over all instants, along its parent's axis [m]. */
 function reachOf(joint) {
-  if (!reaches.has(joint.name)) {
-    const ways = someInstants(240).map((i) => dot(less(spotOf(joint.child, i), spotOf(joint.parent, i)), directionOf(joint.parent.body, joint.axes[0], i)));
-    reaches.set(joint.name, endsOf(ways));
-  }
-  return reaches.get(joint.name);
+  const wayAt = (i) => dot(less(spotOf(joint.child, i), spotOf(joint.parent, i)), directionOf(joint.parent.body, joint.axes[0], i));
+  return (joint.reach ??= endsOf(someInstants(240).map(wayAt)));
 }
 
 /** The line on which something slides, as far as it ever does. */
