@@ -82,7 +82,7 @@ function sectionOverInstants(section, name, ratio, found) {
 function forceAlong(section, name, instant, step = 2) {
   const ratios = [];
   const values = [];
-  const stations = [...new Set(section.loads.map((load) => load.station[instant]))].filter((u) => u > 0 && u < 1);
+  const stations = [...new Set(section.loads.map((load) => load.station[instant]))].filter((u) => u > 0 && u < 1).sort((a, b) => a - b);
   const last = section.xi.length - 1;
   const put = (xi, side) => {
     const left = Math.max(0, Math.min(last - 1, Math.floor(xi * last)));
@@ -91,10 +91,15 @@ function forceAlong(section, name, instant, step = 2) {
     ratios.push(xi);
     values.push(forceAt(section, section.forces.get(name), instant, xi, between, side));
   };
-  const grid = section.xi.filter((_, k) => k % step === 0);
-  for (const xi of Float64Array.of(...grid, ...stations.filter((u) => !grid.includes(u))).sort()) {
-    if (stations.includes(xi)) put(xi, "base");
-    put(xi, "tip");
+  let next = 0;
+  for (let k = 0; k < section.xi.length; k += step) {
+    const xi = section.xi[k];
+    while (next < stations.length && stations[next] <= xi) {
+      put(stations[next], "base");
+      put(stations[next], "tip");
+      next += 1;
+    }
+    if (!stations.includes(xi)) put(xi, "tip");
   }
   return { ratios, values };
 }
