@@ -4,12 +4,13 @@ head.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from ..base.arrays import Array
 from ..base.table_writers import head
 from ..errors import LagrangeCasadiError
-from .derivatives import Derivatives, derivatives
+from .derivatives import Derivatives, Series, derivatives
 from .histories import Histories
 
 if TYPE_CHECKING:
@@ -32,19 +33,9 @@ def dataset(histories: Histories, sensitivities: Derivatives) -> xarray.Dataset:
             "to_xarray needs xarray; install it with: pip install xarray"
         ) from None
     data = {
-        str(q): (
-            q.quantity.axes,
-            histories.array(q),
-            {"units": histories.unit(q)} | q.meant(histories.table).attributes,
-        )
-        for q in histories.quantities()
+        one.name: (one.output.quantity.axes, one.values, {"units": one.unit} | one.attributes)
+        for one in _everything(histories, sensitivities)
     }
-    for found in derivatives(histories, sensitivities):
-        data[found.name] = (
-            found.output.quantity.axes,
-            found.values,
-            {"units": found.unit} | found.attributes,
-        )
     coordinates = {
         "t": ("t", histories.t, {"units": "s"}),
         "xi": ("xi", histories.xi, {"units": "1", "long_name": "ratio xi/l"}),
@@ -82,19 +73,25 @@ def columns(histories: Histories, sensitivities: Derivatives) -> dict[str, Array
     found: dict[str, Array] = {}
     if histories.over:
         found[head(f"over:{histories.over.joint}", histories.over.unit)] = histories.over.values
-    named = [
-        (str(output), histories.unit(output), histories.array(output))
-        for output in histories.quantities()
-    ]
-    named += [
-        (found.name, found.unit, found.values) for found in derivatives(histories, sensitivities)
-    ]
-    for output, unit, values in named:
-        if values.ndim == 1:
-            found[head(output, unit)] = values
+    for one in _everything(histories, sensitivities):
+        if one.values.ndim == 1:
+            found[head(one.name, one.unit)] = one.values
         else:
             found |= {
-                head(f"{output} xi/l={xi:.10g}", unit): column
-                for xi, column in zip(histories.xi, values.T, strict=True)
+                head(f"{one.name} xi/l={xi:.10g}", one.unit): column
+                for xi, column in zip(histories.xi, one.values.T, strict=True)
             }
     return found
+
+
+def _everything(histories: Histories, sensitivities: Derivatives) -> Iterator[Series]:
+    """All quantities, and then their derivatives."""
+    for output in histories.quantities():
+        yield Series(
+            str(output),
+            output,
+            histories.array(output),
+            histories.unit(output),
+            output.meant(histories.table).attributes,
+        )
+    yield from derivatives(histories, sensitivities)

@@ -76,9 +76,9 @@ class Derivatives:
 
 
 @dataclass(frozen=True, eq=False)
-class Derivative:
-    """One of them: its full ``name``, as ``sensitivity:l:effort:O``, what it is of, its values and
-    unit, what a file says of it.
+class Series:
+    """A quantity or a derivative of one: its full ``name``, as ``sensitivity:l:effort:O``, what it
+    is of, its values and unit, what a file says of it.
     """
 
     name: str
@@ -88,7 +88,7 @@ class Derivative:
     attributes: dict[str, str]
 
 
-def derivatives(histories: Histories, sensitivities: Derivatives) -> Iterator[Derivative]:
+def derivatives(histories: Histories, sensitivities: Derivatives) -> Iterator[Series]:
     """All derivatives of histories."""
     parameters = histories.description.parameters
     for name, found in sensitivities.by.items():
@@ -98,4 +98,4 @@ def derivatives(histories: Histories, sensitivities: Derivatives) -> Iterator[De
             words = quantity.attributes | {
                 "long_name": f"{quantity.long_name}: derivative by {name}"
             }
-            yield Derivative(f"{SENSITIVITY}:{name}:{output}", output, values, unit, words)
+            yield Series(f"{SENSITIVITY}:{name}:{output}", output, values, unit, words)

@@ -104,12 +104,11 @@ def held_at_rest(scene: Scene, histories: Histories) -> dict[str, Holding]:
         reasons.append((~np.isfinite(found).all(axis=0), "it is not finite"))
         known = ~np.any([wrong for wrong, _ in reasons], axis=0)
         there = instants[at]
-        ends = []
-        for end in (found.min(axis=0), found.max(axis=0)):
-            ends.append(histories.outputs[output].copy())
-            ends[-1][at[there]] = np.where(known, end, np.nan)[there]
+        least, largest = (histories.outputs[output].copy() for _ in range(2))
+        least[at[there]] = np.where(known, found.min(axis=0), np.nan)[there]
+        largest[at[there]] = np.where(known, found.max(axis=0), np.nan)[there]
         reason = next((words for wrong, words in reasons if wrong[there].any()), "")
-        ranges[name] = Holding(ends[0], ends[1], histories.unit(output), reason)
+        ranges[name] = Holding(least, largest, histories.unit(output), reason)
     return ranges
 
 

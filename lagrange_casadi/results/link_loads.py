@@ -113,44 +113,22 @@ def distributed_load(
 
 
 @dataclass(frozen=True, eq=False)
-class _AtStation(_Load):
+class PointLoad(_Load):
     """Action on a link at a load point, whose ``station`` is the ratio xi/l, (t,): it moves where
     something slides along the link.
+
+    ``acts`` are by member, each (t,): in the plane the force along ``n`` and across ``f`` the
+    link's axis [N] and the moment ``m`` [N m], in space forces ``n``, ``fy``, ``fz`` and moments
+    ``mx``, ``my``, ``mz``.
     """
 
     station: Array
+    acts: Mapping[str, Array]
 
-
-@dataclass(frozen=True, eq=False)
-class PointLoad(_AtStation):
-    """Action in the plane: force along ``n`` and across ``f`` the link's axis [N], moment ``m``
-    [N m], each (t,).
-    """
-
-    n: Array
-    f: Array
-    m: Array
-
-
-@dataclass(frozen=True, eq=False)
-class SpatialPointLoad(_AtStation):
-    """Action in space: force ``n`` along the link's axis, ``fy``, ``fz`` across [N], moments
-    ``mx``, ``my``, ``mz`` [N m].
-    """
-
-    n: Array
-    fy: Array
-    fz: Array
-    mx: Array
-    my: Array
-    mz: Array
-
-
-AnyPointLoad = PointLoad | SpatialPointLoad
-
-
-def point_load(name: str, members: Mapping[str, Array]) -> AnyPointLoad:
-    """Make the action at a load point by the names of its members: those of the plane or those of
-    space.
-    """
-    return PointLoad(name, **members) if "f" in members else SpatialPointLoad(name, **members)
+    def of(self, link: str, outputs: Mapping[Output, Array]) -> PointLoad:
+        """Load of a link with other numbers, (..., t)."""
+        station, *acts = (
+            outputs[Output("station", link, member, self.name)]
+            for member in ("station", *self.acts)
+        )
+        return PointLoad(self.name, station, dict(zip(self.acts, acts, strict=True)))

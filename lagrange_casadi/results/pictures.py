@@ -40,12 +40,7 @@ class Film:
 
     def __post_init__(self) -> None:
         low, high = _WIDTHS
-        if (
-            isinstance(self.width, bool)
-            or not isinstance(self.width, int)
-            or not low <= self.width <= high
-            or self.width % 2
-        ):
+        if not low <= self.width <= high or self.width % 2:
             raise DeclarationError(
                 f"width: expected an even number of pixels from {low} to {high}, got {self.width!r}"
             )
@@ -53,11 +48,7 @@ class Film:
             ("rate", self.rate, "frames a second"),
             ("seconds", self.seconds, "seconds a cycle"),
         ):
-            if (
-                isinstance(value, bool)
-                or not isinstance(value, (int, float))
-                or not (math.isfinite(value) and value > 0)
-            ):
+            if not 0.0 < value < math.inf:
                 raise DeclarationError(f"{name}: expected {unit} above 0, got {value!r}")
         if self.seconds < _SHORTEST:
             raise DeclarationError(

@@ -8,7 +8,7 @@ the ends, load points and couples of slices change.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -24,7 +24,7 @@ from ..engine.instants import grids
 from ..engine.section_function import SIDES, Side, edge
 from ..model.limits import END
 from ..model.link_density import NumericDensity
-from .link_loads import AnyPointLoad, DistributedLoad, distributed_load, point_load
+from .link_loads import DistributedLoad, PointLoad, distributed_load
 from .pieces import Basis, Component, Pieces, Rows, basis_of
 from .vector_sizes import growth_of_size, size_of, slope_of_size
 
@@ -45,7 +45,7 @@ class SectionLaw(Brief):
     length: float
     density: NumericDensity
     coefficients: Mapping[str, Array]
-    loads: tuple[AnyPointLoad, ...] = ()
+    loads: tuple[PointLoad, ...] = ()
     distributed_loads: tuple[DistributedLoad, ...] = ()
     slack: float = END["double"]
 
@@ -129,21 +129,11 @@ class SectionLaw(Brief):
     def of(self, link: str, outputs: Mapping[Output, Array]) -> SectionLaw:
         """The law of the same link with other numbers in it, (..., t)."""
         coefficients = {name: outputs[Output("law", link, name)] for name in self.coefficients}
-        loads = tuple(
-            type(load)(
-                load.name,
-                *(
-                    outputs[Output("station", link, member, load.name)]
-                    for member in self.table.place_first
-                ),
-            )
-            for load in self.loads
-        )
         return replace(
             self,
             coefficients=coefficients,
-            loads=loads,
-            distributed_loads=tuple(s.of(link, outputs) for s in self.distributed_loads),
+            loads=tuple(load.of(link, outputs) for load in self.loads),
+            distributed_loads=tuple(load.of(link, outputs) for load in self.distributed_loads),
         )
 
     def changed(self, changes: SectionLaw, xi: Array) -> dict[str, tuple[Array, Array]]:
@@ -250,23 +240,25 @@ class SectionLaw(Brief):
         """The ratio at which a force is largest in size, and the force there, at every instant,
         both of shape (t,).
         """
-        found = [pieces.extreme() for pieces in self._blocks(force)]
-        places, values = (np.concatenate(rows) for rows in zip(*found, strict=True))
-        return places, values
+        return self._by_blocks(force, Pieces.extreme)
 
     def reached(self, force: str) -> tuple[Array, Array]:
         """Places along a link at which a force is smallest, largest, and largest in size, and its
         values: (3, t).
         """
-        found = [pieces.reached() for pieces in self._blocks(force)]
-        places, values = (np.concatenate(rows, axis=1) for rows in zip(*found, strict=True))
-        return places, values
+        return self._by_blocks(force, Pieces.reached)
 
-    def _blocks(self, force: str) -> Iterator[Pieces]:
-        """A force over few instants after another, so that what is sought at them stays at hand."""
-        count = self.coefficients["n0"].size
+    def _by_blocks(
+        self, force: str, sought: Callable[[Pieces], tuple[Array, Array]]
+    ) -> tuple[Array, Array]:
+        """Places and values (..., t) that are ``sought`` of a force over few instants after
+        another, so that they stay at hand.
+        """
         height = max(1, _BLOCK // (len(self.functions.breaks[0]) + len(self.loads)))
-        return (self.during(slice(i, i + height)).pieces(force) for i in range(0, count, height))
+        starts = range(0, self.coefficients["n0"].size, height)
+        found = [sought(self.during(slice(i, i + height)).pieces(force)) for i in starts]
+        places, values = (np.concatenate(rows, axis=-1) for rows in zip(*found, strict=True))
+        return places, values
 
     def curves(self, force: str) -> tuple[Array, Array]:
         """Ratios and values (t, k) of :meth:`.Pieces.curves`."""
@@ -353,10 +345,10 @@ class SectionLaw(Brief):
         """Steps of a force that is no resultant, one of each load point."""
         members, found = self.table.sections[force], []
         for load in self.loads:
-            constant = getattr(load, members.acting)
+            constant = load.acts[members.acting]
             slope = np.zeros_like(constant)
             if members.arm:
-                across = getattr(load, self.table.sections[members.shear].acting)
+                across = load.acts[self.table.sections[members.shear].acting]
                 slope = members.arm * across * self.length
             found.append((load.station, constant, slope))
         return found
@@ -390,33 +382,23 @@ def law_of(
 
     Raises ``ValueError`` where a load along the link is not whole.
     """
-    law: dict[str, Array] = {}
-    load_points: dict[str, dict[str, Array]] = {}
-    ends: dict[str, dict[str, Array]] = {}
+    found: dict[str, dict[str, dict[str, Array]]] = {"law": {}, "station": {}, "spread": {}}
     terms: dict[str, dict[str, dict[int, Array]]] = {}
     for output, values in outputs.items():
         if not output.along or output.part != link:
             continue
-        if output.group == "law":
-            law[output.member] = values
-        elif output.group == "station":
-            load_points.setdefault(output.load_point, {})[output.member] = values
-        elif output.power is None:
-            ends.setdefault(output.load_point, {})[output.member] = values
+        if output.power is None:
+            found[output.group].setdefault(output.load_point, {})[output.member] = values
         else:
-            terms.setdefault(output.load_point, {}).setdefault(output.member, {})[output.power] = (
-                values
-            )
-    loads = tuple(point_load(name, members) for name, members in load_points.items())
-    distributed_loads = tuple(
-        distributed_load(name, ends.get(name, {}), found) for name, found in terms.items()
-    )
+            load = terms.setdefault(output.load_point, {})
+            load.setdefault(output.member, {})[output.power] = values
+    law, points, ends = found["law"].get("", {}), found["station"], found["spread"]
     return SectionLaw(
         length,
         density,
         law,
-        loads,
-        distributed_loads,
+        tuple(PointLoad(name, acts.pop("station"), acts) for name, acts in points.items()),
+        tuple(distributed_load(name, ends.get(name, {}), of) for name, of in terms.items()),
         END["single" if precision == "single" else "double"],
     )
 

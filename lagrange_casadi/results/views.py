@@ -9,7 +9,6 @@ from functools import cached_property
 
 from ..base.arrays import Array
 from ..base.brief import Brief
-from ..base.space import require
 from ..errors import NoComponentError, UnknownNameError
 from .pieces import Rows
 from .section_laws import SectionLaw
@@ -176,7 +175,6 @@ class Section:
     def _grid(self, force: str) -> Array:
         if force not in self.law.table.forces:
             raise UnknownNameError("section force", force, self.law.table.forces)
-        require(f"a grid of {force}", (self.law.coefficients["n0"].size, self.xi.size))
         return self.law.on_grid(force, self._basis)
 
     @cached_property

@@ -309,7 +309,8 @@ class ContinuousSolution(Brief):
         moving = np.flatnonzero(solution.resting.all() | ~solution.resting)
         some = moving[[0, moving.size // 2, -1]]
         out = self.interpreter.columns(solution.t[some], self.p, self.z[:, some])
-        sizes = by_unit(solution)
+        largest = {output: most(values) for output, values in solution.outputs.items()}
+        sizes = by_unit(solution.description.kinds, largest)
         rounding = _NOTHING * max(sizes.values(), default=0.0)
         found = np.ones(some.size, bool)
         for output in outputs:

@@ -93,7 +93,7 @@ def link_load_cases(
     loads, body = _loads_on(placed, link), described[link]
     known = _known(solution, link, loads, numbers)
     placing = placed.bodies[link]
-    vectors = placing.origin[2], *placing.spin, constant(declared.gravity)
+    vectors = placing.origin[2], *placing.spin, placed.reported.straight(declared.gravity)
     *moved, gravity = (resolve(placing.axes, vector) for vector in vectors)
     motion = on_own_axes(*moved)
     residual, largest = _residual(body, motion, gravity, loads, known)
@@ -207,7 +207,7 @@ def _residual(
 ) -> tuple[Array, float]:
     """Return the residuals of forces and of moments about the centre, and the largest force."""
     whole = body.whole
-    centre, force, moment = constant(whole.centre), NIL, NIL
+    centre, force, moment = motion.point(whole.centre)[0], NIL, NIL
     weight = whole.mass * (gravity - motion.point(whole.centre)[2])
     inertia = Action("", "", centre, weight, -motion.turning(constant(whole.inertia)))
     for one in (acting := [inertia, *loads]):
@@ -257,6 +257,7 @@ def _peaks(
 
 
 def _at(vector: Array, i: int) -> Triple:
-    """Return a vector at an instant, without zeros of a negative sign."""
-    x, y, z = (vector[:, min(i, vector.shape[1] - 1)] + 0.0).tolist()
+    """Return a vector of a plane or of space at an instant, without zeros of a negative sign."""
+    found = (vector[:, min(i, vector.shape[1] - 1)] + 0.0).tolist()
+    x, y, z = {1: (0.0, 0.0, *found), 2: (*found, 0.0)}.get(len(found), found)
     return x, y, z

@@ -12,7 +12,7 @@ from ...base.arrays import Array
 from ...base.brief import Brief
 from ...errors import DeclarationError
 from ...model.description import BodyNumbers, Triple
-from ...results.verification.instant_vectors import GROUND
+from ...results.verification.instant_vectors import constant
 from ...results.verification.placing import Moving
 
 _SAME = 1e-9
@@ -64,7 +64,7 @@ class LoadCase(Brief):
 def on_own_axes(acceleration: Array, omega: Array, alpha: Array) -> Moving:
     """Return the motion of a link whose vectors are on its own axes, from its origin."""
     origin = np.multiply.outer([0.0, 0.0, 1.0], acceleration)
-    return Moving.of(origin, GROUND, np.array([omega, alpha]))
+    return Moving.of(origin, constant(np.eye(len(acceleration))), np.array([omega, alpha]))
 
 
 def title(case: LoadCase) -> str:

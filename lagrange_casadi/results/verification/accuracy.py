@@ -15,7 +15,7 @@ import numpy as np
 from ...base.arrays import Array, spread
 from ...base.compensated import DTYPES, ROUNDING
 from ...base.interpret import Arithmetic, followable
-from ...base.quantities import Output
+from ...base.quantities import Kinds, Output
 from ...engine.codegen.stages import plain
 from ...engine.instants.backends import Evaluated
 from ...engine.instants.cycle_table import CycleTable
@@ -81,12 +81,14 @@ def estimate(
     worst = _worst(program, histories, *off)
     unit, least = ROUNDING[precision], float(np.finfo(DTYPES[precision]).tiny)
     errors = {output: max(least, factor * error) for output, error in worst.items()}
+    kinds = histories.description.kinds
+    sizes = {output: most(values) for output, values in histories.outputs.items()}
     # Coefficients of section laws are in no result.
-    read = {output: values for output, values in histories.outputs.items() if not output.along}
-    largest_of_unit, kinds = by_unit(replace(histories, outputs=read)), histories.description.kinds
-    for output in errors.keys() & histories.outputs.keys():
+    read = {output: size for output, size in sizes.items() if not output.along}
+    largest_of_unit = by_unit(kinds, read)
+    for output in errors.keys() & sizes.keys():
         # The last digit is never sure; nor is, of what vanishes, that of the largest of its unit.
-        size = most(histories.outputs[output])
+        size = sizes[output]
         vanishes = size <= 2.0 * errors[output]
         beside = largest_of_unit.get(output.unit(kinds), size) if vanishes else size
         errors[output] = max(errors[output], unit * beside)
@@ -115,12 +117,12 @@ def _worst(
     return {output: error for output, error in errors.items() if histories.determined(output)}
 
 
-def by_unit(histories: Histories) -> dict[str, float]:
+def by_unit(kinds: Kinds, sizes: Mapping[Output, float]) -> dict[str, float]:
     """The largest size of any output, by unit."""
     found: dict[str, float] = {}
-    for output, values in histories.outputs.items():
-        unit = output.unit(histories.description.kinds)
-        found[unit] = max(found.get(unit, 0.0), most(values))
+    for output, size in sizes.items():
+        unit = output.unit(kinds)
+        found[unit] = max(found.get(unit, 0.0), size)
     return found
 
 
@@ -159,13 +161,14 @@ def _of_cycle(program: Program, cycle: CycleTable, histories: Histories) -> dict
     # counting.
     rounding = _SUMS * ROUNDING["double"] if cycle.dtype.itemsize == 8 else 2 * ROUNDING["single"]
     missed = cycle.errors * cycle.peaks
-    sizes: dict[str, float] = {}
-    units = {output: output.unit(histories.description.kinds) for output in program.outputs}
-    for output, k in program.outputs.items():
-        reached = max(float(cycle.peaks[k]), most(histories.outputs[output]))
-        sizes[units[output]] = max(sizes.get(units[output], 0.0), reached)
+    kinds = histories.description.kinds
+    reached = {
+        output: max(float(cycle.peaks[k]), most(histories.outputs[output]))
+        for output, k in program.outputs.items()
+    }
+    sizes = by_unit(kinds, reached)
     errors = {
-        output: float(missed[k]) + rounding * sizes[units[output]]
+        output: float(missed[k]) + rounding * sizes[output.unit(kinds)]
         for output, k in program.outputs.items()
     }
     nothing = {output: np.zeros(1) for output in histories.indeterminate}

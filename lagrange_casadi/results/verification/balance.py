@@ -18,7 +18,7 @@ from ...base.quantities import Output
 from ...model.description import Description, DriveNumbers
 from ...model.stated import Equation
 from .closure import Residuals
-from .contacts import actions, sense
+from .contacts import actions
 from .instant_vectors import NIL, constant, cross, dot, resolve, size, turn
 from .load_laws import off_laws
 from .placing import Placed
@@ -88,8 +88,8 @@ def forces_reported(placed: Placed) -> bool:
     declared, outputs = placed.declared, placed.reported.outputs
     if len(placed.stated.equations) < len(declared.multipliers):
         return False
-    needed = [*forces_needed(declared)]
-    needed += [output for output in outputs if output.group in ("reaction", "load")]
+    others = (output for output in outputs if output.group in ("reaction", "load"))
+    needed = (*forces_needed(declared), *others)
     return all(output in outputs and np.isfinite(outputs[output]).all() for output in needed)
 
 
@@ -116,7 +116,7 @@ def balance(placed: Placed) -> dict[str, list[Residuals]]:
     }
     sums = _sums(placed, acting, centres)
     worst, power = np.zeros_like(placed.reported.t), sums.power
-    gravity, length = constant(placed.declared.gravity), placed.declared.size
+    length, gravity = placed.declared.size, placed.reported.straight(placed.declared.gravity)
     for name, body in placed.declared.bodies.items():
         motion = placed.bodies[name]
         (_, speed, change), (rate, _) = centres[name], motion.spin
@@ -158,22 +158,22 @@ def all_actions(placed: Placed) -> Iterator[Action]:
             f"reaction:{name}",
             child,
             at,
-            reported.force("reaction", name),
-            reported.force("reaction", name, "m"),
+            *reported.acts("reaction", name),
             parent,
             works=False,
         )
         # Near gimbal lock couples along coordinates are large, and all together what the joint
         # needs.
-        force, couple, driven = NIL, NIL, False
-        for axis in joint.axes:
-            if (effort := reported.outputs.get(Output("effort", axis.coordinate))) is not None:
-                along, driven = placed.along(name, axis, effort), True
-                force, couple = force + along[0], couple + along[1]
-        if driven:
+        efforts = [
+            placed.along(axis.coordinate, reported.outputs[effort])
+            for axis in joint.axes
+            if (effort := Output("effort", axis.coordinate)) in reported.outputs
+        ]
+        if efforts:
+            force, couple = (sum(of, NIL) for of in zip(*efforts, strict=True))
             yield Action(f"effort:{name}", child, at, force, couple, parent)
     for name, load in declared.loads.items():
-        force, couple = reported.force("load", name), reported.force("load", name, "m")
+        force, couple = reported.acts("load", name)
         for point, sign in zip(load.points, (1.0, -1.0), strict=False):
             # Friction is where the joint's child is, on both.
             place = load.points[0] if load.friction is not None else point
@@ -190,13 +190,12 @@ def _of_rotor(placed: Placed, name: str, motor: DriveNumbers) -> Iterator[Action
     joint = placed.declared.joints[motor.coordinate]
     at, near = placed.pin(joint.name)[0], placed.bodies[joint.parent.body]
     _, rate, change = placed.reported.motion(joint.name)
-    about = turn(near.axes, constant(joint.axes[0].direction))
+    # In a plane a rotor along a slide has no couple.
+    about = turn(near.axes, placed.reported.turning(joint.axes[0].direction))
     taken = motor.reflected * change + motor.spin * dot(about, near.spin[1])
-    acts = placed.along(joint.name, joint.axes[0], -taken)
+    acts = placed.along(joint.name, -taken)
     yield Action(name, joint.child.body, at, *acts, joint.parent.body)
     turning = change * about + rate * cross(near.spin[0], about)
-    if not placed.reported.space:  # couples of a rotor along a slide lie in the plane
-        turning = turning * constant((0.0, 0.0, 1.0))
     yield Action(name, joint.parent.body, at, NIL, -motor.spin * turning)
 
 
@@ -208,42 +207,31 @@ def _held(placed: Placed, equation: Equation) -> Iterator[Action]:
     output = Output("multiplier", equation.name)
     multiplier, name = reported.outputs[output], str(output)
     for touch in equation.touching(partial(stacked, placed, equation)):
-        for part in actions(
-            touch, placed.bodies[touch.carrier], multiplier, sense(touch, declared, reported)
-        ):
+        for part in actions(touch, placed, multiplier):
             yield Action(name, *part)
     if equation.touches:
         return
     forces = multiplier * equation.slopes_at(stacked(placed, equation), reported.t)
-    axes = {
-        axis.coordinate: (joint_name, axis)
-        for joint_name, joint in declared.joints.items()
-        for axis in joint.axes
-    }
     for entry, force in zip(equation.entries, forces, strict=True):
         if entry.kind == "coordinate":
-            joint_name, axis = axes[entry.part]
-            joint = declared.joints[joint_name]
-            yield Action(
-                name,
-                joint.child.body,
-                placed.pin(joint_name)[0],
-                *placed.along(joint_name, axis, force),
-                joint.parent.body,
-            )
+            joint = declared.joints[entry.part.partition(":")[0]]
+            at, acts = placed.pin(joint.name)[0], placed.along(entry.part, force)
+            yield Action(name, joint.child.body, at, *acts, joint.parent.body)
         elif entry.kind == "direction":
-            couple = np.array([0.0 * force, 0.0 * force, force])
-            yield Action(name, entry.part, placed.bodies[entry.part].at, NIL, couple)
+            yield Action(name, entry.part, placed.bodies[entry.part].at, NIL, force[None])
         else:
-            push = np.array([force if entry.kind == x else 0.0 * force for x in "xyz"])
+            push = np.array([force if entry.kind == x else 0.0 * force for x in reported.lines])
             at = placed.bodies[entry.part].point(entry.point)[0]
             yield Action(name, entry.part, at, push, NIL)
 
 
 def _sums(placed: Placed, acting: Sequence[Action], centres: Mapping[str, Array]) -> _Sums:
     """Sums of the actions on the bodies."""
-    nothing = np.zeros_like(placed.reported.t)
-    force, moment = ({name: np.zeros((3, nothing.size)) for name in centres} for _ in "fm")
+    reported, nothing = placed.reported, np.zeros_like(placed.reported.t)
+    force, moment = (
+        {name: np.zeros((len(axes), nothing.size)) for name in centres}
+        for axes in (reported.lines, reported.turns)
+    )
     found = _Sums(force, moment, *[nothing] * 5)
     for act in acting:
         push, twist = act.sizes
@@ -278,11 +266,10 @@ def _unlike(placed: Placed) -> Array:
     reported, worst = placed.reported, np.zeros_like(placed.reported.t)
     for name, joint in placed.declared.joints.items():
         if Output("reaction", name, "fu") in reported.outputs:
-            axes = placed.ends(name)[0].axes
-            for letter, arm in (("f", 1.0), ("m", placed.declared.size)):
-                there, own = (reported.force("reaction", name, letter, x) for x in ("xyz", "uvw"))
-                anchor = turn(constant(joint.triad), own)
-                worst = np.maximum(worst, size(there - turn(axes, anchor)) / arm)
+            axes = turn(placed.ends(name)[0].axes, constant(joint.triad))
+            both = (reported.acts("reaction", name, x) for x in ("xyz", "uvw"))
+            for there, own, arm in zip(*both, (1.0, placed.declared.size), strict=True):
+                worst = np.maximum(worst, size(there - turn(axes, own)) / arm)
     return worst
 
 

@@ -4,8 +4,8 @@ graphs that made them.
 The reported motions of the joints place every body anew, in plain arithmetic (:mod:`.placing`). The
 reported reactions, efforts, loads and multipliers must then balance every body (Newton-Euler), the
 power of drives and loads must be the change of kinetic energy, loops must close and the users'
-equations hold, and the sections at a link's base must give back what its joints do there. A
-mechanism of the plane is one in space whose z is zero. Each residual is relative, (t,).
+equations hold, and the sections at a link's base must give back what its joints do there. Vectors
+of a mechanism of the plane have what is in the plane. Each residual is relative, (t,).
 """
 
 from __future__ import annotations
@@ -17,13 +17,11 @@ import numpy as np
 
 from ...base.arrays import Array
 from ...base.quantities import Output
-from ...base.tables import SPACE
 from ...errors import CertificateError
 from ...model.description import Description
 from ...model.scene import kinds
 from ...model.stated import NOTHING, Stated
 from ..histories import Histories
-from ..section_laws import SectionLaw
 from ..solution import Solution
 from .balance import balance, forces_reported
 from .closure import Residuals, closure
@@ -33,7 +31,7 @@ from .reported import COARSE, TOLERANCE, Reported, blur, precision_of
 from .unplaced import place_all
 
 NEAR = 1e3
-_BLOCK = 1 << 14
+_BLOCK = 1 << 13
 _TURNED, _MISSED = 100.0, 100.0
 
 _EDGE = 1e-9
@@ -69,20 +67,20 @@ def certify(
         return merged
     whole = replace(histories, outputs={**histories.outputs, **(hidden or {})}, indeterminate=())
     reported = reported_of(whole, phases or {})
-    found: dict[tuple[str, int], list[Array]] = {}
-    scales: dict[tuple[str, int], float] = {}
-    for start in range(0, whole.t.size, _BLOCK):
-        block = (
-            reported if whole.t.size <= _BLOCK else reported.during(slice(start, start + _BLOCK))
-        )
-        for name, parts in _residuals(histories.description, stated, block).items():
-            for part, (distances, scale) in enumerate(parts):
-                found.setdefault((name, part), []).append(np.broadcast_to(distances, block.t.shape))
-                scales[name, part] = max(scales.get((name, part), 0.0), scale)
+    starts = range(0, whole.t.size, _BLOCK)
+    blocks = (
+        (reported.during(slice(start, start + _BLOCK)) for start in starts)
+        if len(starts) > 1
+        else [reported]
+    )
+    found = [_residuals(histories.description, stated, block) for block in blocks]
     residuals: dict[str, Array] = {}
-    for (name, part), blocks in found.items():
-        distances = np.concatenate(blocks) / (scales[name, part] or 1.0)
-        residuals[name] = np.maximum(residuals.get(name, distances), distances)
+    for name in (name for name in found[0] if all(name in one for one in found)):
+        relative = []
+        for part in zip(*(of_block[name] for of_block in found), strict=True):
+            gaps, scales = zip(*part, strict=True)
+            relative.append(np.concatenate(gaps) / (max(0.0, *scales) or 1.0))
+        residuals[name] = np.maximum.reduce(relative)
     return residuals
 
 
@@ -142,34 +140,26 @@ def summary(residuals: Mapping[str, Array]) -> str:
 def reported_of(histories: Histories, phases: Mapping[Output, Array]) -> Reported:
     """Read a solution as vectors; ``phases`` as in :func:`certify`."""
     description = histories.description
+    laws = {link: histories.section(link).law for link in histories.links_with_sections}
     return Reported(
         t=histories.t,
         outputs=histories.outputs,
         phases=phases,
-        laws={link: _law_at_base(histories, link) for link in histories.links_with_sections},
-        space=histories.table is SPACE,
+        # What slides over the base of a link just now counts as at the base.
+        laws={link: replace(law, slack=max(_EDGE, law.slack)) for link, law in laws.items()},
+        lines="xyz" if description.space else "xy",
+        turns="xyz" if description.space else "z",
         two_force_links=description.bars,
         unmeasured=frozenset(description.unmeasured),
         precision=precision_of(histories),
     )
 
 
-def _law_at_base(histories: Histories, link: str) -> SectionLaw:
-    """The law of a link, for its section at the base: what slides over the base just now counts as
-    at the base.
-    """
-    law = histories.section(link).law
-    return replace(law, slack=max(_EDGE, law.slack))
-
-
 def placed_of(declared: Description, stated: Stated, reported: Reported) -> Placed | None:
     """Place every body by the reported motions; None where some is not reported."""
-    if any(
-        Output("motion", name) not in reported.outputs
-        for name in {*declared.coordinates} - reported.unmeasured
-    ):
-        return None
-    if any(Output("pose", name, "x") not in reported.outputs for name in declared.bodies):
+    needed = {Output("motion", name) for name in {*declared.coordinates} - reported.unmeasured}
+    needed |= {Output("pose", name, "x") for name in declared.bodies}
+    if not needed <= {*reported.outputs}:
         return None
     placed = place_all(place(declared, stated, reported.without_locked(declared)))
     return placed if len(placed.bodies) == len(declared.bodies) + 1 else None

@@ -13,7 +13,7 @@ from ...base.arrays import Array
 from ...base.quantities import Output
 from ...model.stated import Equation
 from .contacts import idle
-from .instant_vectors import GROUND, constant, cross, dot, most, resolve, size
+from .instant_vectors import cross, dot, most, resolve, size
 from .placing import Placed
 from .reported import NEARBY
 from .unplaced import stacked
@@ -100,16 +100,16 @@ def _of_poses(placed: Placed) -> Iterator[Array]:
             continue
         axes = reported.axes(name)
         off = most(axes - body.axes)
-        if not reported.space:
+        if not declared.space:
             known = reported.rounded(reported.outputs[Output("pose", name, "angle")])
             yield (off - known) * declared.size
             continue
         x, y, z = axes
         yield off * declared.size
-        yield most(resolve(axes, axes) - GROUND) * declared.size
+        yield most(resolve(axes, axes) - reported.ground) * declared.size
         yield size(cross(x, y) - z) * declared.size
         if name in reported.two_force_links and name in declared.beside:
-            beside = constant(declared.beside[name])
+            beside = reported.straight(declared.beside[name])
             yield np.where(dot(beside, y) >= 0.0, np.abs(dot(beside, z)), 1.0) * declared.size
 
 
@@ -118,7 +118,7 @@ def _of_equations(placed: Placed) -> Iterator[Array]:
     for equation in placed.stated.equations:
         yield _missed(placed, equation) * placed.declared.size
         for touch in equation.touching(partial(stacked, placed, equation)):
-            yield idle(touch, placed.bodies, *placed.rates[:2]) * placed.declared.size
+            yield idle(touch, placed) * placed.declared.size
 
 
 def _missed(placed: Placed, equation: Equation) -> Array:

@@ -83,7 +83,8 @@ def _condition(program: Program, out: Array) -> dict[str, Array]:
     2/volume bounds the condition number of a matrix whose columns have length one (Guggenheimer,
     Edelman, Johnson 1995).
     """
-    worst: list[Array] = []
-    for name, k in program.checks("closure").items():
-        worst.append(2.0 / out[k] if program.iterates(name) else 1.0 / np.sqrt(out[k]))
+    worst = [
+        2.0 / out[k] if program.iterates(name) else 1.0 / np.sqrt(out[k])
+        for name, k in program.checks("closure").items()
+    ]
     return {"condition": np.max(worst, axis=0)} if worst else {}

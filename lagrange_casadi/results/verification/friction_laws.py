@@ -12,7 +12,7 @@ from ...base.arrays import Array
 from ...base.quantities import Output
 from ...model.description import JointNumbers, LoadNumbers
 from ..vector_sizes import most
-from .instant_vectors import constant, resolve, size, turn
+from .instant_vectors import resolve, size, turn
 from .placing import Placed
 from .reported import Reported
 
@@ -34,10 +34,8 @@ def friction_residuals(placed: Placed) -> Array | None:
     None where there is no friction, or what it takes is not among the outputs. What is open at rest
     is no gap.
     """
-    found = [*_of_losses(placed)]
-    if (off := _of_laws(placed)) is not None:
-        found.append(off)
-    return np.fmax.reduce(found) if found else None
+    found = [*_of_losses(placed), *_of_laws(placed)]
+    return np.fmax.reduce([np.zeros_like(placed.reported.t), *found]) if found else None
 
 
 def _sliding(
@@ -71,21 +69,18 @@ def _of_losses(placed: Placed) -> Iterator[Array]:
             continue
         blur = placed.reported.coarseness * np.max(turned if rotates else fastest)
         scale = most(value) * (most(rate) + float(blur))
-        residual = np.abs(lost + value * rate) / (scale or 1.0)
-        yield np.where(np.isnan(residual), 0.0, residual)
+        yield np.abs(lost + value * rate) / (scale or 1.0)
 
 
-def _of_laws(placed: Placed) -> Array | None:
+def _of_laws(placed: Placed) -> Iterator[Array]:
     """Residuals of joints' frictions against their laws, relative to those under the largest
     reaction of the cycle.
     """
     outputs = placed.reported.outputs
-    worst: Array | None = None
     for name, load, holder, rate, spin, rotates in _sliding(placed):
         numbers, value = load.friction, outputs.get(Output("friction", name, "along"))
         if numbers is None or value is None or Output("reaction", holder, "fx") not in outputs:
             continue
-        worst = np.zeros_like(value) if worst is None else worst
         constant = numbers.get("coulomb")
         lever = numbers.get("radius", 1.0) if rotates else 1.0
         speed, share = np.abs(rate) * lever, None
@@ -131,8 +126,7 @@ def _of_laws(placed: Placed) -> Array | None:
             )
         most_pressing = lever * _most(outputs, numbers) if constant is None else 1.0
         scale = float(np.max(mu)) * most_pressing + float(np.max(np.abs(steady)))
-        worst = np.fmax(worst, np.divide(residual, scale, out=residual.copy(), where=scale > 0.0))
-    return worst
+        yield residual / (scale or 1.0)
 
 
 def _aside(reported: Reported, name: str, value: Array, spin: Array) -> Array:
@@ -143,7 +137,7 @@ def _aside(reported: Reported, name: str, value: Array, spin: Array) -> Array:
         return np.zeros_like(value)
     rate = np.broadcast_to(size(spin), value.shape)
     each = np.divide(value, rate, out=np.zeros_like(value), where=rate > 0.0)
-    return size(reported.force("load", name, "m") - each * spin)
+    return size(reported.acts("load", name)[1] - each * spin)
 
 
 def _quick(placed: Placed, coordinate: str, rotates: bool) -> float:
@@ -181,8 +175,12 @@ def _pressing(placed: Placed, name: str, numbers: Mapping[str, float], rotates: 
     joint, reported = placed.declared.joints[name], placed.reported
     if "coulomb" in numbers:
         return lambda _: 1.0
-    axes = turn(placed.ends(name)[0].axes, constant(joint.triad))
-    force, moment = (resolve(axes, reported.force("reaction", name, letter)) for letter in "fm")
+    acts = zip((reported.straight, reported.turning), reported.acts("reaction", name), strict=True)
+    axes = placed.ends(name)[0].axes
+    force, moment = (
+        resolve(turn(axes, np.array([*map(components, joint.triad)])), one)
+        for components, one in acts
+    )
     radius = numbers.get("radius", 0.0)
     if joint.kind == "screw" and "mu" in numbers:
         return _thread(joint, numbers, force[0])

@@ -1,19 +1,26 @@
-"""Vectors over instants, (3, t), in plain arithmetic: (3, 1) where they are the same throughout.
+"""Vectors over instants in plain arithmetic: (3, t), or (3, 1) where they are the same throughout.
+In a plane places and forces have x and y, (2, t), and what turns has z, (1, t).
 
-Axes are their three directions, (3, 3, t).
+Axes are the directions of them, (3, 3, t) or (2, 2, t).
 """
 
 from __future__ import annotations
+
+from functools import reduce
 
 import numpy as np
 import numpy.typing as npt
 
 from ...base.arrays import Array
 
-_ACROSS = np.cross(np.eye(3)[:, None], np.eye(3)).reshape(3, 9)
-"""Vector products of each direction with all three."""
+_ACROSS = {
+    1: np.array([[[0.0], [1.0]], [[-1.0], [0.0]]]),
+    3: np.moveaxis(np.cross(np.eye(3)[:, None], np.eye(3)), 0, -1),
+}
+"""Vector products of each direction about which something turns with all axes, by their number."""
 
-_NEXT, _LAST = np.roll(np.arange(3), -1), np.roll(np.arange(3), 1)
+_PAIRS = {1: np.array([[0], [0]]), 2: np.array([[0], [1]]), 3: np.array([[1, 2, 0], [2, 0, 1]])}
+"""The components of which each component of a vector product is made, by the number of those."""
 
 
 def constant(values: npt.ArrayLike) -> Array:
@@ -21,18 +28,14 @@ def constant(values: npt.ArrayLike) -> Array:
     return np.asarray(values, float)[..., None]
 
 
-NIL = constant(np.zeros(3))
-"""The vector of nothing."""
-
-GROUND = constant(np.eye(3))
-"""Axes that are not turned."""
+NIL = np.zeros((1, 1))
+"""The vector of nothing, with any number of components."""
 
 
 def size(vector: Array) -> Array:
     """Lengths (..., t) of vectors (..., 3, t); no square of a component under- or overflows."""
-    x, y, z = (vector[..., k, :] for k in range(3))
-    found = np.hypot(x, y)
-    return np.asarray(np.hypot(found, z) if z.any() else found)  # in a plane at half the cost
+    rows = [vector[..., k, :] for k in range(vector.shape[-2])]
+    return np.asarray(reduce(np.hypot, rows) if rows[1:] else np.abs(rows[0]))
 
 
 def dot(a: Array, b: Array) -> Array:
@@ -41,32 +44,40 @@ def dot(a: Array, b: Array) -> Array:
 
 
 def cross(a: Array, b: Array) -> Array:
-    """The vector product."""
-    first, second = a.take(_NEXT, -2) * b.take(_LAST, -2), a.take(_LAST, -2) * b.take(_NEXT, -2)
-    return np.asarray(first - second)
+    """The vector product of places or forces, or of what turns: in a plane none of the latter."""
+    one, other = _PAIRS[max(a.shape[-2], b.shape[-2])]
+    # Of nothing there is one component, which is taken for all.
+    first = a.take(one, -2, mode="clip") * b.take(other, -2, mode="clip")
+    return np.asarray(first - a.take(other, -2, mode="clip") * b.take(one, -2, mode="clip"))
 
 
 def across(vectors: Array) -> Array:
     """Axes (..., 3, 3, t) that turn what is given on them into the vector product with it."""
-    return np.asarray(_ACROSS.T @ vectors).reshape(*vectors.shape[:-2], 3, 3, -1)
+    terms = _ACROSS[vectors.shape[-2]]
+    found = terms.reshape(-1, terms.shape[-1]) @ vectors
+    return np.asarray(found).reshape(*vectors.shape[:-2], *terms.shape[:2], -1)
 
 
 def turn(axes: Array, vector: Array) -> Array:
-    """Vectors, (..., 3, t), that are given on axes; or other axes."""
-    return np.asarray(np.einsum("kit,...kt->...it", axes, vector))
+    """Vectors, (..., 3, t), that are given on axes; or other axes. In a plane couples stay."""
+    return np.einsum("kit,...kt->...it", axes, vector) if vector.shape[-2] == len(axes) else vector
 
 
 def resolve(axes: Array, vector: Array) -> Array:
-    """Vectors, (..., 3, t), on axes."""
-    return np.asarray(np.einsum("kit,...it->...kt", axes, vector))
+    """Vectors, (..., 3, t), on axes. In a plane couples stay."""
+    there = vector.shape[-2] == axes.shape[-2]
+    return np.asarray(np.einsum("kit,...it->...kt", axes, vector)) if there else vector
 
 
-def about(direction: npt.ArrayLike, angle: Array) -> Array:
-    """The ground's axes turned about a fixed direction, of length 1, by an angle (Rodrigues)."""
-    along = np.multiply.outer(direction, direction).ravel()
-    parts = np.array([along, np.eye(3).ravel() - along, np.dot(direction, _ACROSS)])
+def about(direction: Array, angle: Array) -> Array:
+    """The ground's axes turned about a fixed direction, (3, 1) of length 1, by an angle
+    (Rodrigues).
+    """
+    moves = across(direction)[..., 0]
+    off = -moves @ moves  # the share of each axis that is at right angles to the direction
+    parts = np.array([np.eye(len(moves)) - off, off, moves])
     shares = np.array([np.ones_like(angle), np.cos(angle), np.sin(angle)])
-    return np.asarray(parts.T @ shares).reshape(3, 3, -1)
+    return np.asarray(parts.reshape(3, -1).T @ shares).reshape(*moves.shape, -1)
 
 
 def most(values: npt.ArrayLike) -> Array:

@@ -16,10 +16,13 @@ from ...base.arrays import Array
 from ...base.quantities import Output
 from ...model.description import LoadNumbers
 from ...model.stated import LoadLaw
-from .instant_vectors import GROUND, cross, dot, size, turn
+from .instant_vectors import NIL, cross, dot, size, turn
 from .placing import Placed
 from .reported import NEARBY
 from .unplaced import stacked
+
+Acts = tuple[Array, Array]
+"""A force and a couple of a load on the first of its places, in ground axes."""
 
 _TRIALS, _MOST = 8, 1e9
 """Number of trials for turns, and the largest number of turns."""
@@ -32,7 +35,7 @@ def off_laws(placed: Placed, largest: float) -> Array:
     t = placed.reported.t
     worst = np.zeros_like(t)
     for law in placed.stated.laws:
-        given, moved = _given(placed, law.name), stacked(placed, law)
+        given, moved = placed.reported.acts("load", law.name), stacked(placed, law)
         residual = _apart(placed, given, _acting(placed, law, moved, t))
         if np.max(residual) > placed.reported.doubted * largest:
             moved = _turned(placed, law, given, moved)
@@ -41,39 +44,32 @@ def off_laws(placed: Placed, largest: float) -> Array:
         worst = np.maximum(worst, residual)
     for name, load, holder in placed.frictions:
         value = placed.reported.outputs.get(Output("friction", name, "along"))
-        joint = placed.declared.joints[holder]
-        if value is None or joint.kind == "spherical":
+        if value is None or placed.declared.joints[holder].kind == "spherical":
             continue
-        axis = next(axis for axis in joint.axes if axis.coordinate == load.coordinate)
-        acts = np.array(np.broadcast_arrays(*placed.along(holder, axis, value)))
-        worst = np.maximum(worst, _apart(placed, _given(placed, name), acts))
+        given, acts = placed.reported.acts("load", name), placed.along(load.coordinate, value)
+        worst = np.maximum(worst, _apart(placed, given, acts))
     return worst
 
 
-def _given(placed: Placed, name: str) -> Array:
-    """The force and the couple of a load on the first of its places, in ground axes, (2, 3, t)."""
-    return np.array([placed.reported.force("load", name, letter) for letter in "fm"])
+def _apart(placed: Placed, one: Acts, other: Acts) -> Array:
+    return np.asarray(size(one[0] - other[0]) + size(one[1] - other[1]) / placed.declared.size)
 
 
-def _apart(placed: Placed, one: Array, other: Array) -> Array:
-    force, couple = size(one - other)
-    return np.asarray(force + couple / placed.declared.size)
-
-
-def _acting(placed: Placed, law: LoadLaw, moved: Array, t: Array) -> Array:
+def _acting(placed: Placed, law: LoadLaw, moved: Array, t: Array) -> Acts:
     """The force and the couple of a load by its law, of what it measures (3, entries, t)."""
-    numbers, load, force = law.at(moved, t), placed.declared.loads[law.name], np.zeros((3, t.size))
-    axes = placed.bodies[load.points[0].body].axes if law.turning else GROUND
+    numbers, load, reported = law.at(moved, t), placed.declared.loads[law.name], placed.reported
+    axes = placed.bodies[load.points[0].body].axes if law.turning else reported.ground
     if law.kind == "spring":
         stiffness, length, damping = numbers
         apart, closing = _stretched(placed, load)
         distance = size(apart)
         tension = stiffness * (distance - length) + damping * (dot(apart, closing) / distance)
-        return np.array([(tension / distance) * apart, force])
+        return (tension / distance) * apart, NIL
     if law.kind == "lineload":
         return _summed(numbers, axes, placed.bodies[load.points[0].body].axes[0])
-    acts = turn(axes, numbers)
-    return np.array([acts, force] if law.kind == "force" else [force, acts])
+    if law.kind == "force":
+        return turn(axes, reported.straight(numbers)), NIL
+    return NIL, turn(axes, reported.turning(numbers))
 
 
 def _stretched(placed: Placed, load: LoadNumbers) -> Array:
@@ -82,22 +78,22 @@ def _stretched(placed: Placed, load: LoadNumbers) -> Array:
     return (second - first)[:2]
 
 
-def _summed(numbers: Array, axes: Array, along: Array) -> Array:
+def _summed(numbers: Array, axes: Array, along: Array) -> Acts:
     """The force of a load along a link, and its couple about the middle of where it acts, added up
     at Gauss's places.
     """
-    reach, powers = numbers[0], numbers[1:].reshape(-1, 3, numbers.shape[1])
-    found = np.zeros((2, 3, numbers.shape[1]))
+    reach, powers = numbers[0], numbers[1:].reshape(-1, 3, numbers.shape[1])[:, : len(axes)]
+    force = couple = NIL
     nodes, weights = np.polynomial.legendre.leggauss(len(powers) // 2 + 1)
     for node, weight in zip(nodes.tolist(), weights.tolist(), strict=True):
         # The polynomial's argument is one where the load begins, and zero where it ends.
         here = sum(power * ((1.0 - node) / 2.0) ** k for k, power in enumerate(powers))
         here = (weight / 2.0 * reach) * turn(axes, here)
-        found += here, cross((node / 2.0 * reach) * along, here)
-    return found
+        force, couple = force + here, couple + cross((node / 2.0 * reach) * along, here)
+    return force, couple
 
 
-def _turned(placed: Placed, law: LoadLaw, given: Array, moved: Array) -> Array:
+def _turned(placed: Placed, law: LoadLaw, given: Acts, moved: Array) -> Array:
     """Measured entries of a law, with the whole turns of angles that loops set: where instants are
     far apart, none are reported.
 
@@ -124,7 +120,7 @@ def _turned(placed: Placed, law: LoadLaw, given: Array, moved: Array) -> Array:
     return moved
 
 
-def _open(placed: Placed, law: LoadLaw, moved: Array, acts: Array) -> Array:
+def _open(placed: Placed, law: LoadLaw, moved: Array, acts: Acts) -> Array:
     """Uncertainty of a load that ``acts`` so by the rounding of its arguments: the sum of its
     changes with each.
     """

@@ -16,24 +16,13 @@ import numpy.typing as npt
 
 from ...base.arrays import Array
 from ...base.quantities import Output
-from ...model.description import AxisNumbers, Description, JointNumbers, LoadNumbers
+from ...model.description import Description, JointNumbers, LoadNumbers
 from ...model.stated import Entry, Stated
-from .instant_vectors import (
-    GROUND,
-    NIL,
-    about,
-    across,
-    constant,
-    cross,
-    dot,
-    resolve,
-    size,
-    turn,
-)
+from .instant_vectors import NIL, about, across, cross, dot, resolve, size, turn
 from .reported import Reported
 
-NO_SLIDE = np.zeros((3, 3, 1))
-"""The motion of a point that does not move."""
+NO_SLIDE = np.zeros((3, 1, 1))
+"""The motion of a point that does not move, with any number of components."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,29 +67,27 @@ class Moving:
 
     def point(self, point: npt.ArrayLike, slide: Array = NO_SLIDE) -> Array:
         """The motion of the body's point, (3, 3, t), which slides on the body's axes."""
-        arm = np.einsum("okit,k->oit", self.rotation, np.asarray(point, float))
-        found = np.asarray(self.origin + arm)
+        place = np.asarray(point, float)[: len(self.axes)]
+        found = np.asarray(self.origin + np.einsum("okit,k->oit", self.rotation, place))
         if not slide.any():
             return found
         axes, rates, accelerations = self.rotation
-        place, moves = turn(rates, slide[:2])
+        carried, moves = turn(rates, slide[:2])
         found = found + turn(axes, slide)
-        found[1:] += place, 2.0 * moves + turn(accelerations, slide[0])
+        found[1:] += carried, 2.0 * moves + turn(accelerations, slide[0])
         return found
 
     def speed_at(self, place: Array) -> Array:
         """The velocity of the body's point at a place."""
-        return np.asarray(self.origin[1] + cross(self.spin[0], place - self.at))
+        return np.asarray(self.origin[1] + turn(across(self.spin[0]), place - self.at))
 
     def turning(self, inertia: Array) -> Array:
-        """The moment that turns what has an inertia about its centre, on the body's axes."""
-        spin = resolve(self.axes, self.spin)
-        momentum, change = turn(inertia, spin)
+        """The moment that turns what has an inertia about its centre, on the body's axes: of a body
+        in a plane (3, 3, t) too.
+        """
+        spin, about = resolve(self.axes, self.spin), slice(-self.spin.shape[1], None)
+        momentum, change = turn(inertia[about, about], spin)
         return turn(self.axes, change + cross(spin[0], momentum))
-
-
-AT_REST = Moving.of(NO_SLIDE, GROUND, NO_SLIDE[1:])
-"""Motion of what lies along the ground's axes, at its origin."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,19 +157,21 @@ class Placed:
             if load.friction is not None:
                 yield name, load, load.coordinate.partition(":")[0]
 
-    def along(self, joint: str, axis: AxisNumbers, effort: Array) -> tuple[Array, Array]:
-        """The force and the couple of an effort along an axis of a joint, on its child at the
+    def along(self, coordinate: str, effort: Array) -> tuple[Array, Array]:
+        """The force and the couple of an effort along a coordinate of a joint, on its child at the
         joint's point.
 
         It does no work along other coordinates: along a slide it is a force, about one of several
         axes a couple at right angles to the other axes.
         """
+        joint = coordinate.partition(":")[0]
         axes = self.ends(joint)[0].axes
+        (axis,) = (one for one in self.declared.joints[joint].axes if one.coordinate == coordinate)
         if axis.kind == "slide":
-            return effort * turn(axes, constant(axis.direction)), NIL
+            return effort * turn(axes, self.reported.straight(axis.direction)), NIL
         about = self.relatives[joint].about
         turns = [turn(axes, direction) for direction in about.values()]
-        number = [*about].index(axis.coordinate)
+        number = [*about].index(coordinate)
         first, *others = turns[number:] + turns[:number]
         if len(others) < 2:
             return NIL, effort * first
@@ -198,8 +187,8 @@ class Placed:
         (near, far), motion = self.ends(joint), self.relatives[joint]
         there = near.point(self.declared.joints[joint].parent.at, motion.slide)
         if not motion.whole:
-            return self.pin(joint) - there, 0.0 * GROUND, np.zeros((2, 3, self.reported.t.size))
-        axes, spin = _turned(motion, near)
+            return self.pin(joint) - there, NO_SLIDE, np.zeros((2, 1, self.reported.t.size))
+        axes, spin = _turned(near, motion.axes, motion.spin)
         return self.pin(joint) - there, far.axes - axes, far.spin - spin
 
     def is_angle(self, entry: Entry) -> bool:
@@ -215,7 +204,7 @@ class Placed:
         body = self.bodies[entry.part]
         if entry.kind == "direction":
             angle = self.reported.outputs[Output("pose", entry.part, "angle")]
-            return np.array(np.broadcast_arrays(angle, *(vector[2] for vector in body.spin)))
+            return np.array(np.broadcast_arrays(angle, *body.spin[:, -1]))
         return body.point(entry.point)[:, "xyz".index(entry.kind)]
 
 
@@ -224,18 +213,28 @@ def place(declared: Description, stated: Stated, reported: Reported) -> Placed:
     relatives = {
         name: _relative(declared, reported, joint) for name, joint in declared.joints.items()
     }
-    bodies = {"ground": AT_REST}
+    at_rest = Moving.of(NO_SLIDE, reported.ground, np.zeros((2, len(reported.turns), 1)))
+    bodies = {"ground": at_rest}
     waiting = dict(declared.joints)
     for _ in declared.joints:
         for name, joint in list(waiting.items()):
             parent, child = joint.parent.body, joint.child.body
             if (parent in bodies) == (child in bodies):
                 continue
-            known, sought = (parent, child) if parent in bodies else (child, parent)
-            if relatives[name].whole or not declared.oriented(sought):
-                carried = _outward if known == parent else _inward
-                bodies[sought] = carried(joint, relatives[name], bodies[known])
-                del waiting[name]
+            outward, motion = parent in bodies, relatives[name]
+            base, sought = (bodies[parent], child) if outward else (bodies[child], parent)
+            if declared.oriented(sought) and not motion.whole:
+                continue
+            body, axes, spin = at_rest, motion.axes, motion.spin
+            if motion.whole:
+                back = axes.swapaxes(0, 1), -resolve(axes, spin)
+                body = Moving.of(NO_SLIDE, *_turned(base, *((axes, spin) if outward else back)))
+            bodies[sought] = (
+                body.holding(joint.child.at, base.point(joint.parent.at, motion.slide))
+                if outward
+                else body.holding(joint.parent.at, base.point(joint.child.at), motion.slide)
+            )
+            del waiting[name]
     return Placed(declared, stated, reported, relatives, bodies, [*waiting])
 
 
@@ -244,48 +243,36 @@ def _relative(declared: Description, reported: Reported, joint: JointNumbers) ->
 
     A screw slides by its turns too.
     """
-    slide, turned, spin, directions = NO_SLIDE, GROUND, NO_SLIDE[1:], dict[str, Array]()
+    slide, turned, spin = NO_SLIDE, reported.ground, NO_SLIDE[1:]
+    directions = dict[str, Array]()
     for axis in joint.axes:
         if (name := axis.coordinate) in reported.unmeasured:
             continue
-        along, motion = constant(axis.direction), reported.motion(name)
-        pitch = 1.0 if axis.kind == "slide" else joint.pitch
-        slide = slide + pitch * motion[:, None] * along if pitch else slide
+        pitch, motion = 1.0 if axis.kind == "slide" else joint.pitch, reported.motion(name)
+        slides = pitch * reported.straight(axis.direction)
+        slide = slide + motion[:, None] * slides if pitch else slide
         if axis.kind == "angle":
+            along = reported.turning(axis.direction)
             directions[name] = turn(turned, along)
             # Each turn is carried by those before it.
             carried = cross(spin[0], motion[1] * directions[name])
             spin = spin + motion[1:, None] * directions[name]
             spin[1] += carried
-            turned = turn(turned, about(axis.direction, reported.phase(Output("motion", name))))
+            turned = turn(turned, about(along, reported.phase(Output("motion", name))))
     # In a plane a slot turns about an axis that no coordinate describes.
     whole = (
         (declared.space or joint.kind != "slot")
         and reported.unmeasured.isdisjoint(axis.coordinate for axis in joint.axes)
         and all(declared.oriented(end.body) for end in joint.ends)
     )
-    return Relative(slide, turn(turned, constant(joint.turned)), spin, directions, whole)
+    first = np.array([*map(reported.straight, joint.turned[: len(turned)])])
+    return Relative(slide, turn(turned, first), spin, directions, whole)
 
 
-def _turned(motion: Relative, base: Moving) -> tuple[Array, Array]:
-    """The axes of a joint's child, and their angular velocity and acceleration."""
-    spin = base.spin + turn(base.axes, motion.spin)
-    spin[1] += cross(base.spin[0], spin[0])
-    return turn(base.axes, motion.axes), spin
-
-
-def _outward(joint: JointNumbers, motion: Relative, base: Moving) -> Moving:
-    """The motion of a joint's child by that of its parent."""
-    found = Moving.of(AT_REST.origin, *_turned(motion, base)) if motion.whole else AT_REST
-    return found.holding(joint.child.at, base.point(joint.parent.at, motion.slide))
-
-
-def _inward(joint: JointNumbers, motion: Relative, far: Moving) -> Moving:
-    """The motion of a joint's parent by that of its child."""
-    found = AT_REST
-    if motion.whole:
-        axes = turn(far.axes, motion.axes.swapaxes(0, 1))
-        spin = far.spin - turn(axes, motion.spin)
-        spin[1] += cross(far.spin[0], spin[0])
-        found = Moving.of(AT_REST.origin, axes, spin)
-    return found.holding(joint.parent.at, far.point(joint.child.at), motion.slide)
+def _turned(base: Moving, axes: Array, spin: Array) -> tuple[Array, Array]:
+    """Axes that are given on those of a body and turn against it, and their angular velocity and
+    acceleration.
+    """
+    whole = base.spin + turn(base.axes, spin)
+    whole[1] += cross(base.spin[0], whole[0])
+    return turn(base.axes, axes), whole

@@ -1,4 +1,4 @@
-"""The results to be verified, read as vectors: in a plane z is zero."""
+"""The results to be verified, read as vectors of the components that their space has."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+import numpy.typing as npt
 
 from ...base.arrays import Array, during
 from ...base.compensated import DTYPES, ROUNDING
@@ -16,7 +17,7 @@ from ...base.vocabulary import Precision
 from ...model.description import Description, JointNumbers
 from ..histories import Histories
 from ..section_laws import SectionLaw
-from .instant_vectors import GROUND, about
+from .instant_vectors import about, constant
 
 _ROUNDINGS = 4.0
 """So many roundings may be in what is reported."""
@@ -59,16 +60,18 @@ class Reported:
     """Outputs at some instants ``t``, those that are hidden from users included.
 
     ``phases`` are angles up to whole turns that are known more closely than they are reported.
-    ``laws`` are the laws of links with sections. ``two_force_links`` are links whose spin about
-    their own axis is taken to be none. ``unmeasured`` are coordinates that are not reported, or not
-    used.
+    ``laws`` are the laws of links with sections. There are places and forces along ``lines``, and
+    turns and couples about ``turns``: "xyz", in a plane "xy" and "z". ``two_force_links`` are links
+    whose spin about their own axis is taken to be none. ``unmeasured`` are coordinates that are not
+    reported, or not used.
     """
 
     t: Array
     outputs: Mapping[Output, Array]
     phases: Mapping[Output, Array]
     laws: Mapping[str, SectionLaw]
-    space: bool
+    lines: str
+    turns: str
     two_force_links: Collection[str]
     unmeasured: frozenset[str]
     precision: Precision
@@ -77,6 +80,19 @@ class Reported:
     def rounding(self) -> float:
         """The largest relative error of one rounding."""
         return ROUNDING[self.precision]
+
+    def straight(self, values: npt.ArrayLike) -> Array:
+        """The components of a declared place, force or direction of a slide, (3,) or (3, t)."""
+        return np.reshape(values, (3, -1))[: len(self.lines)]
+
+    def turning(self, values: npt.ArrayLike) -> Array:
+        """The components of a declared couple or direction of a turn, (3,) or (3, t)."""
+        return np.reshape(values, (3, -1))[-len(self.turns) :]
+
+    @property
+    def ground(self) -> Array:
+        """Axes that are not turned."""
+        return constant(np.eye(len(self.lines)))
 
     def rounded(self, values: Array) -> Array:
         """Largest error of reported values by their last digits."""
@@ -142,22 +158,25 @@ class Reported:
 
     def place(self, body: str) -> Array:
         """The place of a body's origin."""
-        return self._vector("pose", body, "xyz")
+        return self._vector("pose", body, self.lines)
 
     def axes(self, body: str) -> Array:
         """The axes of a body; those of the ground where it has none."""
-        if self.space:
-            if Output("pose", body, "xx") not in self.outputs:
-                return GROUND
+        if Output("pose", body, "xx") in self.outputs:
             return np.array([self._vector("pose", body, (a + x for x in "xyz")) for a in "xyz"])
         angle = Output("pose", body, "angle")
-        return about((0.0, 0.0, 1.0), self.phase(angle)) if angle in self.outputs else GROUND
+        turned = angle in self.outputs
+        return about(constant([1.0]), self.phase(angle)) if turned else self.ground
 
-    def force(self, group: str, part: str, letter: str = "f", axes: str = "xyz") -> Array:
-        """The force of a part, or by the ``letter`` "m" its moment; components that it has none of
-        are zero.
+    def acts(self, group: str, part: str, axes: str = "") -> tuple[Array, Array]:
+        """The force and the couple of a part, on other ``axes`` where given; components that it has
+        none of are zero.
         """
-        return self._vector(group, part, (letter + x for x in axes))
+        force, couple = (
+            self._vector(group, part, (letter + x for x in axes or ground))
+            for letter, ground in (("f", self.lines), ("m", self.turns))
+        )
+        return force, couple
 
     def _vector(self, group: str, part: str, members: Iterable[str]) -> Array:
         given, nothing = self.members[group, part], np.zeros_like(self.t)
@@ -166,8 +185,5 @@ class Reported:
     def inside(self, link: str) -> tuple[Array, Array]:
         """The force and the moment of a link's section at its base, in the link's axes."""
         law, base = self.laws[link], np.zeros((self.t.size, 1))
-        names = ("axial", "shear", "", "", "", "bending")
-        if self.space:
-            names = ("axial", "shear_y", "shear_z", "torsion", "bending_y", "bending_z")
-        found = [(law.at(name, base) if name else base)[:, 0] for name in names]
-        return np.array(found[:3]), np.array(found[3:])
+        found = np.array([law.at(force, base)[:, 0] for force in law.table.sections])
+        return found[: len(self.lines)], found[len(self.lines) :]

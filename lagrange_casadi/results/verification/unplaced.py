@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ...base.arrays import Array, Flags
+from ...base.arrays import Array
 from ...model.stated import Equation, LoadLaw
 from .instant_vectors import dot
 from .placing import Moving, Placed
@@ -68,11 +68,14 @@ class _Unplaced:
     names: list[str]
 
     @cached_property
-    def free(self) -> Flags:
-        """Unknown components of the bodies' velocities and angular velocities, (bodies, 6)."""
-        moves = np.array([1, 1, 1, 1, 1, 1] if self.placed.reported.space else [1, 1, 0, 0, 0, 1])
-        turns = [self.placed.declared.oriented(name) for name in self.names]
-        return np.asarray(moves * np.repeat([[1, one] for one in turns], 3, axis=1) > 0)
+    def lengths(self) -> Array:
+        """Lengths [m] by which components of the bodies' velocities and angular velocities are
+        speeds, (bodies, 6): 1 and the mechanism's size; 0 of those that are not unknown.
+        """
+        declared, reported = self.placed.declared, self.placed.reported
+        turned = [declared.size * declared.oriented(name) for name in self.names]
+        many = len(reported.lines), len(reported.turns)
+        return np.repeat([[1.0, length] for length in turned], many, axis=1)
 
     def motions(self) -> dict[str, Moving]:
         """The motions of the bodies; none where their joints do not decide them.
@@ -82,8 +85,7 @@ class _Unplaced:
         unknowns in steps, and each gap by its own slopes.
         """
         size, fastest = self.placed.declared.size, float(np.max(self.placed.rates[1]))
-        # An unknown that turns is as large as one that does not over the mechanism's size.
-        lengths = np.tile(np.repeat([1.0, size], 3), (len(self.names), 1))[self.free]
+        lengths = self.lengths[self.lengths > 0.0]
         nothing = np.zeros((lengths.size, self.placed.reported.t.size))
         rest = self._residuals(nothing, nothing)[0]
         gap = float(np.max(np.abs(rest), initial=0.0)) * max(1.0, size)
@@ -108,13 +110,13 @@ class _Unplaced:
 
     def _trial(self, rates: Array, accelerations: Array) -> dict[str, Moving]:
         """The bodies with velocities and accelerations, each (unknowns, t)."""
-        found = np.zeros((2, *self.free.shape, rates.shape[1]))
-        found[:, self.free] = rates, accelerations
-        trial = {}
-        for name, (speed, change) in zip(self.names, found.swapaxes(0, 1), strict=True):
-            origin = np.array([self.placed.reported.place(name), speed[:3], change[:3]])
-            spin = np.array([speed[3:], change[3:]])
-            trial[name] = Moving.of(origin, self.placed.reported.axes(name), spin)
+        found = np.zeros((2, *self.lengths.shape, rates.shape[1]))
+        found[:, self.lengths > 0.0] = rates, accelerations
+        trial, reported = {}, self.placed.reported
+        for name, moving in zip(self.names, found.swapaxes(0, 1), strict=True):
+            moves, spin = np.split(moving, [len(reported.lines)], axis=1)
+            origin = np.array([reported.place(name), *moves])
+            trial[name] = Moving.of(origin, reported.axes(name), spin)
         return trial
 
     def _residuals(self, rates: Array, accelerations: Array) -> Array:

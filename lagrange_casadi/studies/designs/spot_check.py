@@ -22,6 +22,7 @@ from ...engine.instants.evaluation_method import EvaluationMethod
 from ...engine.instants.phases import outputs_of, phases
 from ...engine.program import Program
 from ...results.histories import Histories
+from ...results.vector_sizes import most
 from ...results.verification.accuracy import by_unit, estimate
 from ...results.verification.certificate import tolerance
 from ...results.verification.evidence import residuals_of
@@ -96,7 +97,8 @@ def _agreement(
     """Distance of outputs from those of histories, beyond what is ``rounded``, relative to the
     largest of their unit.
     """
-    largest, worst = by_unit(whole), 0.0
+    sizes = {output: most(values) for output, values in whole.outputs.items()}
+    largest, worst = by_unit(whole.description.kinds, sizes), 0.0
     for name, values in found.items():
         there = ~np.isnan(
             values
