@@ -48,8 +48,7 @@ def assert_refined(scene, designs, outcome, row, p, tolerance=1e-11, noise=1e-12
     """A design's peaks are the refined ones of its own evaluation; one that is larger is what the
     graph gives there.
     """
-    instants = designs.times.default[0]
-    grid = (instants[0], instants[-1], instants.size)
+    grid = (designs.t[0], designs.t[-1], designs.t.size)
     solution = alone(scene, p, grid)
     found, scale = peaks_of(designs, outcome, row), scales(designs, outcome, row)
     names = [name for name in designs.quantities if name in set(solution.names())]

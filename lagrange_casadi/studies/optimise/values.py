@@ -241,7 +241,7 @@ class PointValues:
                     " instants, depends on parameters and is not uniform; give t as expressions"
                     " of the parameters"
                 )
-            d, rate, _ = times.law.law(0.0, symbols)
+            d, rate, _ = ca.vertsplit(times.law.law(0.0, symbols))
             ends = [(bound - d) / rate for bound in ends]
         return ca.Function("span", [symbols], [ca.densify(ca.SX(end)) for end in ends])
 
