@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from internals import case_of
 
 from lagrange_casadi import Mechanism, Scene, evaluate, free, read
 from lagrange_casadi.actuators import inertia_at
@@ -195,7 +196,8 @@ def test_armature_is_that_of_mujoco(arm):
     mujoco.mj_inverse(model, data)
     solution = evaluate(arm(MJCF, "arm.xml"))
     np.testing.assert_allclose(efforts(solution, ("q1", "q2")), data.qfrc_inverse, rtol=1e-11)
-    assert solution.drives_used()["q1_drive"].effort.limit == 40.0
+    # A drive has one limit for both ways: the lesser of the two.
+    assert solution.drives_used()["q1_drive"].effort.limit == 30.0
 
 
 LEGS = {"FL": (0.2, 1), "FR": (0.2, -1), "RL": (-0.2, 1), "RR": (-0.2, -1)}
@@ -359,6 +361,17 @@ def test_any_link_may_be_the_free_base(tmp_path):
     names = [*(name.replace("trunk", "c") for name in BASE), *model.names[2:]]
     expected = pinocchio.rnea(model, model.createData(), *motions(solution, names))
     assert efforts(solution, names) == pytest.approx(expected, abs=1e-12 * abs(expected).max())
+
+
+def test_a_base_is_freed_once(tmp_path):
+    """A file whose base hangs on a floating joint frees it already."""
+    file = tmp_path / "dog.urdf"
+    free = '<joint name="wj" type="floating"><parent link="world"/><child link="trunk"/></joint>'
+    trunk = link("trunk", 6.0, "0 0 0", (0.02, 0.05, 0.06))
+    file.write_text(f'<robot name="dog"><link name="world"/>{trunk}{free}</robot>')
+    for floating in (True, "trunk"):
+        with pytest.raises(ModelFileError, match="frees 'trunk' already: leave floating out"):
+            case_of(file, floating=floating)
 
 
 def test_a_free_base_must_be_there(tmp_path):

@@ -261,6 +261,10 @@ def test_a_guide_on_the_ground_is_no_cylinder():
             {"force": (4.0, 3.0)},
         "gas spring 'g': end_damping needs end": {"end_damping": 10.0},
         "gas spring 'g': end must be positive, got 0 m": {"end": 0.0},
+        "gas spring 'g': end must not be longer than the stroke .m., got 0.5": {"end": 0.5},
+        "gas spring 'g': exponent must be 1 or more, got 0": {"exponent": 0.0},
+        "gas spring 'g': damping must not be negative .N s/m., got -1": {"damping": -1.0},
+        "gas spring 'g': end_damping must not be negative .N s/m., got -2": {"end_damping": -2.0},
     }.items(),
 )  # fmt: skip
 def test_misuse_of_a_gas_spring_is_named(says, given):
@@ -270,3 +274,11 @@ def test_misuse_of_a_gas_spring_is_named(says, given):
         gas_spring(
             m, "g", m.ground, tip, **{"closed": 0.3, "open": 0.5, "force": (3.0, 4.0)} | given
         )
+
+
+@pytest.mark.parametrize("word", ["stiffness", "damping"])
+def test_a_strut_pushes_no_motion_on(word):
+    m = Mechanism("m")
+    tip = m.link("a", length=1.0, mass=1.0).tip
+    with pytest.raises(DeclarationError, match=f"strut 's': {word} must not be negative, got -5"):
+        strut(m, "s", m.ground, tip, closed=0.3, open=0.5, **{word: -5.0})

@@ -52,11 +52,11 @@ def test_a_parameter_that_does_not_fit_is_refused():
         evaluate(scene, parameters={"r": 0.08})
 
 
-def joined(space=False, length=0.05):
+def joined(space=False, length=0.05, apart=0.05 * math.sqrt(2.0)):
     m = SpatialMechanism("m") if space else Mechanism("m")
     axis = {"axis": (0, 0, 1)} if space else {}
     crank, wheel = (m.link(name, length=length, mass=1.0) for name in ("crank", "wheel"))
-    far = m.ground.at(0.05 / math.sin(math.pi / 4), 0.0)
+    far = m.ground.at(apart, 0.0)
     joints = m.revolute("main", m.ground, crank, **axis), m.revolute("axle", far, wheel, **axis)
     return m, *joints
 
@@ -69,6 +69,7 @@ def joined(space=False, length=0.05):
         ("its pin is 0.06 m from the crank's axis; expected 0.05 m", {"length": 0.06}, {}),
         ("its locking arc of 0.055 m .* expected less .*, as 0.05 m", {}, {"lock": 0.055}),
         ("its pin must be on 'crank', got 'wheel'", {}, {"pin": "wheel"}),
+        ("the distance of both axes must be positive, got 0 m", {"apart": 0.0}, {}),
     ],
 )  # fmt: skip
 def test_misuse_is_named(says, made, given):

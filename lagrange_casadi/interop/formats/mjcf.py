@@ -270,7 +270,12 @@ class _Reader:
         at, v = m.jnt_qposadr[j], m.jnt_dofadr[j]
         damping = 0.0 if "damper" in self.off else m.dof_damping[v]
         friction = 0.0 if self.off & {"frictionloss", "constraint"} else m.dof_frictionloss[v]
-        largest = np.abs(m.jnt_actfrcrange[j]).max() if m.jnt_actfrclimited[j] else 0.0
+        low, high = m.jnt_actfrcrange[j] if m.jnt_actfrclimited[j] else (0.0, 0.0)
+        # A drive has one limit for both ways.
+        largest = max(min(-low, high), 0.0)
+        if low + high != 0.0:
+            read = f"read as {largest:g} both ways" if largest else "not read"
+            model.notes.append(f"Effort limits of {where}, {low:g} to {high:g}: {read}.")
         numbers = damping, stiffness, m.qpos_spring[at] - m.qpos0[at], friction
         spring = model.numbers(where, [float(one) for one in numbers], "spring and damper", 4)
         motor = model.numbers(where, [float(m.dof_armature[v]), float(largest)], "armature", 2)

@@ -70,6 +70,9 @@ class _Robot:
             raise self.root.refuse(f"expected one root link, found {found}")
         self.on[roots[0]] = (GROUND, Frame())
         if self.model.floating:
+            for joint, (parent, child) in zip(self.joints, ends, strict=True):
+                if parent == roots[0] and joint.attribute("type") == "floating":
+                    raise joint.refuse(f"frees {shown(child)} already: leave floating out")
             self.on[roots[0]] = (name := self.body(roots[0], Frame()), Frame())
             self.model.base(name, self.links[roots[0]].where)
         hung: dict[str, list[int]] = {}

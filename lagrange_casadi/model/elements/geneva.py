@@ -124,9 +124,10 @@ def geneva(
     )
     radius, apart = norm(arm), norm(reach)
     locked = _LOCK * radius if lock is None else ownership.expression(f"{what}: lock", lock, "m")
+    fits = Fits(what, ownership.at_defaults)
+    fits.positive("the distance of both axes", apart)
     # Of the horn's angle at the crank's axis.
     cosine = (locked * locked + radius * radius) / (2.0 * locked * apart)
-    fits = Fits(what, ownership.at_defaults)
     words = (
         "its pin is {got} m from the crank's axis; expected {meant} m, the distance of the axes"
         f" times the sine of {180.0 / slots:.6g} deg"

@@ -93,6 +93,9 @@ def strut(
     load = mechanism.spring(
         name, first, second, stiffness=stiffness, length=length, damping=damping
     )
+    for word, value in (("stiffness", load.stiffness), ("damping", load.damping)):
+        if not isinstance(value, ca.SX) and value < 0.0:
+            raise DeclarationError(f"strut '{name}': {word} must not be negative, got {value:g}")
     stroke(mechanism, "strut", name, _between(mechanism, first, second), closed, open)
     return load
 
@@ -152,18 +155,26 @@ def gas_spring(
             f"{what}: its force must be positive, and not fall as it closes, got {pushed[0]:g} N"
             f" open and {pushed[1]:g} N closed"
         )
-    n = checked(f"{what}: exponent", exponent)
+    n, fits = checked(f"{what}: exponent", exponent), Fits(what, mechanism.ownership.at_defaults)
+    fits.at_least("exponent must be 1 or more", n, 1.0, n)
     distance = _between(mechanism, first, second)
     made = stroke(mechanism, "gas spring", name, distance, closed, open)
     gone = (1.0 - made.used) * (1.0 - (pushed[0] / pushed[1]) ** (1.0 / n))
     push = pushed[0] * (1.0 - gone) ** -n
-    slowed = checked(f"{what}: damping", damping, "N s/m")
+    slowed, held = (
+        checked(f"{what}: {word}", value, "N s/m")
+        for word, value in (("damping", damping), ("end_damping", end_damping))
+    )
+    fits.not_negative("damping", slowed, "N s/m")
+    fits.not_negative("end_damping", held, "N s/m")
     if end is not None:
         over = checked(f"{what}: end", end, "m")
-        Fits(what, mechanism.ownership.at_defaults).positive("end", over)
+        fits.positive("end", over)
+        room = made.open - made.closed
+        fits.at_least("end must not be longer than the stroke [m]", room - over, 0.0, over)
         share = ca.fmin(ca.fmax((distance - made.open) / over + 1.0, 0.0), 1.0)
-        slowed = slowed + checked(f"{what}: end_damping", end_damping, "N s/m") * share
-    elif isinstance(end_damping, ca.SX) or end_damping:
+        slowed = slowed + held * share
+    elif isinstance(held, ca.SX) or held:
         raise DeclarationError(f"{what}: end_damping needs end, the length over which it rises [m]")
     load = mechanism.spring(
         name, first, second, stiffness=-push / distance, length=0.0, damping=slowed
