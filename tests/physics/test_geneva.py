@@ -52,7 +52,7 @@ def test_a_parameter_that_does_not_fit_is_refused():
         evaluate(scene, parameters={"r": 0.08})
 
 
-def joined(space=False, length=0.05, apart=0.05 * math.sqrt(2.0)):
+def joined(space=False, length=0.05, apart=0.0707106781186548):
     m = SpatialMechanism("m") if space else Mechanism("m")
     axis = {"axis": (0, 0, 1)} if space else {}
     crank, wheel = (m.link(name, length=length, mass=1.0) for name in ("crank", "wheel"))
