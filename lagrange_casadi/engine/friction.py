@@ -18,16 +18,17 @@ after.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
-import numpy as np
 
 from ..base.arrays import Expression, Operand
 from ..base.quantities import Check, Column
 from ..base.scalars import column
+from ..base.vectors import nil
 from ..base.vocabulary import Precision
 from ..model.meshes import Loss, Transmission
 from .pressing import Contact, FrictionContact, both_edges
@@ -70,29 +71,25 @@ def solve(
     number.
     """
     symbols = column(one.friction.symbol for one in found)
-    n = len(found)
-    pressing = column(x for one in found for contact in one.contacts for x in contact.pressing)
-    slopes = ca.jacobian(pressing, symbols)
-    indeterminate_slopes = ca.jacobian(pressing, indeterminate)
-    free = ca.substitute(
-        pressing, ca.vertcat(symbols, indeterminate), ca.SX.zeros(n + indeterminate.numel())
+    contacts = [contact for one in found for contact in one.contacts]
+    pressing = column(x for contact in contacts for x in contact.pressing)
+    all_symbols = ca.vertcat(symbols, indeterminate)
+    rows = (
+        ca.substitute(pressing, all_symbols, ca.SX.zeros(all_symbols.numel())),
+        ca.jacobian(pressing, symbols),
+        ca.fabs(ca.jacobian(pressing, indeterminate)) @ indeterminate,
     )
-    laws: list[_Law] = []
-    first = 0
-    for one in found:
-        parts = []
-        for contact in one.contacts:
-            rows = range(first, first + len(contact.pressing))
-            first += len(contact.pressing)
-            parts.append(
-                _Pressed(
-                    contact,
-                    [free[row] for row in rows],
-                    [[_entry(slopes, row, k) for k in range(n)] for row in rows],
-                )
-            )
-        laws.append(_Law.of(one, parts, None if signs is None else signs.get(one.friction.name)))
-    values: list[Any] = [None] * n
+    ends = [0, *itertools.accumulate(len(contact.pressing) for contact in contacts)]
+    parts = map(_Pressed, contacts, *(ca.vertsplit(of, ends) for of in rows))
+    laws = [
+        _Law.of(
+            one,
+            [next(parts) for _ in one.contacts],
+            None if signs is None else signs.get(one.friction.name),
+        )
+        for one in found
+    ]
+    values = ca.SX.zeros(len(found))
     checks: dict[Column, Any] = {
         Check("rest", law.name): law.rest for law in laws if law.rest is not None
     }
@@ -102,53 +99,50 @@ def solve(
         checks |= {
             Check("bend", law.name): bend for law in laws if (bend := _bend(law, laws)) is not None
         }
-    if indeterminate_slopes.nnz():
-        values = _doubted(laws, values, ca.fabs(indeterminate_slopes) @ indeterminate)
-    lost = {one.friction.name: -value * one.rate for one, value in zip(found, values, strict=True)}
-    forces = {one.friction.name: value for one, value in zip(found, values, strict=True)}
-    return Solved(symbols, ca.densify(column(values)), checks, forces, lost)
+    values = _doubted(laws, values)
+    forces = {one.friction.name: values[j] for j, one in enumerate(found)}
+    lost = {one.friction.name: -values[j] * one.rate for j, one in enumerate(found)}
+    return Solved(symbols, values, checks, forces, lost)
 
 
 @dataclass(frozen=True, eq=False)
 class _Pressed:
-    """A contact as R0 + A s: ``free`` is R0, ``slopes`` the rows of A, None where nothing."""
+    """A contact as R0 + A s: ``free`` is R0, ``slopes`` is A, and ``doubted`` how much R may change
+    with what equilibrium leaves open.
+    """
 
     contact: Contact
-    free: list[Any]
-    slopes: list[list[Any]]
+    free: ca.SX
+    slopes: ca.SX
+    doubted: ca.SX
 
-    def at(self, values: Sequence[ca.SX | None]) -> list[ca.SX]:
-        """R for values of all frictions, None where they count as zero."""
-        return [_sum(row, values, start) for row, start in zip(self.slopes, self.free, strict=True)]
+    def at(self, values: ca.SX) -> ca.SX:
+        """R for values of all frictions."""
+        pressing: ca.SX = self.free + self.slopes @ values
+        return pressing
 
     def dependence(self, k: int) -> Expression:
-        """Largest dependence on a friction; None if there is none."""
-        column_ = [row[k] for row in self.slopes if row[k] is not None]
-        lean = self.contact.lean
-        most = self.contact.arm if lean is None else self.contact.arm + ca.fabs(lean)
-        return None if not column_ else most * self.contact.size(column_)
+        """Largest dependence on a friction."""
+        most = self.contact.arm + ca.fabs(self.contact.lean)
+        slopes = [slope for slope in ca.vertsplit(self.slopes[:, k]) if not nil(slope)]
+        return most * self.contact.size(slopes) if slopes else ca.SX(0)
 
-    def push(self, pressing: Sequence[ca.SX], sigma: Expression) -> Expression:
+    def push(self, pressing: ca.SX, sigma: Expression) -> Expression:
         """The couple or force of a unit of mu where so much presses."""
-        size, lean = self.contact.arm * self.contact.size(pressing), self.contact.lean
-        return size if lean is None else size + sigma * (lean * pressing[0])
+        size = self.contact.arm * self.contact.size(ca.vertsplit(pressing))
+        return size + sigma * (self.contact.lean * pressing[0])
 
-    def weights(
-        self, pressing: Sequence[Expression], sigma: Expression, unit: Expression
-    ) -> list[Expression]:
-        """Derivatives of ``unit`` times the normal force by each component; their products with the
-        components add up to it.
+    def weights(self, pressing: ca.SX, sigma: Expression, unit: Expression) -> Expression:
+        """Derivatives of ``unit`` times the normal force by each component, a row; its product with
+        the components is that force.
         """
-        arm, lean = self.contact.arm, self.contact.lean
-        if len(pressing) == 1:
-            direction = arm * ca.sign(pressing[0])
-            return [unit * (direction if lean is None else direction + sigma * lean)]
-        share = unit * arm
+        if pressing.numel() == 1:
+            return unit * (self.contact.arm * ca.sign(pressing) + sigma * self.contact.lean)
+        share, components = unit * self.contact.arm, ca.vertsplit(pressing)
         if self.contact.edges:
-            one, other = (ca.sign(edge) for edge in both_edges(pressing))
-            return [share / 2 * (one + other), share / 2 * (one - other)]
-        share = share / ca.fmax(self.contact.size(pressing), _NOTHING)
-        return [share * x for x in pressing]
+            one, other = (ca.sign(edge) for edge in both_edges(components))
+            return share / 2 * ca.horzcat(one + other, one - other)
+        return share / ca.fmax(self.contact.size(components), _NOTHING) * pressing.T
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,15 +161,11 @@ class _Law:
     def of(cls, one: FrictionContact, pressed: list[_Pressed], sign: Expression = None) -> _Law:
         friction, v = one.friction, one.rate
         if isinstance(friction, Transmission):
-            return cls(friction.name, pressed, 1.0, -1.0, None, None)
+            return cls(friction.name, pressed, 1.0, -1.0, 0.0, None)
         if isinstance(friction, Loss):
             sigma, rest, still = _way(one, sign)
-            return cls(friction.name, pressed, 1.0, sigma, None, rest, still)
-        steady = (
-            None
-            if isinstance(friction.viscous, float) and friction.viscous == 0.0
-            else friction.viscous * v
-        )
+            return cls(friction.name, pressed, 1.0, sigma, 0.0, rest, still)
+        steady = friction.viscous * v
         if not pressed:
             return cls(friction.name, [], 0.0, 0.0, steady, None)
         mu, lever = friction.mu, friction.radius if friction.axis.kind == "angle" else 1.0
@@ -194,40 +184,30 @@ class _Law:
         sigma, rest, still = _way(one, sign, lever)
         return cls(friction.name, pressed, mu, sigma, steady, rest, still)
 
-    def pushed(self, values: Sequence[ca.SX | None]) -> Expression:
+    def pushed(self, values: ca.SX) -> Expression:
         """The force for values of all frictions."""
-        dry = -self.sigma * (
-            self.mu
-            * sum((part.push(part.at(values), self.sigma) for part in self.pressed), ca.SX(0))
-        )
-        return dry if self.steady is None else dry - self.steady
+        pushes = (part.push(part.at(values), self.sigma) for part in self.pressed)
+        return -self.sigma * (self.mu * sum(pushes, ca.SX(0))) - self.steady
 
-    def straight(
-        self, values: Sequence[Expression], known: Sequence[Expression]
-    ) -> tuple[Expression, list[Expression]]:
+    def straight(self, values: ca.SX, known: ca.SX) -> tuple[Expression, ca.SX]:
         """The force as ``start - slopes s``, beside what is ``known``, if all that presses kept its
         direction at ``values``.
         """
-        start, slopes = ca.SX(0) if self.steady is None else -self.steady, [None] * len(known)
+        start, slopes = -self.steady, ca.SX(1, values.numel())
         for part in self.pressed:
             weights = part.weights(part.at(values), self.sigma, self.sigma * self.mu)
-            for weight, beside, row in zip(weights, part.at(known), part.slopes, strict=True):
-                start = start - weight * beside
-                slopes = [
-                    so_far
-                    if slope is None
-                    else weight * slope
-                    if so_far is None
-                    else so_far + weight * slope
-                    for so_far, slope in zip(slopes, row, strict=True)
-                ]
+            start, slopes = start - weights @ part.at(known), slopes + weights @ part.slopes
         return start, slopes
+
+    def dependence(self, k: int) -> Expression:
+        """Largest dependence on a friction, without mu."""
+        return sum((part.dependence(k) for part in self.pressed), ca.SX(0))
 
     def depends(self, k: int) -> bool:
         """Return whether it depends on a friction: never if the joint does not move at all, for
         then the friction is indeterminate.
         """
-        return not self.still and any(part.dependence(k) is not None for part in self.pressed)
+        return not self.still and not all(part.slopes[:, k].is_zero() for part in self.pressed)
 
 
 def _way(
@@ -270,133 +250,75 @@ def _bend(law: _Law, laws: Sequence[_Law]) -> Expression:
     limits.
     """
     measured = [
-        other.rest * (law.mu * size)
+        other.rest * (law.mu * law.dependence(k))
         for k, other in enumerate(laws)
-        if other is not law and other.rest is not None
-        for part in law.pressed
-        if (size := part.dependence(k)) is not None
+        if other is not law and other.rest is not None and not nil(law.dependence(k))
     ]
     sliding = ca.fabs(law.sigma) * (1 if law.rest is None else 1 - law.rest)
     return sliding * sum(measured, ca.SX(0)) if measured else None
 
 
 def _solve_block(
-    laws: Sequence[_Law], block: Sequence[int], values: list[Expression]
+    laws: Sequence[_Law], block: Sequence[int], values: ca.SX
 ) -> dict[Column, Expression]:
-    """Put the values of frictions that depend on each other into ``values``; and the checks of
-    them.
+    """Put the values of frictions that depend on each other into ``values``, where those to come
+    are zero; and the checks of them.
     """
-    known = list(values)
+    known = ca.SX(values)
     for j, law in zip(block, laws, strict=True):
         values[j] = law.pushed(known)
     if not any(law.depends(k) for law in laws for k in block):
         return {}
-    found = list(values)
+    found = ca.SX(values)
     for _ in range(STEPS):
-        rows = [law.straight(found, known) for law in laws]
-        matrix = [
-            [slopes[k] if k != j else 1 if slopes[k] is None else 1 + slopes[k] for k in block]
-            for j, (_, slopes) in zip(block, rows, strict=True)
-        ]
-        for j, value in zip(
-            block, _eliminated(matrix, [start for start, _ in rows])[0], strict=True
-        ):
-            found[j] = value
+        starts, slopes = zip(*(law.straight(found, known) for law in laws), strict=True)
+        matrix = ca.SX.eye(len(laws)) + ca.vertcat(*slopes)[:, block]
+        found[block] = _eliminated(matrix, column(starts))[0]
     missed, size = ca.SX(0), ca.SX(_NOTHING)
     for j, law in zip(block, laws, strict=True):
-        push = law.pushed(found)
+        values[j] = push = law.pushed(found)
         missed, size = missed + ca.fabs(found[j] - push), size + ca.fabs(push)
-        values[j] = push
     name = ", ".join(law.name for law in laws)
-    return {Check("jam", name): _least_pivot(laws, block), Check("slip", name): missed / size}
+    # The least pivot of I - B is positive where there is one solution.
+    taken = ca.vertcat(*(-law.mu * ca.horzcat(*map(law.dependence, block)) for law in laws))
+    _, pivots = _eliminated(ca.SX.eye(len(laws)) + taken, ca.SX.zeros(len(laws)))
+    return {Check("jam", name): ca.mmin(pivots), Check("slip", name): missed / size}
 
 
-def _doubted(
-    laws: Sequence[_Law], values: Sequence[Expression], indeterminate_slopes: Expression
-) -> list[Expression]:
-    """Values with what they change at most where what presses on them changes by
-    ``indeterminate_slopes``, row by row.
-    """
-    rows = iter(ca.vertsplit(indeterminate_slopes))
-    local = [
-        law.mu
-        * sum((part.contact.arm * next(rows) for part in law.pressed for _ in part.free), ca.SX(0))
+def _doubted(laws: Sequence[_Law], values: ca.SX) -> ca.SX:
+    """Values with what they change at most with what equilibrium leaves open."""
+    local = column(
+        law.mu * sum((part.contact.arm * ca.sum1(part.doubted) for part in law.pressed), ca.SX(0))
         for law in laws
-    ]
-    changes = local
+    )
+    if local.is_zero():
+        return values
+    changes, numbers = local, range(len(laws))
+    leaning = ca.vertcat(*(law.mu * ca.horzcat(*map(law.dependence, numbers)) for law in laws))
     for _ in laws:
-        changes = [
-            start
-            + sum(
-                (
-                    law.mu * measured * changes[k]
-                    for part in law.pressed
-                    for k in range(len(laws))
-                    if (measured := part.dependence(k)) is not None
-                ),
-                ca.SX(0),
-            )
-            for law, start in zip(laws, local, strict=True)
-        ]
-    return [value + change for value, change in zip(values, changes, strict=True)]
+        changes = local + leaning @ changes
+    return values + changes
 
 
-def _least_pivot(laws: Sequence[_Law], block: Sequence[int]) -> Expression:
-    """The least pivot of I - B: positive where there is one solution."""
-    matrix: list[list[Any]] = []
-    for j, law in zip(block, laws, strict=True):
-        row: list[Any] = []
-        for k in block:
-            sizes = [size for part in law.pressed if (size := part.dependence(k)) is not None]
-            entry = None if not sizes else -law.mu * sum(sizes[1:], sizes[0])
-            row.append(entry if j != k else 1 if entry is None else 1 + entry)
-        matrix.append(row)
-    pivots = _eliminated(matrix, [ca.SX(0)] * len(matrix))[1]
-    least = ca.SX(pivots[0])
-    for pivot in pivots[1:]:
-        least = ca.fmin(least, pivot)
-    return least
-
-
-def _eliminated(
-    matrix: list[list[Expression]], right: list[Expression]
-) -> tuple[list[Expression], list[Expression]]:
-    """The solution of a system by elimination without exchange of rows, and its pivots; None stands
-    for zero.
-    """
-    n, rows, right = len(right), [list(row) for row in matrix], list(right)
+def _eliminated(matrix: ca.SX, right: ca.SX) -> tuple[ca.SX, ca.SX]:
+    """The solution of a system by elimination without exchange of rows, and its pivots."""
+    rows, n = ca.densify(ca.horzcat(matrix, right)), right.numel()
     for i in range(n):
         for j in range(i + 1, n):
-            if rows[j][i] is None:
-                continue
-            factor = rows[j][i] / rows[i][i]
-            for k in range(i + 1, n):
-                if rows[i][k] is not None:
-                    rows[j][k] = (0 if rows[j][k] is None else rows[j][k]) - factor * rows[i][k]
-            right[j] = right[j] - factor * right[i]
-    found: list[Any] = [None] * n
+            rows[j, i + 1 :] -= rows[j, i] / rows[i, i] * rows[i, i + 1 :]
     for i in reversed(range(n)):
-        rest = right[i]
-        for k in range(i + 1, n):
-            if rows[i][k] is not None:
-                rest = rest - rows[i][k] * found[k]
-        found[i] = rest / rows[i][i]
-    return found, [rows[i][i] for i in range(n)]
+        rows[i, n] /= rows[i, i]
+        rows[:i, n] -= rows[:i, i] * rows[i, n]
+    return rows[:, n], ca.diag(rows[:, :n])
 
 
 def _blocks(laws: Sequence[_Law]) -> list[list[int]]:
     """Frictions that depend on each other, those first that depend on no others."""
     n = len(laws)
-    reached = np.array(
-        [[j == k or law.depends(k) for k in range(n)] for j, law in enumerate(laws)], bool
-    ).reshape(n, n)
-    for k in range(n):
-        reached |= np.outer(reached[:, k], reached[k])
-    found = {
-        tuple(np.flatnonzero(reached[j] & reached[:, j]).tolist()): int(reached[j].sum())
-        for j in range(n)
-    }
-    return [list(block) for block in sorted(found, key=lambda block: (found[block], block))]
+    entries = [(j, k) for j, law in enumerate(laws) for k in range(n) if j == k or law.depends(k)]
+    rows, columns = zip(*entries, strict=True) if laws else ((), ())
+    count, order, cuts = ca.Sparsity.triplet(n, n, rows, columns).scc()
+    return [sorted(order[cuts[i] : cuts[i + 1]]) for i in reversed(range(count))]
 
 
 def needed(
@@ -422,19 +344,3 @@ def needed(
         if more == names:
             return names
         names = more
-
-
-def _sum(
-    row: Sequence[Expression | None], values: Sequence[Expression], start: Expression
-) -> Expression:
-    """A row of A times values, and R0."""
-    total = None
-    for slope, value in zip(row, values, strict=True):
-        if slope is not None and value is not None:
-            total = slope * value if total is None else total + slope * value
-    return start if total is None else start + total
-
-
-def _entry(matrix: Expression, row: int, k: int) -> Expression:
-    entry = matrix[row, k]
-    return None if not entry.nnz() or entry.is_zero() else entry

@@ -39,7 +39,7 @@ class Contact:
 
     arm: Any
     pressing: tuple[Any, ...]
-    lean: Any = None
+    lean: Any = 0.0
     edges: bool = False
 
     def size(self, components: Sequence[Expression]) -> Expression:
