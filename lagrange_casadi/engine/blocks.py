@@ -9,7 +9,6 @@ CSparse.
 
 from __future__ import annotations
 
-import heapq
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -284,21 +283,12 @@ def _in_order(parts: Sequence[Part], loops: Sequence[LoopEquations]) -> list[Par
     ]
     declared = {loop: k for k, loop in enumerate(loops)}
     ranks = [sorted({declared[equation.loop] for equation in rows}) for rows, _ in parts]
-    followers: list[list[int]] = [[] for _ in parts]
-    for i, earlier in enumerate(needs):
-        for j in earlier:
-            followers[j].append(i)
-    ready = [(len(rank), rank, i) for i, rank in enumerate(ranks) if not needs[i]]
-    heapq.heapify(ready)
-    found = []
-    while ready:
-        *_, i = heapq.heappop(ready)
-        found.append(parts[i])
-        for j in followers[i]:
-            needs[j].discard(i)
-            if not needs[j]:
-                heapq.heappush(ready, (len(ranks[j]), ranks[j], j))
-    return found
+    found, left = [], set(range(len(parts)))
+    while left:
+        ready = (i for i in left if needs[i].isdisjoint(left))
+        found.append(min(ready, key=lambda i: (len(ranks[i]), ranks[i], i)))
+        left.remove(found[-1])
+    return [parts[i] for i in found]
 
 
 def row_units(multibody: Multibody, rows: Sequence[Equation]) -> Expression:

@@ -180,13 +180,10 @@ class Grown:
         if not isinstance(base, Carried):
             return Frame(*motion)
         if free := [coordinate for coordinate in coordinates if coordinate.spherical is not None]:
-            speed = rotation.resolve(moved.speed)
-            acceleration = rotation.resolve(moved.acceleration)
-            local = Frame(
-                speed=speed,
-                acceleration=acceleration,
-                rate=_rates(free),
-                angular=_accelerations(free),
+            local = replace(
+                _rolling(free),
+                speed=rotation.resolve(moved.speed),
+                acceleration=rotation.resolve(moved.acceleration),
             )
         else:
             local = _own(branch, coordinates, base)
@@ -202,45 +199,31 @@ class Grown:
         """Direction, angular velocity and its change of the body that hangs on a branch."""
         if not branch.far.body.oriented:
             return Rotation(), ZERO, ZERO
-        joint, rate, angular = branch.joint, base.rate, base.angular
+        joint, motion = branch.joint, Frame(rate=base.rate, angular=base.angular)
         rotations = [c for c in coordinates if c.kind == "angle"]
         if rotations and not rotations[0].relative:
             (coordinate,) = rotations
-            local = Rotation.flat(*ca.vertsplit(coordinate.variables))
-            if not coordinate.driven:
-                return local, (0.0, 0.0, coordinate.rate), (0.0, 0.0, coordinate.acceleration)
-            spin, change = (
-                times(branch.sign, (0.0, 0.0, one))
-                for one in (coordinate.rate, coordinate.acceleration)
-            )
-            assert base.rotation.angle is not None
-            assert local.angle is not None
-            return (
-                replace(local, angle=base.rotation.angle + branch.sign * local.angle),
-                plus(rate, spin),
-                plus(angular, change),
-            )
+            c, s, angle = ca.vertsplit(coordinate.variables)
+            if coordinate.driven:
+                motion = _spun(motion, (0.0, 0.0, branch.sign), coordinate)
+                assert base.rotation.angle is not None
+                angle = base.rotation.angle + branch.sign * angle
+            else:
+                motion = _spun(Frame(), AXES[2], coordinate)
+            return Rotation.flat(c, s, angle), motion.rate, motion.angular
         if free := [c for c in coordinates if c.spherical is not None]:
             assert free[0].spherical is not None
-            rotation = free[0].spherical.rotation
-            return rotation, rotation.apply(_rates(free)), rotation.apply(_accelerations(free))
+            rotation, rolling = free[0].spherical.rotation, _rolling(free)
+            return rotation, rotation.apply(rolling.rate), rotation.apply(rolling.angular)
         zero = joint.turned
         rotation = base.rotation.then(zero.inverse) if branch.reverse else base.rotation
         for coordinate in reversed(rotations) if branch.reverse else rotations:
             direction = coordinate.axis.direction
-            c, s, angle = ca.vertsplit(coordinate.variables)
-            local = Rotation.about(direction, c, s, angle)
+            local = Rotation.about(direction, *ca.vertsplit(coordinate.variables))
             self.turning[coordinate.name] = rotation.apply(direction)
-            axis = times(branch.sign, self.turning[coordinate.name])
-            angular = plus(
-                angular,
-                plus(
-                    times(coordinate.acceleration, axis), cross(times(coordinate.rate, rate), axis)
-                ),
-            )
-            rate = plus(rate, times(coordinate.rate, axis))
+            motion = _spun(motion, times(branch.sign, self.turning[coordinate.name]), coordinate)
             rotation = rotation.then(local.inverse if branch.reverse else local)
-        return rotation if branch.reverse else rotation.then(zero), rate, angular
+        return rotation if branch.reverse else rotation.then(zero), motion.rate, motion.angular
 
     def along(self, joint: Joint, axis: Axis) -> Vector:
         """The force or couple on a joint's child, in ground axes, that does a unit of work along an
@@ -356,16 +339,13 @@ def _of_spherical(
     ]
 
 
-def _rates(free: Sequence[Coordinate]) -> Vector:
-    """The angular velocity of a ball, on its own axes."""
-    x, y, z = (coordinate.rate for coordinate in free)
-    return x, y, z
-
-
-def _accelerations(free: Sequence[Coordinate]) -> Vector:
-    """Accelerations of free coordinates."""
-    x, y, z = (coordinate.acceleration for coordinate in free)
-    return x, y, z
+def _rolling(free: Sequence[Coordinate]) -> Frame:
+    """The turning of a ball, on its own axes."""
+    x, y, z = free
+    return Frame(
+        rate=(x.rate, y.rate, z.rate),
+        angular=(x.acceleration, y.acceleration, z.acceleration),
+    )
 
 
 def _slides(coordinates: Sequence[Coordinate]) -> list[tuple[Vector, Coordinate]]:
@@ -400,6 +380,14 @@ def _slid(motion: Frame, axis: Vector, coordinate: Coordinate) -> Frame:
     return replace(motion, speed=speed, acceleration=plus(motion.acceleration, change))
 
 
+def _spun(motion: Frame, axis: Vector, coordinate: Coordinate) -> Frame:
+    """A motion with that about an axis, which it turns itself."""
+    spin = cross(times(coordinate.rate, motion.rate), axis)
+    change = plus(times(coordinate.acceleration, axis), spin)
+    rate = plus(motion.rate, times(coordinate.rate, axis))
+    return replace(motion, rate=rate, angular=plus(motion.angular, change))
+
+
 def _own(branch: Branch, coordinates: Sequence[Coordinate], base: Carried) -> Frame:
     """The motion of the body that hangs on a branch, in its own axes: handed on from axes to axes,
     each turned from the last.
@@ -422,15 +410,7 @@ def _own(branch: Branch, coordinates: Sequence[Coordinate], base: Carried) -> Fr
             motion = _slid(motion, direction, coordinate)
     for coordinate in reversed(rotations) if branch.reverse else rotations:
         turn = Rotation.about(coordinate.axis.direction, *ca.vertsplit(coordinate.variables))
-        axis = times(branch.sign, coordinate.axis.direction)
-        change = plus(
-            times(coordinate.acceleration, axis), cross(times(coordinate.rate, motion.rate), axis)
-        )
-        motion = replace(
-            motion,
-            rate=plus(motion.rate, times(coordinate.rate, axis)),
-            angular=plus(motion.angular, change),
-        )
+        motion = _spun(motion, times(branch.sign, coordinate.axis.direction), coordinate)
         motion = _seen_from(motion, turn.inverse if branch.reverse else turn)
     if not branch.reverse:
         return _seen_from(motion, zero)

@@ -119,14 +119,10 @@ def reaction(
     places = [direction for _, direction in _across(joint, parent)]
     for k, direction in enumerate(places):
         force = plus(force, times(multipliers[k], direction))
-    held = _held(joint)
-    if held:
-        base = parent.rotation.then(joint.turned)
-        misaligned = misalignment(joint, parent, child)
-        for k, (local, across) in enumerate(held, len(places)):
-            moment = plus(
-                moment, times(multipliers[k], base.apply(cross(misaligned.apply(local), across)))
-            )
+    base, misaligned = parent.rotation.then(joint.turned), misalignment(joint, parent, child)
+    for k, (local, across) in enumerate(_held(joint), len(places)):
+        couple = base.apply(cross(misaligned.apply(local), across))
+        moment = plus(moment, times(multipliers[k], couple))
     return force, moment
 
 

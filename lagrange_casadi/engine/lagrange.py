@@ -132,17 +132,27 @@ class LagrangeSystem(Brief):
         ):
             raise DeclarationError(f"time must be one symbol, got {self.time}")
         self._check_roles()
-        _expect("kinetic", self.kinetic, 1)
-        _expect("force_function", self.force_function, 1)
-        _expect("accelerations", self.accelerations, n)
-        if self.mobilities.numel():
-            _expect("mobility_rates", self.mobility_rates, self.mobilities.numel())
-        _expect("multipliers", self.multipliers, ca.SX(self.constraints).numel())
-        _expect("velocity_graphs", self.velocity_graphs, self.velocities.numel())
-        sizes = {"forces": n, "mobility_forces": k, "velocity_rates": self.velocities.numel()}
-        for name, size in (sizes | {"velocity_forces": self.velocities.numel()}).items():
-            if getattr(self, name) is not None:
-                _expect(name, getattr(self, name), size)
+        velocities = self.velocities.numel()
+        sizes = {
+            "kinetic": 1,
+            "force_function": 1,
+            "accelerations": n,
+            "mobility_rates": self.mobilities.numel() or k,
+            "multipliers": ca.SX(self.constraints).numel(),
+            "velocity_graphs": velocities,
+            "forces": n,
+            "mobility_forces": k,
+            "velocity_rates": velocities,
+            "velocity_forces": velocities,
+            "drift": p,
+            "coordinate_rates": p,
+        }
+        for name, size in sizes.items():
+            graph = getattr(self, name)
+            if graph is not None and ca.SX(graph).numel() != size:
+                raise DeclarationError(
+                    f"{name} must have {size} entries, got {ca.SX(graph).numel()}"
+                )
         if self.tangent is None and self.coordinate_rates is None and p != n:
             raise DeclarationError(
                 f"{p} coordinates and {n} rates: set 'tangent', the derivatives of coordinates by"
@@ -152,22 +162,18 @@ class LagrangeSystem(Brief):
             raise DeclarationError(
                 f"tangent must have shape {(p, n)}, got {ca.SX(self.tangent).shape}"
             )
-        if self.drift is not None:
-            _expect("drift", self.drift, p)
-        if self.coordinate_rates is not None:
-            self._check_coordinate_rates(ca.SX(self.coordinate_rates))
-        self._check_graphs()
-        self._check_rates()
-
-    def _check_coordinate_rates(self, graph: ca.SX) -> None:
-        """Raise for p' that is given twice, or is not linear in the rates."""
-        _expect("coordinate_rates", graph, self.coordinates.numel())
-        if self.tangent is not None or self.drift is not None:
+        if self.coordinate_rates is not None and (
+            self.tangent is not None or self.drift is not None
+        ):
             raise DeclarationError(
                 "coordinate_rates cannot be combined with tangent and drift; leave one of them out"
             )
-        if not ca.is_linear(graph, self.rates):
+        if self.coordinate_rates is not None and not ca.is_linear(
+            ca.SX(self.coordinate_rates), self.rates
+        ):
             raise DeclarationError("coordinate_rates must be linear in the rates")
+        self._check_graphs()
+        self._check_rates()
 
     def _check_roles(self) -> None:
         """Raise for a symbol that is to be two things."""
@@ -321,11 +327,6 @@ class LagrangeSystem(Brief):
     def _at_rest(self, expression: Expression) -> ca.SX:
         resting = ca.vertcat(self.mobilities, self.mobility_rates)
         return ca.substitute(ca.SX(expression), resting, ca.SX.zeros(resting.numel()))
-
-
-def _expect(name: str, value: ca.SX, size: int) -> None:
-    if ca.SX(value).numel() != size:
-        raise DeclarationError(f"{name} must have {size} entries, got {ca.SX(value).numel()}")
 
 
 def _listed(what: str, numbers: Sequence[int]) -> str:
