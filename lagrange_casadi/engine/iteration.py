@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -76,11 +77,10 @@ class Iterated:
     quaternions.
     """
 
-    parts: list[Any] = field(default_factory=list)
+    parts: list[tuple[Any, SphericalCoordinates | None]] = field(default_factory=list)
     scales: list[Any] = field(default_factory=list)
     guess: list[float] = field(default_factory=list)
     turning: list[bool] = field(default_factory=list)
-    sphericals: dict[int, SphericalCoordinates] = field(default_factory=dict)
 
     def number(self, name: str, scale: Expression, guess: float, *, turning: bool) -> ca.SX:
         """The symbol of a number, whose ``scale`` is what a correction is large beside."""
@@ -88,15 +88,19 @@ class Iterated:
 
     def spherical(self, spherical: SphericalCoordinates, guess: Sequence[float]) -> ca.SX:
         """The axes of a ball, as they follow from its four symbols."""
-        self.sphericals[len(self.parts)] = spherical
-        return axes_of(
-            self._add(ca.SX.sym(f"z_{spherical.joint.name}", 4), [1, 1, 1], guess, turning=False)
-        )
+        scales, name = [1, 1, 1], f"z_{spherical.joint.name}"
+        return axes_of(self._add(ca.SX.sym(name, 4), scales, guess, spherical, turning=False))
 
     def _add(
-        self, symbols: ca.SX, scales: Sequence[Expression], guess: Sequence[float], *, turning: bool
+        self,
+        symbols: ca.SX,
+        scales: Sequence[Expression],
+        guess: Sequence[float],
+        spherical: SphericalCoordinates | None = None,
+        *,
+        turning: bool,
     ) -> ca.SX:
-        self.parts.append(symbols)
+        self.parts.append((symbols, spherical))
         self.scales += scales
         self.guess += guess
         self.turning += [turning] * len(guess)
@@ -105,55 +109,40 @@ class Iterated:
     @property
     def symbols(self) -> Expression:
         """All symbols, one column."""
-        return column(self.parts)
+        return column(symbols for symbols, _ in self.parts)
 
     def placed(self, expression: ca.SX) -> ca.SX:
         """An expression in axes of balls as one in the symbols."""
-        if not self.sphericals:
+        balls = [(ball.axes, axes_of(symbols)) for symbols, ball in self.parts if ball is not None]
+        if not balls:
             return expression
-        axes = column(spherical.axes for spherical in self.sphericals.values())
-        return ca.substitute(
-            ca.SX(expression), axes, column(axes_of(self.parts[k]) for k in self.sphericals)
-        )
+        axes, placed = zip(*balls, strict=True)
+        return ca.substitute(ca.SX(expression), column(axes), column(placed))
 
     def step(self, residuals: ca.SX, units: Expression) -> tuple[ca.SX, ca.SX]:
         """Newton correction of the symbols, and its size; a large one is shortened. By their
         ``units`` the residuals are of one size.
         """
-        slope = ca.jacobian(
-            residuals,
-            column(
-                self.sphericals[k].axes if k in self.sphericals else part
-                for k, part in enumerate(self.parts)
-            ),
-        )
-        if self.sphericals:
-            unit = ca.SX.eye(3)
-            turned = {
-                k: ca.horzcat(*(ca.vertcat(*b.changes(ca.vertsplit(unit[:, i]))) for i in range(3)))
-                for k, b in self.sphericals.items()
-            }
-            slope = self.placed(
-                slope @ ca.diagcat(*(turned.get(k, ca.SX(1)) for k in range(len(self.parts))))
-            )
+        moved = column(part if ball is None else ball.axes for part, ball in self.parts)
+        unit = ca.SX.eye(3)
+        turned = [
+            ca.SX(1)
+            if ball is None
+            else ca.horzcat(*(column(ball.changes(ca.vertsplit(unit[:, i]))) for i in range(3)))
+            for _, ball in self.parts
+        ]
+        slope = self.placed(ca.jacobian(residuals, moved) @ ca.diagcat(*turned))
         correction = -LinearSystem.of(slope, units).solve(self.placed(residuals))
         relative = ca.mmax(ca.fabs(correction / column(self.scales)))
         # Not fmin(1, limit / relative): where the loops are closed, its derivative would be 0 times
         # infinity.
         bounded = correction * (LARGEST_STEP / ca.fmax(relative, LARGEST_STEP))
-        return self._moved(bounded) if self.sphericals else bounded, relative
-
-    def _moved(self, correction: ca.SX) -> ca.SX:
-        """Change of the symbols by a correction of numbers, and by small rotations."""
-        added, start = [], 0
-        for k, part in enumerate(self.parts):
-            size = 3 if k in self.sphericals else 1
-            block_correction = correction[start : start + size]
-            added.append(
-                turn(part, block_correction) - part if k in self.sphericals else block_correction
-            )
-            start += size
-        return column(added)
+        ends = [0, *itertools.accumulate(block.shape[1] for block in turned)]
+        changes = zip(self.parts, ca.vertsplit(bounded, ends), strict=True)
+        return column(
+            change if ball is None else turn(part, change) - part
+            for (part, ball), change in changes
+        ), relative
 
 
 def place_roughly(

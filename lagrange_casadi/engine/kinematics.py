@@ -564,11 +564,8 @@ def describe_coordinate(joint: str, kind: str, value: float) -> str:
 
 
 def _numbers(unknown: Sequence[Coordinate], values: Sequence[float]) -> dict[Coordinate, float]:
-    found, rest = {}, list(values)
-    for coordinate in unknown:
-        size = coordinate.variables.numel()
-        found[coordinate] = (
-            math.atan2(rest[1] + 0.0, rest[0]) if coordinate.kind == "angle" else rest[0]
-        )
-        rest = rest[size:]
-    return found
+    starts = itertools.accumulate((c.variables.numel() for c in unknown), initial=0)
+    return {
+        c: math.atan2(values[k + 1] + 0.0, values[k]) if c.kind == "angle" else values[k]
+        for c, k in zip(unknown, starts, strict=False)
+    }

@@ -140,7 +140,6 @@ def _spanned(phi: ca.SX, unknown: Sequence[Coordinate], sampling: Sampling) -> C
     curvature = ca.hessian(phi, symbols)[0]
     if phi.numel() != 1 or ca.depends_on(curvature, coordinate.variables):
         return None
-    branch = ca.SX.sym("branch")
     if coordinate.kind == "angle":
         if not sampling.vanish(curvature[0, 1], curvature):
             return None
@@ -156,11 +155,10 @@ def _spanned(phi: ca.SX, unknown: Sequence[Coordinate], sampling: Sampling) -> C
         # For an arm c, a line d to the bar's other end and a bar b, Phi = (X X - b b)/2, this is
         # c c d d + c c (c c - (d d + c c - b b)) = (b c)^2.
         largest = ca.sumsqr(slope) + square * (square - 2 * rest)
-        solved = _direction_on_line(slope @ symbols + rest, coordinate, branch, largest)
-        return solved and ClosedForm((_variables(solved[0]),), solved[1], (branch,))
+        return _direction_on_line(slope @ symbols + rest, coordinate, largest)
     slope, rest = (ca.substitute(e, symbols, 0) for e in (ca.jacobian(phi, symbols), phi))
     # The slope of Phi at its zeros, which is the cosine between bar and slide.
-    squared = _square(slope) - 2 * curvature * rest
+    squared, branch = _square(slope) - 2 * curvature * rest, ca.SX.sym("branch")
     return ClosedForm(((branch * ca.sqrt(squared) - slope) / curvature,), squared, (branch,))
 
 
@@ -203,19 +201,18 @@ def _matching(
     kinds = "".join(sorted(c.kind[0] for c in unknown))
     if phi.numel() != len(unknown):
         return None
-    if ca.depends_on(phi, column(c.value for c in unknown if c.kind == "angle")):
+    counted = column(c.value for c in unknown if c.kind == "angle")
+    if set(kinds) == {"s"} or ca.depends_on(phi, counted):
         return _tied(phi, unknown, units)
     if kinds == "a":
-        return _one_direction(phi, unknown[0])
+        return _direction_on_line(phi, unknown[0])
     if kinds == "aa":
         return _two_circles(phi, unknown, sampling)
-    if kinds == "as":
-        angle, slide = sorted(unknown, key=lambda c: c.kind)
-        form = _direction_and_slide(phi, angle, slide, sampling)
-        return (
-            replace(form, variables=form.variables[::-1]) if form and unknown[0] is slide else form
-        )
-    return _slides(phi, unknown, units) if set(kinds) == {"s"} else None
+    if kinds != "as":
+        return None
+    angle, slide = sorted(unknown, key=lambda c: c.kind)
+    form = _direction_and_slide(phi, angle, slide, sampling)
+    return replace(form, variables=form.variables[::-1]) if form and unknown[0] is slide else form
 
 
 def solves(forms: Sequence[ClosedForm], phi: ca.SX, sampling: Sampling) -> bool:
@@ -262,15 +259,9 @@ def _affine(phi: ca.SX, symbols: ca.SX, all_unknown: ca.SX) -> tuple[ca.SX, ca.S
     return slope, ca.substitute(phi, symbols, ca.SX.zeros(symbols.numel()))
 
 
-def _one_direction(phi: ca.SX, angle: Coordinate) -> ClosedForm | None:
-    branch = ca.SX.sym("branch")
-    solved = _direction_on_line(phi, angle, branch)
-    return solved and ClosedForm((_variables(solved[0]),), solved[1], (branch,))
-
-
 def _direction_on_line(
-    phi: ca.SX, angle: Coordinate, branch: ca.SX, largest: ca.SX | None = None
-) -> tuple[ca.SX, ca.SX] | None:
+    phi: ca.SX, angle: Coordinate, largest: ca.SX | None = None
+) -> ClosedForm | None:
     """The direction for which phi = 0, and the closure: beside the square of its slope, or beside
     the ``largest`` there may be.
     """
@@ -278,26 +269,22 @@ def _direction_on_line(
     if affine is None:
         return None
     slope, rest = affine
-    a, b = slope[0], slope[1]
+    a, b, branch = slope[0], slope[1], ca.SX.sym("branch")
     if a.is_zero() and b.is_zero():
         return None
-    if a.is_zero() or b.is_zero():
-        reach = b if a.is_zero() else a
-        cross = branch * ca.sqrt((reach - rest) * (reach + rest)) / reach
-        along = -rest / reach
-        closure = (reach - rest) * (reach + rest) / (_square(reach) if largest is None else largest)
-        return (ca.vertcat(cross, along) if a.is_zero() else ca.vertcat(along, cross)), closure
     squared = _square(a) + _square(b)
-    reach = ca.sqrt(squared)
-    if rest.is_zero():
-        return branch * ca.vertcat(-b, a) / reach, ca.SX(
-            1
-        ) if largest is None else squared / largest
+    reach = b if a.is_zero() else a if b.is_zero() else ca.sqrt(squared)
     root = (reach - rest) * (reach + rest)
-    w = branch * ca.sqrt(root)
-    return ca.vertcat(-a * rest - b * w, -b * rest + a * w) / squared, root / (
-        squared if largest is None else largest
-    )
+    if a.is_zero() or b.is_zero():
+        cross, along = branch * ca.sqrt(root) / reach, -rest / reach
+        direction = ca.vertcat(cross, along) if a.is_zero() else ca.vertcat(along, cross)
+    elif rest.is_zero():
+        direction, root = branch * ca.vertcat(-b, a) / reach, squared
+    else:
+        w = branch * ca.sqrt(root)
+        direction = ca.vertcat(-a * rest - b * w, -b * rest + a * w) / squared
+    closure = root / (squared if largest is None else largest)
+    return ClosedForm((_variables(direction),), closure, (branch,))
 
 
 def _two_circles(
@@ -343,7 +330,7 @@ def _direction_and_slide(
     phi: ca.SX, angle: Coordinate, slide: Coordinate, sampling: Sampling
 ) -> ClosedForm | None:
     """Eliminate the slide; what is left is a direction on a line."""
-    pair, branch = _pair(angle), ca.SX.sym("branch")
+    pair = _pair(angle)
     unknown = ca.vertcat(pair, slide.variables)
     axis, turned = ca.jacobian(phi, slide.variables), ca.jacobian(phi, pair)
     largest = None
@@ -370,20 +357,20 @@ def _direction_and_slide(
         c, s = pair[0], pair[1]
         equations = (c * fixed[0] + s * fixed[1] + arm[0], c * fixed[1] - s * fixed[0] + arm[1])
     across = along_axis[0] * equations[1] - along_axis[1] * equations[0]
-    solved = _direction_on_line(ca.substitute(across, slide.variables, 0), angle, branch, largest)
-    if solved is None:
+    form = _direction_on_line(ca.substitute(across, slide.variables, 0), angle, largest)
+    if form is None:
         return None
-    direction, closure = solved
     along = along_axis[0] * equations[0] + along_axis[1] * equations[1]
-    place = -ca.substitute(along, unknown, ca.vertcat(direction, 0))
+    place = -ca.substitute(along, unknown, ca.vertcat(form.variables[0][:2], 0))
     if not sampling.vanish(ca.sumsqr(along_axis) - 1):
         place = place / ca.sumsqr(along_axis)
-    return ClosedForm((_variables(direction), place), closure, (branch,))
+    return replace(form, variables=(*form.variables, place))
 
 
 def _tied(phi: ca.SX, unknown: Sequence[Coordinate], units: Expression) -> ClosedForm | None:
-    """Angles that count turns, and slides, that follow others, as in a train of gears; of several,
-    by their volume.
+    """Angles that count turns, and slides, that follow others, as in a train of gears, and slides
+    along lines that none of them turns; of several, the closure is the square of the volume that
+    their slopes span.
     """
     if any(c.kind == "ball" for c in unknown):
         return None
@@ -402,21 +389,6 @@ def _tied(phi: ca.SX, unknown: Sequence[Coordinate], units: Expression) -> Close
 
 def _with_sine(coordinate: Coordinate, value: Expression) -> Expression:
     return value if coordinate.kind == "slide" else ca.vertcat(ca.cos(value), ca.sin(value), value)
-
-
-def _slides(phi: ca.SX, unknown: Sequence[Coordinate], units: Expression) -> ClosedForm | None:
-    """Slides along lines that none of them turns; of several, the closure is the square of the
-    volume that their slopes span.
-    """
-    symbols = ca.vertcat(*(c.variables for c in unknown))
-    affine = _affine(phi, symbols, symbols)
-    if affine is None:
-        return None
-    system = LinearSystem.of(affine[0], units)
-    places = system.solve(-affine[1])
-    return ClosedForm(
-        tuple(ca.vertsplit(places)), _square(system.volume) if len(unknown) > 1 else None
-    )
 
 
 def _norm(x: ca.SX, y: ca.SX) -> ca.SX:
