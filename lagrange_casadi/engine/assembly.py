@@ -86,7 +86,7 @@ def assemble(
         released = [joint.name for joint in two_force_link.joints if joint.name in reactions]
         accelerated.span(two_force_link, displace=released)
     for constraint in mechanism.constraints.values():
-        residual = resting.counted(constraint.phi)
+        residual = resting.at_state(constraint.phi, counted=True)
         rate = change(residual, resting.coordinates, mechanism.time)
         equations = _loop_equations(
             constraint.name, None, residual, rate, change(rate, resting.coordinates, mechanism.time)
@@ -95,7 +95,9 @@ def assemble(
         loops.append(
             equations
             if smooth is None
-            else replace(equations, counted=resting.counted(ca.vertcat(*smooth.symbols)))
+            else replace(
+                equations, counted=resting.at_state(ca.vertcat(*smooth.symbols), counted=True)
+            )
         )
     rows = tuple(_row(resting, row) for row in mechanism.rows.values())
     applied = tuple(part for load in mechanism.loads.values() for part in applied_by(load, resting))

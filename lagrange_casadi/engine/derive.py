@@ -152,15 +152,10 @@ def _chosen(
 
 @functools.lru_cache(maxsize=64)
 def _wanted(scene: Scene, names: tuple[str, ...]) -> Wanted:
-    want = Wanted.of(scene.mechanism, names)
-    _check_aimed(scene, names)
-    return want
-
-
-def _check_aimed(scene: Scene, names: Sequence[str]) -> None:
-    """Raise :class:`DeclarationError` for a bar whose strength is asked for by name, and which has
-    no direction for it.
+    """What is wanted by names. Raise :class:`DeclarationError` for a bar whose strength is asked
+    for by name, and which has no direction for it.
     """
+    want = Wanted.of(scene.mechanism, names)
     named = [name for name in names if name != "all"]
     for two_force_link in find_two_force_links(scene.guided, scene.laws) if named else ():
         asked = any(among(kind, [two_force_link.link.name], named) for kind in STRENGTH)
@@ -171,6 +166,7 @@ def _check_aimed(scene: Scene, names: Sequence[str]) -> None:
             and not two_force_link.link.beam.round
         ):
             raise DeclarationError(unaimed(two_force_link.link.name))
+    return want
 
 
 @functools.lru_cache(maxsize=32)

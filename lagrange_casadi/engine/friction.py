@@ -227,7 +227,6 @@ def _way(
         reverses = ca.logic_or(
             reverses, ca.logic_or(change > lever * quiet, change < -lever * quiet)
         )
-    if one.beside:
         direction = ca.if_else(moves, lever * v, lever * acceleration)
         across = ca.if_else(moves, other, change)
         sigma = direction / ca.fmax(ca.sqrt(direction * direction + across * across), _NOTHING)

@@ -88,19 +88,11 @@ class Grown:
         )
         return residual
 
-    def counted(self, expression: ca.SX) -> ca.SX:
-        """An expression of what the user measures in the tree's own variables, angles counted by
-        turns.
-        """
-        return self._measured(expression, counted=True)
-
-    def at_state(self, expression: Expression) -> ca.SX:
-        """Expression with rates; angles that are not driven are symbols of their own, for
+    def at_state(self, expression: Expression, *, counted: bool = False) -> ca.SX:
+        """An expression of what the user measures, with rates, in the tree's own variables. Angles
+        are ``counted`` by turns, or those that are not driven are symbols of their own, for
         :mod:`.revolutions`.
         """
-        return self._measured(expression, counted=False)
-
-    def _measured(self, expression: Expression, *, counted: bool) -> ca.SX:
         symbols: list[Any] = []
         values: list[Any] = []
         for measure in self.mechanism.measures.asked.values():
