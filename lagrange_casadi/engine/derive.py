@@ -152,7 +152,7 @@ def _chosen(
 
 @functools.lru_cache(maxsize=64)
 def _wanted(scene: Scene, names: tuple[str, ...]) -> Wanted:
-    """What is wanted by names. Raise :class:`DeclarationError` for a bar whose strength is asked
+    """Wanted outputs, by names. Raise :class:`DeclarationError` for a bar whose strength is asked
     for by name, and which has no direction for it.
     """
     want = Wanted.of(scene.mechanism, names)

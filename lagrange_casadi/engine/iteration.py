@@ -113,23 +113,31 @@ class Iterated:
 
     def placed(self, expression: ca.SX) -> ca.SX:
         """An expression in axes of balls as one in the symbols."""
-        balls = [(ball.axes, axes_of(symbols)) for symbols, ball in self.parts if ball is not None]
-        if not balls:
+        sphericals = [
+            (spherical.axes, axes_of(symbols))
+            for symbols, spherical in self.parts
+            if spherical is not None
+        ]
+        if not sphericals:
             return expression
-        axes, placed = zip(*balls, strict=True)
+        axes, placed = zip(*sphericals, strict=True)
         return ca.substitute(ca.SX(expression), column(axes), column(placed))
 
     def step(self, residuals: ca.SX, units: Expression) -> tuple[ca.SX, ca.SX]:
         """Newton correction of the symbols, and its size; a large one is shortened. By their
         ``units`` the residuals are of one size.
         """
-        moved = column(part if ball is None else ball.axes for part, ball in self.parts)
+        moved = column(
+            part if spherical is None else spherical.axes for part, spherical in self.parts
+        )
         unit = ca.SX.eye(3)
         turned = [
             ca.SX(1)
-            if ball is None
-            else ca.horzcat(*(column(ball.changes(ca.vertsplit(unit[:, i]))) for i in range(3)))
-            for _, ball in self.parts
+            if spherical is None
+            else ca.horzcat(
+                *(column(spherical.changes(ca.vertsplit(unit[:, i]))) for i in range(3))
+            )
+            for _, spherical in self.parts
         ]
         slope = self.placed(ca.jacobian(residuals, moved) @ ca.diagcat(*turned))
         correction = -LinearSystem.of(slope, units).solve(self.placed(residuals))
@@ -140,8 +148,8 @@ class Iterated:
         ends = [0, *itertools.accumulate(block.shape[1] for block in turned)]
         changes = zip(self.parts, ca.vertsplit(bounded, ends), strict=True)
         return column(
-            change if ball is None else turn(part, change) - part
-            for (part, ball), change in changes
+            change if spherical is None else turn(part, change) - part
+            for (part, spherical), change in changes
         ), relative
 
 
