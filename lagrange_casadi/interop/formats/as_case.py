@@ -21,7 +21,7 @@ from .motion_texts import Motions
 from .places import Places
 from .posture import about_z, opened
 from .python_text import Call, comment, direction, of_pi, safe, short, signed, text_of, vector
-from .record import GROUND, MOVES, Body, Coupling, Joint, Model, Spring, Tie
+from .record import GROUND, MOVES, Body, Coupling, Joint, Model, Spring
 
 _FRAME = '''
 
@@ -312,7 +312,7 @@ class CaseText:
         self.call("return Scene", "m", "laws", *end)
 
 
-def _tie_lines(places: Places, tie: Tie) -> Iterator[str]:
+def _tie_lines(places: Places, tie: Joint) -> Iterator[str]:
     """Yield the lines that declare a tie."""
     near, far = places.model.frames(tie)
     for names, body, frame in (("p, x, y, z", tie.parent, near), ("q, u, v, w", tie.child, far)):
@@ -348,7 +348,7 @@ def _turn(name: str, counted: str, start: float, x: str, y: str, along: str) -> 
     return Call(f"{name} = turned", arguments).lines()
 
 
-def _turns_about(places: Places, tie: Tie, body: str, sign: float) -> str:
+def _turns_about(places: Places, tie: Joint, body: str, sign: float) -> str:
     """Return by how much a body of a tie has turned about z of its first frame, as a term with a
     sign: the coordinate of the joint on which it turns, of both on the same body.
     """

@@ -15,7 +15,7 @@ import numpy as np
 from ...base.arrays import Array
 from .file_elements import Element
 from .file_frames import Frame
-from .record import GROUND, Body, Joint, Law, Model, Row, Tie
+from .record import GROUND, Body, Joint, Law, Model, Row
 
 KINDS: dict[str, str] = {
     "RevoluteJoint": "revolute",
@@ -217,7 +217,7 @@ class _Reader:
                 value = model.number(where, value / radius, "ratio of radii")
             if kind == "AngleJoint" and abs(math.sin(value)) < 1e-9:
                 _, rows = TIES["ParallelAxesJoint"]  # the slope of the angle's cosine is zero
-            name = model.add(Tie, stated, where, *bodies, near, far, rows(value))
+            name = model.add(Joint, stated, where, "", *bodies, near, far, rows=rows(value))
         self.named[f"{self.path}/{line.attribute('Name')}"] = name
 
     def motion(self, line: _Line) -> None:

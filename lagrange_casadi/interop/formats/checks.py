@@ -10,7 +10,7 @@ import numpy as np
 from ...base.arrays import Array
 from .file_frames import Frame
 from .posture import EXACT, SLACK, apart, assemble, extent, hang, outward
-from .record import GROUND, Body, Model, Tie
+from .record import GROUND, Body, Model
 
 SHORTEST_ROD = 1e-9
 """The length of a rod, at least, of its mechanism's size: places are as exact as doubles are."""
@@ -109,7 +109,7 @@ def _connected(model: Model) -> None:
     """
     reached = {GROUND}
     for one in outward(model.closures, reached):  # a tie comes where no joint can follow
-        for free in {one.parent, one.child} - reached if isinstance(one, Tie) else ():
+        for free in {one.parent, one.child} - reached if one.rows else ():
             model.attach(free, GROUND, "free", one.where)
     for body in model.bodies.values():
         if body.name not in reached:

@@ -8,16 +8,14 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from heapq import heapify, heappop, heappush
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
 from ...base.arrays import Array
 from .file_frames import Frame, turned
-from .record import GROUND, MOVES, Joint, Model, Row, Tie
+from .record import GROUND, MOVES, Joint, Model, Row
 from .separate_systems import Rows, blocks
-
-Closure = TypeVar("Closure", bound=Joint | Tie)
 
 SLACK = 1e-6
 """Frames of a joint that are apart by less, of the mechanism's size and in rad, are one."""
@@ -50,7 +48,7 @@ def extent(model: Model) -> float:
     return float(np.max(np.ptp(np.array(places), axis=0))) or 1.0 if places else 1.0
 
 
-def outward(closures: Sequence[Closure], reached: set[str]) -> Iterator[Closure]:
+def outward(closures: Sequence[Joint], reached: set[str]) -> Iterator[Joint]:
     """Yield the joints and ties that hang on bodies, each after one that reaches it, the first one
     of those that can follow; add what is reached.
     """
@@ -119,7 +117,7 @@ def at_reference(model: Model, name: str, size: float) -> float:
     return 0.0 if abs(found) < EXACT * max(size, 1.0) else found
 
 
-def _relative(model: Model, joint: Joint | Tie) -> Frame:
+def _relative(model: Model, joint: Joint) -> Frame:
     """Return where the child's frame is on the parent's."""
     near, far = model.frames(joint)
     return near.relative(far)
@@ -156,9 +154,9 @@ def _closest(model: Model, joint: Joint) -> Frame:
     return Frame(place, turned([0.0, 0.0, angle]))
 
 
-def apart(model: Model, joint: Joint | Tie) -> tuple[float, float]:
+def apart(model: Model, joint: Joint) -> tuple[float, float]:
     """Return by how much the frames of a joint miss what it holds: in m, and in rad."""
-    if isinstance(joint, Tie):
+    if joint.rows:
         return _untied(model, joint)
     known, turns = _relative(model, joint), len(_turns(joint.kind))
     gap = math.hypot(*known.place[_held(joint.kind)].tolist())
@@ -178,7 +176,7 @@ def apart(model: Model, joint: Joint | Tie) -> tuple[float, float]:
     return gap, math.atan2(tilt, float(known.axes[2, 2])) if turns == 1 else 0.0
 
 
-def _untied(model: Model, tie: Tie) -> tuple[float, float]:
+def _untied(model: Model, tie: Joint) -> tuple[float, float]:
     """Return by how much the frames of a tie miss its rows: in m, and in rad."""
     rows, lengths, angles = _rows(tie), [0.0], [0.0]
     for row, value in zip(rows, closing(model, tie, rows, 1.0)[0].tolist(), strict=True):
@@ -225,9 +223,7 @@ def hang(model: Model) -> None:
         )
 
 
-def closing(
-    model: Model, joint: Joint | Tie, rows: Sequence[Row], size: float
-) -> tuple[Array, Array]:
+def closing(model: Model, joint: Joint, rows: Sequence[Row], size: float) -> tuple[Array, Array]:
     """Return the values of rows, and their slopes by the velocity of the child against the parent,
     by complex steps: that of the point at the ground's origin over a size [m], and the angular one.
     """
@@ -254,9 +250,9 @@ def _angle(direction: Array) -> complex:
     return complex(0.0, float((x.real * y.imag - y.real * x.imag) / (x.real**2 + y.real**2)))
 
 
-def _rows(joint: Joint | Tie) -> list[Row]:
+def _rows(joint: Joint) -> list[Row]:
     """Return the rows that a joint holds; those that count turns hold in any posture."""
-    if isinstance(joint, Tie):
+    if joint.rows:
         return [row for row in joint.rows if row.kind not in ("slide and turn", "wheels")]
     held = [Row("slide", i) for i in _held(joint.kind)]
     return held + [Row("cosine", i, j) for i, j in _COSINES[len(_turns(joint.kind))]]

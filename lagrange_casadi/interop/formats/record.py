@@ -105,7 +105,8 @@ class Joint:
     The frames coincide where its coordinates are zero. It turns about z and slides along z of the
     parent's frame; a planar joint's normal is z and its slides are along x and y; of a free and a
     spherical joint slides and turns are along and about x, y, z; of a universal joint the axes are
-    z of the parent's frame and z of the child's. ``lead`` [m] is a screw's.
+    z of the parent's frame and z of the child's. ``lead`` [m] is a screw's. A tie, a closure
+    that no joint of the table is, has no kind, but ``rows`` between the two frames.
     """
 
     name: str
@@ -115,6 +116,7 @@ class Joint:
     on_parent: Frame
     on_child: Frame
     lead: float = 0.0
+    rows: tuple[Row, ...] = ()
     where: str = ""
 
     @property
@@ -177,19 +179,6 @@ class Row:
 
 
 @dataclass(frozen=True, eq=False)
-class Tie:
-    """A closure that no joint of the table is: rows between two frames."""
-
-    name: str
-    parent: str
-    child: str
-    on_parent: Frame
-    on_child: Frame
-    rows: tuple[Row, ...]
-    where: str = ""
-
-
-@dataclass(frozen=True, eq=False)
 class Law:
     """The motion of a coordinate as the text of an expression of ``t`` [s], or samples."""
 
@@ -198,7 +187,7 @@ class Law:
     where: str = ""
 
 
-Part = Body | Joint | Coupling | Tie
+Part = Body | Joint | Coupling
 
 
 @dataclass(eq=False)
@@ -223,7 +212,7 @@ class Model:
     bodies: dict[str, Body] = field(default_factory=dict)
     joints: dict[str, Joint] = field(default_factory=dict)
     couplings: dict[str, Coupling] = field(default_factory=dict)
-    ties: dict[str, Tie] = field(default_factory=dict)
+    ties: dict[str, Joint] = field(default_factory=dict)
     springs: list[Spring] = field(default_factory=list)
     motors: dict[str, dict[str, float]] = field(default_factory=dict)
     spots: dict[str, tuple[str, Frame]] = field(default_factory=dict)
@@ -249,7 +238,7 @@ class Model:
         return name == GROUND or any(name in one for one in parts)
 
     @property
-    def closures(self) -> list[Joint | Tie]:
+    def closures(self) -> list[Joint]:
         """Joints and ties."""
         return [*self.joints.values(), *self.ties.values()]
 
@@ -313,25 +302,12 @@ class Model:
         return name
 
     def add(self, part: type[Part], stated: str, where: str, *given: Any, **more: Any) -> str:
-        """Add a body, joint, coupling or tie under its name of the file; return its name here."""
+        """Add a body, a joint or a coupling under its name of the file; return its name here."""
+        joints = self.ties if "rows" in more else self.joints
         parts: dict[type[Part], dict[str, Any]] = {Body: self.bodies, Coupling: self.couplings}
-        parts |= {Joint: self.joints, Tie: self.ties}
-        name = self.name_of("joint" if part is Tie else part.__name__.lower(), stated, where)
-        parts[part][name] = replace(part(name, *given), where=where, **more)
+        name = self.name_of(part.__name__.lower(), stated, where)
+        parts.get(part, joints)[name] = replace(part(name, *given), where=where, **more)
         return name
-
-    def find(self, kind: str, stated: str, where: str) -> str:
-        """Return the name here of a part that the file names."""
-        if (kind, stated) not in self.named:
-            self.known(where, kind, stated, [name for of, name in self.named if of == kind])
-        return self.named[kind, stated]
-
-    def couple(
-        self, stated: str, where: str, joints: Sequence[str], ratio: float, offset: float = 0.0
-    ) -> None:
-        """Add a coupling of two joints that the file names."""
-        first, second = (self.find("joint", one, where) for one in joints)
-        self.add(Coupling, stated, where, first, second, ratio, offset)
 
     def moving(self, stated: str) -> str:
         """Return the name here of a joint of the file that moves; empty for any other one."""
@@ -343,8 +319,8 @@ class Model:
         where there is none.
         """
         name, words = self.moving(stated), f"Joint {shown(stated)} follows {shown(leader)}, which"
-        if name and self.moving(leader):
-            self.couple(f"{stated}_mimic", where, (leader, stated), ratio, offset)
+        if name and (first := self.moving(leader)):
+            self.add(Coupling, f"{stated}_mimic", where, first, name, ratio, offset)
         elif name and ("joint", leader) in self.named:
             self.motions[name] = Law(repr(offset), where=where)
             self.notes.append(f"{words} is fixed: it is held at {offset:g}.")
@@ -419,7 +395,7 @@ class Model:
         """Return where a body is in the reference posture."""
         return Frame() if body == GROUND else self.bodies[body].frame
 
-    def frames(self, joint: Joint | Tie) -> tuple[Frame, Frame]:
+    def frames(self, joint: Joint) -> tuple[Frame, Frame]:
         """Return the two frames of a joint in the reference posture, on the ground."""
         parent, child = self.frame_of(joint.parent), self.frame_of(joint.child)
         return parent.then(joint.on_parent), child.then(joint.on_child)

@@ -17,7 +17,7 @@ from ...base.brief import listed
 from ...errors import shown
 from .file_elements import Element, note_unread, parsed, six_moments
 from .file_frames import Frame
-from .record import GROUND, Body, Joint, Model
+from .record import GROUND, Body, Coupling, Joint, Model
 from .sdf import Joints, limit, resist
 
 KINDS: dict[str, str] = {
@@ -167,9 +167,9 @@ class _Robot:
                 raise line.refuse(f"link {shown(link)} has no joint")
         if len({self.end(above[link], _ONE)[0] for link in links}) > 1:
             raise line.refuse("is supported only if both its links have the same parent")
-        joints = [above[link].attribute("name") for link in links]
+        joints = [self.model.named["joint", above[link].attribute("name")] for link in links]
         ratio = line.needed("ratio").amount("value", what="ratio")
-        self.model.couple(line.attribute("name"), line.where, joints, ratio)
+        self.model.add(Coupling, line.attribute("name"), line.where, *joints, ratio)
 
     def gazebo(self) -> None:
         """Read what Gazebo adds: joints of SDF, and which links have no weight."""
