@@ -69,7 +69,6 @@ class CaseText:
         self.places = Places(model, self.open, NAMES)
         self.variables = self.places.variables
         self.lines: list[str] = []
-        self.loaded: set[str] = set()
         turned = [*self.open, *(one.joint for one in model.springs if one.stiffness)]
         ends = (model.joints.get(name) or model.ties[name] for name in turned)
         self.turned = {name for one in ends for name in (one.parent, one.child)}
@@ -238,13 +237,13 @@ class CaseText:
             losses += [f"coulomb={text_of(one.friction)}", _SMOOTH] if one.friction else []
             if losses:
                 word = "friction" if one.friction else "damping"
-                name = json.dumps(self.load(f"{one.joint}_{word}"))
+                name = json.dumps(self.places.own(f"{one.joint}_{word}"))
                 self.call("m.friction", name, joint, *losses)
             if one.stiffness and self.model.joints[one.joint].kind == "prismatic":
                 self.pull(one, f"m.coordinate({joint}){signed(rest - one.rest)}")
             elif one.stiffness:
                 law = f"stiffness={text_of(one.stiffness)}", f"angle={of_pi(one.rest - rest)}"
-                name = json.dumps(self.load(f"{one.joint}_spring"))
+                name = json.dumps(self.places.own(f"{one.joint}_spring"))
                 self.call("m.torsion_spring", name, joint, *law)
         for body in self.model.bodies.values():
             lift = (body.weight - 1.0) * self.model.gravity
@@ -256,13 +255,15 @@ class CaseText:
                     for key, one in zip("xyz", lift.tolist(), strict=True)
                     if one
                 ]
-                self.call("m.force", json.dumps(self.load(f"{body.name}_lift")), point, *force)
+                self.call(
+                    "m.force", json.dumps(self.places.own(f"{body.name}_lift")), point, *force
+                )
 
     def drives(self) -> None:
         """Declare what is known of drives, and name frames without mass."""
         for joint, numbers in self.model.motors.items():
             given = [f"{word}={text_of(number)}" for word, number in numbers.items()]
-            name = json.dumps(self.load(f"{joint}_drive"))
+            name = json.dumps(self.places.own(f"{joint}_drive"))
             self.call("m.drive", name, self.variables[f"joint {joint}"], *given)
         for stated, (body, frame) in self.model.spots.items():
             point = self.places.point(body, self.model.frame_of(body).then(frame).place)
@@ -281,16 +282,9 @@ class CaseText:
                 along = short(self.places.link_axes(body).T @ near.axes[:, 2], 1.0)
                 parts = zip("xyz", along.tolist(), strict=True)
                 force = [f"{axis}={text_of(part)} * {sign}{pull}" for axis, part in parts if part]
-                name = json.dumps(self.load(f"{one.joint}_spring_{body}"))
+                name = json.dumps(self.places.own(f"{one.joint}_spring_{body}"))
                 point = self.places.point(body, near.place)
                 self.call("m.force", name, point, *force, "turning=True")
-
-    def load(self, wanted: str) -> str:
-        """Return a name for a load, which no part and no other load has."""
-        while wanted in self.loaded or self.model.taken(wanted):
-            wanted = f"{wanted}_"
-        self.loaded.add(wanted)
-        return wanted
 
     def end(self) -> None:
         """End with the motion of each drive."""

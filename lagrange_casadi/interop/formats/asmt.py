@@ -93,7 +93,7 @@ class _Line(Element):
 
     def frame(self) -> Frame:
         """Return the place and axes below it."""
-        place, rows = self.triple("Position3D"), self.needed("RotationMatrix")
+        place, rows = self.numbers("Position3D"), self.needed("RotationMatrix")
         axes = [self.model.numbers(rows.where, one.name, "axes") for one in rows.inside]
         if len(axes) != 3:
             raise rows.refuse("expected three rows")
@@ -141,7 +141,7 @@ class _Reader:
     def read(self) -> None:
         """Read the assembly."""
         model, root = self.model, self.root
-        model.drawn, model.gravity = True, root.triple("ConstantGravity")
+        model.drawn, model.gravity = True, root.numbers("ConstantGravity")
         model.name = model.name_of("mechanism", self.path[1:], root.where)
         if not np.allclose(root.frame().axes, np.eye(3)) or any(root.frame().place):
             model.notes.append(
@@ -179,7 +179,7 @@ class _Reader:
         """Read a body."""
         stated, mass = line.attribute("Name"), line.needed("PrincipalMassMarker")
         centre, heavy = mass.frame(), mass.amount("Mass")
-        inertia = centre.tensor(np.diag(mass.triple("MomentOfInertias")))
+        inertia = centre.tensor(np.diag(mass.numbers("MomentOfInertias")))
         given, path = (heavy, centre.place, inertia, line.frame()), f"{self.path}/{stated}"
         name = self.model.add(Body, stated, line.at(), *given)
         self.markers[f"{path}/MassMarker"] = (name, centre)

@@ -128,13 +128,13 @@ class Element:
             self.usual(what or name, f"{usual:g}")
         return self.model.number(self.at(name), given, what or name)
 
-    def triple(self, name: str, usual: object = None, what: str = "") -> Array:
-        """Return three numbers in an attribute; ``usual`` if there is no such attribute."""
-        return self.model.numbers(self.at(name), self.stated(name, usual), what or name)
+    def numbers(self, name: str, usual: object = None, what: str = "", count: int = 3) -> Array:
+        """Return so many numbers in an attribute; ``usual`` if there is no such attribute."""
+        return self.model.numbers(self.at(name), self.stated(name, usual), what or name, count)
 
     def direction(self, name: str, what: str = "") -> Array:
         """Return three numbers in an attribute that are a direction."""
-        return self.model.direction(self.at(name), self.triple(name, what=what))
+        return self.model.direction(self.at(name), self.numbers(name, what=what))
 
     def choice(self, name: str, valid: Mapping[str, str]) -> str:
         """Return what a word in an attribute means."""
@@ -167,10 +167,6 @@ class Element:
                 yield from one.left(f"{path}/{one.name}".lstrip("/"))
             else:
                 yield path, one.name, one.part or f"line {one.line}"
-
-    def numbers(self, what: str, count: int) -> Array:
-        """Return so many numbers of its text."""
-        return self.model.numbers(self.where, self.text, what, count)
 
     def by_name(self, *names: str) -> dict[str, Self]:
         """Return the elements in it of these names, by their attribute name."""

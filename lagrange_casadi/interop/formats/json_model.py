@@ -83,7 +83,7 @@ class _Object(Element):
     def frame(self, key: str = "") -> Frame:
         """Return a frame in it: its place, and either its three axes, or the direction of z."""
         one = self.table(key, FRAME) if key else self
-        place = one.triple("place", (0.0, 0.0, 0.0))
+        place = one.numbers("place", (0.0, 0.0, 0.0))
         if "axes" in one.given:
             rows = one.rows("axes", 3, "three unit vectors, those of x, y and z")
             return Frame(place, one.model.rotation(one.at("axes"), rows.T))
@@ -120,7 +120,7 @@ def read(model: Model, text: str) -> None:
     if data.get("units", "SI") != "SI":
         raise model.refuse("units", f'expected "SI", got {shown(data["units"])}')
     model.name = model.name_of("mechanism", top.word("name", model.name), top.at("name"))
-    model.gravity = top.triple("gravity", model.gravity.tolist())
+    model.gravity = top.numbers("gravity", model.gravity.tolist())
     for one in top.objects("bodies", BODY, "name", "mass"):
         _body(one)
     for one in top.objects("joints", JOINT, "name", "kind", "parent", "child"):
@@ -183,9 +183,9 @@ def _body(one: _Object) -> None:
     name, mass, given = one.word("name"), one.amount("mass"), one.given.get("inertia")
     if name == GROUND:
         raise one.refuse("body 'ground': the name is taken")
-    centre, frame, inertia, rod = one.triple("centre", (0.0, 0.0, 0.0)), one.frame(), None, None
+    centre, frame, inertia, rod = one.numbers("centre", (0.0, 0.0, 0.0)), one.frame(), None, None
     places = one.table("places")
-    named = {place: places.triple(place, what="place") for place in places.given}
+    named = {place: places.numbers(place, what="place") for place in places.given}
     if "rod" in one.given:
         start, end = one.rows("rod", 2, "two places")
         body = Body.slender(name, mass, (start, end))
@@ -196,7 +196,7 @@ def _body(one: _Object) -> None:
         if not np.allclose(inertia, inertia.T, rtol=1e-9, atol=0.0):
             raise one.model.refuse(one.at("inertia"), f"expected {expected}")
     elif given is not None:
-        inertia = np.diag(one.triple("inertia"))
+        inertia = np.diag(one.numbers("inertia"))
     if not isinstance(point := one.given.get("point", False), bool):
         raise one.model.refuse(one.at("point"), f"expected true or false, got {shown(point)}")
     one.model.add(Body, name, one.where, mass, centre, inertia, frame, named, rod, point)

@@ -128,10 +128,6 @@ class Motions:
         """Return what a coordinate of the file is where that of the case is zero."""
         if coordinate.partition(":")[0] in self.opened:
             return 0.0
-        return self.at_reference(coordinate)
-
-    def at_reference(self, coordinate: str) -> float:
-        """Return a coordinate in the reference posture."""
         return at_reference(self.model, coordinate, self.size)
 
     def law(self, coordinate: str, law: Law) -> Call:
@@ -155,7 +151,9 @@ class Motions:
         """
         joint = self.model.joints[name]
         turns = [one for one in joint.coordinates if ":turn_" in one]
-        if len(turns) < 3 or not any(map(self.at_reference, turns[:-1])):
+        if len(turns) < 3 or not any(
+            at_reference(self.model, one, self.size) for one in turns[:-1]
+        ):
             return False
         given = {one: law for one in turns if (law := self.model.motions.get(one))}
         if all(str(self.law(one, law)) == "polynomial(0.0)" for one, law in given.items()):

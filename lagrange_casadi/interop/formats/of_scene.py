@@ -5,14 +5,14 @@ first instant.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 
 import casadi as ca
 import numpy as np
 
 from ...base.arrays import Array
-from ...base.interpret import Arithmetic, interpret
+from ...base.interpret import INFIX, Arithmetic, interpret
 from ...errors import DeclarationError
 from ...model.description import BodyNumbers, JointNumbers
 from ...model.scene import Scene
@@ -26,21 +26,18 @@ SAMPLES = 1001
 """Instants of a motion that has no expression, as one from measured points."""
 
 
-def _infix(sign: str) -> Callable[[str, str], str]:
-    return lambda x, y: f"({x} {sign} {y})"
-
-
-def _call(name: str) -> Callable[[str], str]:
-    return lambda x: f"{name}({x})"
-
+_SHORTER = {
+    **dict.fromkeys((ca.OP_POW, ca.OP_CONSTPOW), "{0} ^ {1}"),
+    ca.OP_SQ: "{0} ^ 2",
+    ca.OP_TWICE: "2 * {0}",
+    ca.OP_INV: "1 / {0}",
+}
+"""Operations that a law writes by its own signs."""
 
 _TEXT = Arithmetic(
     repr,
-    {ca.OP_ADD: _infix("+"), ca.OP_SUB: _infix("-"), ca.OP_MUL: _infix("*")}
-    | {ca.OP_DIV: _infix("/"), ca.OP_POW: _infix("^"), ca.OP_CONSTPOW: _infix("^")}
-    | {ca.OP_NEG: lambda x: f"(-{x})", ca.OP_SQ: lambda x: f"({x} ^ 2)"}
-    | {ca.OP_TWICE: lambda x: f"(2 * {x})", ca.OP_INV: lambda x: f"(1 / {x})"}
-    | {getattr(ca, f"OP_{name.upper()}"): _call(name) for name in ONE_NUMBER},
+    {code: f"({words})".format for code, words in (INFIX | _SHORTER).items()}
+    | {getattr(ca, f"OP_{name.upper()}"): f"{name}({{}})".format for name in ONE_NUMBER},
 )
 """Graphs as texts."""
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 import keyword
 import math
 import re
-from collections import Counter
 from collections.abc import Collection, Iterator
 
 import numpy as np
@@ -39,8 +38,7 @@ class Places:
             for name, body in model.bodies.items()
         }
         self.named: dict[Place, str] = {}
-        self._masses: dict[float, str] = {}
-        self._loaded: dict[str, str] = {}
+        self._masses: dict[str, str] = {}
         self.mu = ""
 
     def _ends(self, body: Body, mine: list[Joint]) -> tuple[Place, Place]:
@@ -64,17 +62,18 @@ class Places:
 
     def parameters(self) -> Iterator[str]:
         """Yield lines that declare masses that several bodies have, and those of payloads."""
-        own = [one for one in self.model.bodies.values() if one.name not in self.model.payloads]
-        masses = Counter(body.mass for body in own if body.mass > 0.0)
-        first = {body.mass: body.name for body in reversed(own)}
-        for mass in (mass for mass, count in masses.items() if count > 1):
-            name = self._masses[mass] = self._parameter(f"mass_{first[mass]}")
-            yield f'{name} = m.parameter("{name}", {text_of(mass)}, "kg", low=0.0)'
-        for body in map(self.model.bodies.__getitem__, self.model.payloads):
-            name = self._loaded[body.name] = self._parameter(f"mass_{body.name}")
-            yield f'{name} = m.parameter("{name}", {text_of(body.mass)}, "kg", low=0.0)'
+        alike: dict[str | float, list[str]] = {}
+        for body in self.model.bodies.values():
+            alike.setdefault(
+                body.name if body.name in self.model.payloads else body.mass, []
+            ).append(body.name)
+        for of, bodies in alike.items():
+            if of in self.model.payloads or (of and len(bodies) > 1):
+                name, mass = self.own(f"mass_{bodies[0]}"), self.model.bodies[bodies[0]].mass
+                self._masses |= dict.fromkeys(bodies, name)
+                yield f'{name} = m.parameter("{name}", {text_of(mass)}, "kg", low=0.0)'
         if self.model.contacts:
-            self.mu = self._parameter("friction")
+            self.mu = self.own("friction")
             yield f'{self.mu} = m.parameter("{self.mu}", 0.6, low=0.0)'
         for joint, place in self.at.items():
             if place not in self.named and any(place):
@@ -82,12 +81,12 @@ class Places:
 
     def mass(self, body: Body) -> str:
         """Return a body's mass, as a parameter where it is one."""
-        return self._loaded.get(body.name) or self._masses.get(body.mass) or text_of(body.mass)
+        return self._masses.get(body.name) or text_of(body.mass)
 
-    def _parameter(self, wanted: str) -> str:
-        """Return a name for a parameter, which no part may have."""
+    def own(self, wanted: str) -> str:
+        """Return a name for a parameter or a load of the case, which no part may have."""
         name = self.variable(wanted)
-        return self._parameter(f"{name}_") if self.model.taken(name) else name
+        return self.own(f"{name}_") if self.model.taken(name) else name
 
     def variable(self, wanted: str) -> str:
         """Return a name for a variable that none has yet."""

@@ -46,7 +46,7 @@ def read(model: Model, text: str) -> None:
     line.seen, model.gravity = True, np.array([0.0, 0.0, -9.8])  # of a world that gives none
     for one in (world.first("physics"), world):
         if one is not None and (given := one.first("gravity")) is not None:
-            model.gravity = given.numbers("gravity", 3)
+            model.gravity = given.numbers("", "", "gravity")
     model.name = model.name_of("mechanism", line.attribute("name"), line.where)
     # Axes are on the frame of the model until 1.4, and on that of the joint since.
     on_model = root.stated("version", "1.7") in ("1.0", "1.2", "1.3", "1.4")
@@ -152,7 +152,7 @@ class Joints:
         data = line.optional(key)
         xyz, given, on = data.optional("xyz"), np.array([0.0, 0.0, 1.0]), frame
         if xyz.text:
-            given = xyz.numbers("xyz", 3)
+            given = xyz.numbers("", "", "xyz")
         else:
             line.usual(key, "0 0 1")
         if expressed := str(xyz.stated("expressed_in", "")):
@@ -259,6 +259,6 @@ def _pose(line: Element | None) -> Frame:
         return Frame()
     if line.stated("rotation_format", "euler_rpy") != "euler_rpy":
         raise line.refuse("rotation_format: expected euler_rpy")
-    six = line.numbers("pose", 6)
+    six = line.numbers("", "", "pose", 6)
     angles = np.radians(six[3:]) if line.switch("degrees", False) else six[3:]
     return Frame.posed(six[:3], angles)

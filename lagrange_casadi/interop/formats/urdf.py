@@ -154,7 +154,7 @@ class _Robot:
         sides = []
         for letter, point in (("A", "p_AP"), ("B", "p_BQ")):
             body = line.needed(f"drake:ball_constraint_body_{letter}")
-            at = line.needed(f"drake:ball_constraint_{point}").triple("value", what=point)
+            at = line.needed(f"drake:ball_constraint_{point}").numbers("value", what=point)
             sides.append((body.known("link", body.attribute("name"), self.links), Frame(at)))
         line.given.setdefault("name", f"ball_{len(self.model.joints)}")
         self.add(line, "spherical", sides[0], sides[1])
@@ -234,7 +234,7 @@ class _Robot:
 
     def origin(self, line: Element) -> Frame:
         """Return the frame that ``xyz`` and ``rpy`` of an element give."""
-        return Frame.posed(line.triple("xyz", "0 0 0"), line.triple("rpy", "0 0 0"))
+        return Frame.posed(line.numbers("xyz", "0 0 0"), line.numbers("rpy", "0 0 0"))
 
     def end(self, line: Element, names: tuple[str, ...]) -> tuple[str, Element]:
         """Return one link of a joint or a loop, and the element that names it."""

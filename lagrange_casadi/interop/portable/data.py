@@ -8,10 +8,8 @@ from importlib import resources
 
 import numpy as np
 
-from ...base.arrays import Array
 from ...base.lookups import lookup
 from ...base.vocabulary import Precision
-from ...engine.codegen.printer import Format
 from ...errors import SizeError
 from .exported_program import ExportedProgram
 
@@ -68,12 +66,13 @@ def table_text(exported: ExportedProgram) -> str:
     text = re.sub(r"\breal\b", "casadi_real", text)
     if exported.precision == "single":
         text = text.replace("floor(", "floorf(")
-    number = exported.number
     layout = cycle.layout
-    text += _constants("cell", cycle.cell.astype(float), number)
-    text += _constants("slopes", cycle.slopes.astype(float), number)
-    text += _constants("coefficients", cycle.coefficients.astype(float).ravel(), number)
-    text += _integers("order", layout.order.ravel()) + _integers("runs", layout.runs.ravel())
+    reals = {"cell": cycle.cell, "slopes": cycle.slopes, "coefficients": cycle.coefficients}
+    for name, values in reals.items():
+        numbers = values.ravel().astype(float)
+        text += _array("casadi_real", name, map(exported.number, numbers))
+    for name, values in {"order": layout.order, "runs": layout.runs}.items():
+        text += _array("int", name, map(str, values.ravel().tolist()))
     return "\n" + text
 
 
@@ -94,15 +93,8 @@ def table_call(exported: ExportedProgram) -> Iterable[str]:
         yield f"y[{k}] = y[{k}] + {number(cycle.drift[k])}*(drive[0] - {phase});"
 
 
-def _constants(name: str, values: Array, number: Format) -> str:
-    return _array("casadi_real", name, [number(value) for value in values])
-
-
-def _integers(name: str, values: Iterable[int]) -> str:
-    return _array("int", name, [str(int(value)) for value in values])
-
-
-def _array(kind: str, name: str, words: list[str]) -> str:
+def _array(kind: str, name: str, numbers: Iterable[str]) -> str:
+    words = [*numbers]
     rows = (", ".join(words[i : i + _LINE]) for i in range(0, len(words), _LINE))
     body = ",\n  ".join(rows) if words else "0"
     return f"static const {kind} {name}[] = {{\n  {body}\n}};\n"

@@ -32,12 +32,6 @@ PREPARE = {
 }
 """Calls for new parameters: margins of what must not be negative, and what else they set."""
 
-MOTION = {
-    "law": Call(("at", "parameters"), ("d", "rate", "acceleration")),
-    "beyond": Call(("at", "parameters"), ("far",)),
-}
-"""Calls for a time: the motion of the drives, and how far it is beyond the ends of its curves."""
-
 INSTANT = {
     "count": Call(("moment", "parameters"), ("counted",)),
     "loops": Call(("z", "counted", "parameters"), ("correction", "size")),
@@ -49,19 +43,20 @@ its size is small: it corrects ``z``, from which the next instant starts. ``rule
 the first rule that is broken.
 """
 
-BETWEEN = {
+CALLS = {
+    **PREPARE,
+    "law": Call(("at", "parameters"), ("d", "rate", "acceleration")),
+    "beyond": Call(("at", "parameters"), ("far",)),
+    **INSTANT,
     "closing": Call(
         ("counted", "rate", "acceleration", "loops", "parameters"), ("squares", "rates", "slopes")
     ),
-}
-"""Call for a place between two instants: see :func:`.closing_of`."""
-
-SLOPES = {
     "slopes_of": Call(("time", "d", "rate", "acceleration", "loops", "parameters"), ("s",)),
 }
-"""Call for the derivatives of the outputs of an instant."""
-
-CALLS = PREPARE | MOTION | INSTANT | BETWEEN | SLOPES
+"""All calls. Of a time, ``law`` is the motion of the drives, ``beyond`` how far that is beyond the
+ends of its curves; ``closing`` is for a place between two instants, see :func:`.closing_of`, and
+``slopes_of`` are the derivatives of the outputs of an instant.
+"""
 
 MODEL = ("parameters", "constants", "matter", "loops")
 """Vectors that a model keeps between calls."""
