@@ -24,12 +24,16 @@ from ..portable.naming import distinct
 from ..portable.source import Source
 from ..portable.text import indented, template
 
-_STANDARD = codes("sqrt sin cos tan asin acos atan exp")
-_WRITTEN_HERE = codes("floor ceil atan2 fmod remainder copysign")
-_LIBRARY = {code: name.upper() for code, name in _STANDARD.items()}
-_LIBRARY |= {code: f"LC_{name.upper()}" for code, name in _WRITTEN_HERE.items()}
-_LIBRARY |= {ca.OP_FABS: "ABS", ca.OP_LOG: "LN", ca.OP_FMIN: "MIN", ca.OP_FMAX: "MAX"}
-_LIBRARY |= dict.fromkeys((ca.OP_POW, ca.OP_CONSTPOW), "EXPT")
+_LIBRARY = {
+    **codes("SQRT SIN COS TAN ASIN ACOS ATAN EXP"),
+    **dict.fromkeys((ca.OP_POW, ca.OP_CONSTPOW), "EXPT"),
+    ca.OP_FABS: "ABS",
+    ca.OP_LOG: "LN",
+    ca.OP_FMIN: "MIN",
+    ca.OP_FMAX: "MAX",
+}
+_WRITTEN_HERE = codes("FLOOR CEIL ATAN2 FMOD REMAINDER COPYSIGN")
+_LIBRARY |= {code: f"LC_{name}" for code, name in _WRITTEN_HERE.items()}
 _WRITTEN = {
     **INFIX,
     ca.OP_INV: "1.0 / {0}",

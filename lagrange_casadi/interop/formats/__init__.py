@@ -21,7 +21,7 @@ from ...model.scene import Scene
 from . import asmt, json_model, mjcf, sdf, urdf
 from .as_case import CaseText
 from .checks import checked
-from .missing_drives import driven
+from .missing_drives import drive
 from .of_scene import model_of
 from .record import Model
 from .standing import free, placed
@@ -115,7 +115,7 @@ def case_of(
     if isinstance(floating, str):
         free(model, floating)
     model = checked(model, accept_inertias=accept_inertias)
-    driven(placed(model, posture or {}, contacts))
+    drive(placed(model, posture or {}, contacts))
     return CaseText(model).text()
 
 

@@ -66,7 +66,6 @@ _GENERAL = ("rIJI1", "rIJI2", "rIJI3", "angIJJ1", "angIJJ2", "angIJJ3")
 """Properties with the laws of a general motion: of the place of marker J and of its three turns."""
 
 _HALF_TURNS = [np.diag(one) for one in ((1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1))]
-_MARKERS = ("MarkerI", "MarkerJ")
 _HEADS = ("freeCAD: 3D CAD with Motion Simulation  by  askoh.com", "OndselSolver")
 _DEEPEST = 40
 
@@ -160,10 +159,8 @@ class _Reader:
                 motion.ignore()
             else:
                 self.motion(motion)
-        for name in ("Limits", "GeneralConstraintSets"):
-            for one in sets.below(name):
-                one.ignore()
-        for one in root.below("ForceTorques"):
+        ignored = [*sets.below("Limits"), *sets.below("GeneralConstraintSets")]
+        for one in (*ignored, *root.below("ForceTorques")):
             one.ignore()
         self.times()
 
@@ -187,7 +184,8 @@ class _Reader:
 
     def ends(self, line: _Line) -> tuple[tuple[str, str], tuple[Frame, Frame]]:
         """Return the bodies and the frames of the two markers that a line names."""
-        names = [line.known("marker", line.attribute(key), self.markers) for key in _MARKERS]
+        stated = (line.attribute(key) for key in ("MarkerI", "MarkerJ"))
+        names = [line.known("marker", one, self.markers) for one in stated]
         (parent, near), (child, far) = (self.markers[name] for name in names)
         return (parent, child), (near, far)
 

@@ -18,8 +18,8 @@ RANK = 1e-6
 REST = "The file gives no motion of {}: here it rests. Write how it moves among the laws."
 
 
-def driven(model: Model) -> Model:
-    """Return a model in which as many coordinates have a motion as it has degrees of freedom.
+def drive(model: Model) -> None:
+    """Give as many coordinates of a model a motion as it has degrees of freedom.
 
     Those of the file have theirs; others are taken in the order of joints, and rest where they are.
     Raises :class:`.ModelFileError` for loops too large to find what moves in them.
@@ -54,7 +54,6 @@ def driven(model: Model) -> Model:
     for name in resting:
         start = model.posture.get(name, at_reference(model, name, size))
         model.motions[name] = Law(repr(float(start) + 0.0))
-    return model
 
 
 def _basis(rows: Array, rank: int) -> list[int]:

@@ -13,11 +13,10 @@ from .posture import at_reference, extent
 from .python_text import Call, of_pi, signed, vector
 from .record import LARGEST, Law, Model, number
 
-_TURNS = ("sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh")
-ONE_NUMBER = (*_TURNS, "exp", "log", "sqrt", "fabs")
+ONE_NUMBER = "sin cos tan asin acos atan sinh cosh tanh exp log sqrt fabs"
 """Functions of one number that a law may have; CasADi's and Python's are called the same."""
 
-_FUNCTIONS = {name: name for name in (*ONE_NUMBER, "atan2")}
+_FUNCTIONS = {name: name for name in f"{ONE_NUMBER} atan2".split()}
 _NAMES = ", ".join(_FUNCTIONS)
 _FUNCTIONS |= {"abs": "fabs", "arcsin": "asin", "arccos": "acos", "arctan": "atan", "ln": "log"}
 _VALUES = {"t": "t", "time": "t", "pi": "pi"}

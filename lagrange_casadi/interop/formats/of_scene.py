@@ -12,7 +12,7 @@ import casadi as ca
 import numpy as np
 
 from ...base.arrays import Array
-from ...base.interpret import INFIX, Arithmetic, interpret
+from ...base.interpret import INFIX, Arithmetic, codes, interpret
 from ...errors import DeclarationError
 from ...model.description import BodyNumbers, JointNumbers
 from ...model.scene import Scene
@@ -37,7 +37,7 @@ _SHORTER = {
 _TEXT = Arithmetic(
     repr,
     {code: f"({words})".format for code, words in (INFIX | _SHORTER).items()}
-    | {getattr(ca, f"OP_{name.upper()}"): f"{name}({{}})".format for name in ONE_NUMBER},
+    | {code: f"{name}({{}})".format for code, name in codes(ONE_NUMBER).items()},
 )
 """Graphs as texts."""
 

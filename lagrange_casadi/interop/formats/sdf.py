@@ -119,7 +119,7 @@ class Joints:
                 losses = axis.optional("dynamics")
                 resist(model, name, losses, losses.inner, first=key == "axis")
                 bounds = axis.optional("limit")
-                limit(model, name, bounds, bounds.inner, ("effort", "velocity"))
+                limit(model, name, bounds, bounds.inner)
 
     def couplings(self, line: Element, on: dict[str, list[str]]) -> None:
         """Declare what ties a joint to another one, a mimic or a gearbox, by the joints on each
@@ -239,17 +239,11 @@ def resist(
         model.springs.append(Spring(joint, *found))
 
 
-def limit(
-    model: Model,
-    joint: str,
-    line: Element,
-    number: Callable[[str, float], float],
-    names: tuple[str, str],
-) -> None:
+def limit(model: Model, joint: str, line: Element, number: Callable[[str, float], float]) -> None:
     """Read the largest effort and speed of a joint; a number that is not positive is none."""
-    effort, speed = (max(number(name, 0.0), 0.0) for name in names)
+    effort, speed = (max(number(name, 0.0), 0.0) for name in ("effort", "velocity"))
     if not model.motor(joint, effort=effort, speed=speed):
-        for name in names:
+        for name in ("effort", "velocity"):
             line.leave(name)
 
 

@@ -119,7 +119,7 @@ class _Robot:
         if (losses := line.first("dynamics")) is not None:
             resist(self.model, name, losses, losses.amount, first=True)
         if (bounds := line.first("limit")) is not None:
-            limit(self.model, name, bounds, bounds.amount, ("effort", "velocity"))
+            limit(self.model, name, bounds, bounds.amount)
 
     def placed(self, link: str) -> Frame:
         """Return where a link is in the zero posture."""

@@ -116,11 +116,6 @@ class Contract(Brief):
         return self.precision == "single"
 
     @property
-    def real(self) -> str:
-        """The type of numbers."""
-        return "float" if self.precision == "single" else "double"
-
-    @property
     def words(self) -> dict[str, str]:
         """Words of every template: the prefix of names, and that of constants."""
         return {"p": self.prefix, "P": self.prefix.upper()}
@@ -131,11 +126,6 @@ class Contract(Brief):
         efforts = (m for m in self.outputs if m.source.startswith("effort:"))
         moved = next(m for m in self.inputs if m.source.startswith("motion:"))
         return moved, next(efforts, self.outputs[0])
-
-    @property
-    def units(self) -> set[str]:
-        """The units of the outputs."""
-        return {m.unit for m in self.outputs}
 
     @property
     def mapped(self) -> dict[str, str]:

@@ -60,7 +60,7 @@ def exported_slopes(
     values, largest = largest[:, :1], largest[:, 1:]
     off = _ROUNDING * largest
     over = np.divide(1.0, np.abs(p[numbers]), out=np.zeros(len(numbers)), where=p[numbers] != 0.0)
-    for unit in contract.units:
+    for unit in {one.unit for one in contract.outputs}:
         same = [k for k, member in enumerate(contract.outputs) if member.unit == unit]
         off[same] += _FAINT * (largest[same].max(axis=0) + values[same].max() * over)
     settings = tuple(setting for setting in contract.settings if setting.source in by)

@@ -46,7 +46,7 @@ def header(source: Source) -> str:
         ),
         precision=c.precision,
         stack=deepest(source.code),
-        real=c.real,
+        real="float" if c.rests else "double",
         statuses=",\n".join(
             f"  {words['P']}_{key} = {k} /* {text} */"
             for k, (key, text) in enumerate(STATUSES.items())

@@ -12,6 +12,8 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from importlib import resources
 
+import numpy as np
+
 from ...base.packages import check_installed
 from ...engine.codegen.compiler import Compiler, built
 from .contract import Contract, Member
@@ -118,13 +120,12 @@ def layout(source: Source) -> dict[str, int | str]:
 
 def places(source: Source) -> dict[str, int]:
     """Places of a model's members [bytes], and at ``end`` their sum."""
-    sizes = {"real": 8 if source.contract.precision == "double" else 4, "int": 4, "unsigned": 4}
-    found, at = {}, 0
-    for name, kind, count in source.model:
-        at = -(-at // sizes[kind]) * sizes[kind]
-        found[name] = at
-        at += sizes[kind] * count
-    return found | {"end": -(-at // 8) * 8}
+    kinds = {"real": "f4" if source.contract.rests else "f8", "int": "i4", "unsigned": "u4"}
+    members = [(name, kinds[kind], (count,)) for name, kind, count in source.model]
+    model = np.dtype(members, align=True)
+    return {name: at for name, (_, at, *_) in (model.fields or {}).items()} | {
+        "end": model.itemsize
+    }
 
 
 def wasm(source: Source) -> dict[str, bytes]:
