@@ -440,13 +440,17 @@ def test_a_joint_that_follows_a_fixed_one_is_held(file):
         assert evaluate(read(path), t=(0.0, 0.0, 1)).motion("r").value[0] == 0.2
 
 
-def test_joints_of_several_freedoms_and_a_screw(file):
-    """A universal joint on a nut, which a screw moves by its lead."""
+def on_screw():
+    """Joints of a nut on a screw, and of what a universal joint joins to it."""
     across = "<axis2><xyz>0 1 0</xyz></axis2></joint>"
     pitch = "<screw_thread_pitch>0.01</screw_thread_pitch></joint>"
     cardan = sdf_joint("cardan", "a", "b", "1 0 0", "universal").replace("</joint>", across)
-    screw = sdf_joint("screw", "world", "a", kind="screw").replace("</joint>", pitch)
-    path = file("sdf", sdf(*SHAFTS[:2], screw, cardan, world="<gravity>0 0 -9.81</gravity>"))
+    return sdf_joint("screw", "world", "a", kind="screw").replace("</joint>", pitch), cardan
+
+
+def test_joints_of_several_freedoms_and_a_screw(file):
+    """A universal joint on a nut, which a screw moves by its lead."""
+    path = file("sdf", sdf(*SHAFTS[:2], *on_screw(), world="<gravity>0 0 -9.81</gravity>"))
     laws = {name: harmonic(0.1, 0.2, 1.0) for name in ("screw", "cardan:turn_1", "cardan:turn_2")}
     m = SpatialMechanism("by_hand")
     told = {"length": 0.1, "mass": 1.5, "centre": (0, 0, 0), "inertia": (0.1, 0.1, 0.1)}
@@ -455,3 +459,10 @@ def test_joints_of_several_freedoms_and_a_screw(file):
     m.universal("cardan", nut, yoke, axis=(1, 0, 0), second=(0, 1, 0))
     expected = efforts(Scene(m, laws, t=(0.0, 1.0, 5)))
     assert_same(efforts(read(path), laws=laws, t=(0.0, 1.0, 5)), expected)
+
+
+def test_a_posture_is_of_joints_of_several_freedoms_and_a_screw_too(file):
+    foot = '<frame name="foot" attached_to="b"><pose relative_to="b">0 0 1 0 0 0</pose></frame>'
+    path = file("sdf", sdf(*SHAFTS[:2], *on_screw(), foot))
+    turns = dict.fromkeys(("screw", "cardan:turn_1", "cardan:turn_2"), "90 deg")
+    assert "at=(0.0, 1.0, 0.0025))" in case_of(path, posture=turns, contacts=["foot"])

@@ -105,8 +105,7 @@ def _fmpy() -> Any:
 
 
 def _compiler() -> Compiler:
-    found = find_compiler()
-    if found is None:
+    if (found := find_compiler()) is None:
         raise no_compiler("an FMU needs a C compiler", "c")
     return found
 

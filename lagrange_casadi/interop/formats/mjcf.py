@@ -190,10 +190,10 @@ class _Reader:
     def __init__(self, model: Model, found: dict[str, Any]) -> None:
         self.model, self.names, self.kinds = model, found["names"], found["kinds"]
         self.others, self.stated = found["others"], found["name"]
-        fields = {**found["fields"], "xpos": found["xpos"], "xmat": found["xmat"]}
+        fields = found["fields"]
         named = {name.replace(".", "_"): np.array(values) for name, values in fields.items()}
         self.m = SimpleNamespace(**named)
-        self.off = {name for name in _SWITCHES if found["fields"].get(f"disable {name}")}
+        self.off = {name for name in _SWITCHES if fields.get(f"disable {name}")}
         if self.off >= {"spring", "damper"}:
             self.off.add("passive")
         self.bodies: dict[int, str] = {0: GROUND}
@@ -219,7 +219,10 @@ class _Reader:
             if stated := self.names["site"][k]:
                 frame = self.frame(f"site {shown(stated)}", m.site_pos[k], m.site_quat[k])
                 model.spots[stated] = self.bodies[body], frame
-        self.left_out()
+        words = dict.fromkeys(map(_words, self.others))
+        if np.any(m.geom_contype) and len(m.geom_contype) > 1:
+            words |= {"Contacts": None}
+        model.notes += [f"{one}: not read." for one in words]
 
     def called(self, kind: str, k: int) -> str:
         """Return the name of an object, or its number."""
@@ -328,13 +331,6 @@ class _Reader:
         v = np.array(axis)
         turned = (w * w - v @ v) * np.eye(3) + 2.0 * (np.outer(v, v) - w * np.cross(v, np.eye(3)))
         return Frame(found, self.model.rotation(where, turned))
-
-    def left_out(self) -> None:
-        """Note what was not read."""
-        words = dict.fromkeys(_words(name) for name in self.others)
-        if np.any(self.m.geom_contype) and len(self.m.geom_contype) > 1:
-            words |= {"Contacts": None}
-        self.model.notes += [f"{one}: not read." for one in words]
 
 
 def _words(field: str) -> str:

@@ -37,10 +37,10 @@ def compiled(file: str, fields: list[str], usual: str) -> dict[str, object]:
     Returns
     -------
     dict
-        ``fields`` by name; ``names`` of objects by kind; ``kinds`` of equalities, of what they join
-        and of transmissions, as words;
-        places and axes of bodies, ``xpos`` and ``xmat``, in the reference posture; and ``others``,
-        the fields besides these that are not as MuJoCo has them by default, switched flags too.
+        ``fields`` by name, with places and axes of bodies, ``xpos`` and ``xmat``, in the reference
+        posture; ``names`` of objects by kind; ``kinds`` of equalities, of what they join and of
+        transmissions, as words; and ``others``, the fields besides these that are not as MuJoCo has
+        them by default, switched flags too.
         ``refused`` is MuJoCo's message, alone, for what it does not compile.
 
     Raises
@@ -83,14 +83,13 @@ def compiled(file: str, fields: list[str], usual: str) -> dict[str, object]:
     }
     return {
         "name": model.names.partition(b"\0")[0].decode(errors="replace"),  # its own is the first
-        "fields": {name: np.asarray(values[name]).tolist() for name in fields if name in values},
+        "fields": {name: np.asarray(values[name]).tolist() for name in fields if name in values}
+        | {"xpos": data.xpos.tolist(), "xmat": data.xmat.tolist()},
         "names": names,
         "kinds": {
             name: [known(int(one)).name.partition("_")[2] for one in np.asarray(values[name])]
             for name, known in kinds.items()
         },
-        "xpos": data.xpos.tolist(),
-        "xmat": data.xmat.tolist(),
         "others": others,
     }
 

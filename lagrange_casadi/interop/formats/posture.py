@@ -80,9 +80,11 @@ def posed(model: Model, posture: Mapping[str, float]) -> Model:
             continue
         across = joint.on_parent
         for name, (_, move, axis) in zip(joint.coordinates, MOVES[joint.kind], strict=True):
+            if axis == "w":
+                across, axis = across.then(_relative(model, joint)), "z"
             along, q = np.eye(3)["xyz".index(axis)], posture.get(name, 0.0)
-            step = Frame(q * along) if move == "slide" else Frame(axes=turned(q * along))
-            across = across.then(step)
+            slide, turn = (q, 0.0) if move == "slide" else (joint.lead * q / math.tau, q)
+            across = across.then(Frame(slide * along, turned(turn * along)))
         across = across.then(joint.on_child.inverse())
         near, far = joint.parent, joint.child
         if far in found:

@@ -130,12 +130,11 @@ def exported(
         "count": stages.count,
         "constants_of": constants,
         "matter": _mass_properties(program, symbols, extent_first=gapped),
-        "sound": sound,
     }
-    if fixed:
-        # They were checked when they were fixed.
-        del functions["sound"]
+    if fixed:  # numbers, which were checked when they were fixed
         functions = {name: _fixed(function, p) for name, function in functions.items()}
+    else:
+        functions["sound"] = sound
     ends = program.laws.beyond
     if ends is not None:
         functions["beyond"] = _fixed(ends, p) if fixed else ends

@@ -8,7 +8,6 @@ import hashlib
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -79,13 +78,15 @@ def sourced(
     solution = exact
     if newton is not None or table is not None:
         # It is held to the exact one, and as far off as that was asked for.
-        words: dict[str, Any] = {
-            "parameters": values,
-            "wanted": wanted,
-            "newton": newton,
-            "table": table,
-        }
-        solution = evaluate(scene, **words, backend="vm", certificate=False)
+        solution = evaluate(
+            scene,
+            parameters=values,
+            wanted=wanted,
+            newton=newton,
+            table=table,
+            backend="vm",
+            certificate=False,
+        )
     read = (
         None if table is None else (drive_of(compiled), table_of(compiled, solution.t, p, method))
     )
