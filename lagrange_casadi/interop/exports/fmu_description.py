@@ -240,13 +240,17 @@ def _unit(name: str) -> str:
 
 def _variable(place: int, one: Variable) -> str:
     """Return the element of a variable."""
-    m, numbers = one.member, dict[str, float | None]()
-    if isinstance(m, Setting):
-        numbers = {"min": m.low, "max": m.high}
-    numbers["start"] = one.start
+    m = one.member
+    low, high = (m.low, m.high) if isinstance(m, Setting) else (None, None)
+    numbers = {"min": low, "max": high, "start": one.start}
     finite = {key: x for key, x in numbers.items() if x is not None and math.isfinite(x)}
-    described = {"description": "; ".join(part for part in (m.meaning, m.sign) if part)}
-    described |= {"causality": one.kind, **_CHANGING[one.kind]}
-    variable = _tag("ScalarVariable", name=m.path, valueReference=place, **described)
+    variable = _tag(
+        "ScalarVariable",
+        name=m.path,
+        valueReference=place,
+        description="; ".join(part for part in (m.meaning, m.sign) if part),
+        causality=one.kind,
+        **_CHANGING[one.kind],
+    )
     real = _tag("Real", unit=m.unit, **finite)
     return f"    {variable.removesuffix(' />')}>{real}</ScalarVariable>"

@@ -21,9 +21,11 @@ def matlab(source: Source) -> dict[str, str]:
     words = source.words | {
         "coordinate": coordinate.name,
         "coordinate_unit": octave(coordinate.unit),
+        "coordinate_field": _field(coordinate),
+        "output": output.name,
+        "output_unit": octave(output.unit),
+        "output_field": _field(output),
     }
-    words |= {"output": output.name, "output_unit": octave(output.unit)}
-    words |= {"coordinate_field": _field(coordinate), "output_field": _field(output)}
     start, stop = source.exported.program.data.span
     number = literal("double")
     return {

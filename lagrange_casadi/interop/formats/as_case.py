@@ -117,18 +117,21 @@ class CaseText:
     def imports(self) -> str:
         """Return what stands before the declaration."""
         body, model = "\n".join(self.lines), self.model
-        parts = [f'"""{safe(f"{model.name}, as {model.file.name} describes it.")}"""\n\n']
-        parts += [f"{line}\n" for note in model.notes for line in comment(note)]
-        parts += ["\n"] if model.notes else []
-        parts += ["from math import pi\n\n"] if re.search(r"\bpi\b", body) else []
-        parts += ["import casadi as ca\n\n"] if "ca." in body else []
-        parts.append("from lagrange_casadi import Scene, SpatialMechanism\n")
         laws = [name for name in ("expression", "polynomial", "samples") if f"{name}(" in body]
-        parts += [f"from lagrange_casadi.motion import {', '.join(laws)}\n"] if laws else []
-        parts += [_FRAME] if model.ties else []
-        parts += [_TURNED] if " = turned(" in body else []
-        start = f"\n\ndef scene() -> Scene:\n    m = SpatialMechanism({json.dumps(model.name)})\n"
-        return "".join(parts) + start
+        notes = [line for note in model.notes for line in comment(note)]
+        parts = {
+            f'"""{safe(f"{model.name}, as {model.file.name} describes it.")}"""\n': True,
+            "\n".join(["", *notes, ""]): notes,
+            "\nfrom math import pi\n": re.search(r"\bpi\b", body),
+            "\nimport casadi as ca\n": "ca." in body,
+            "\nfrom lagrange_casadi import Scene, SpatialMechanism\n": True,
+            f"from lagrange_casadi.motion import {', '.join(laws)}\n": laws,
+            _FRAME: model.ties,
+            _TURNED: " = turned(" in body,
+            "\n\ndef scene() -> Scene:\n": True,
+            f"    m = SpatialMechanism({json.dumps(model.name)})\n": True,
+        }
+        return "".join(part for part, needed in parts.items() if needed)
 
     def body(self, body: Body) -> None:
         """Declare a body as a link between two places, all in ground axes."""

@@ -143,15 +143,23 @@ def read(model: Model, text: str) -> None:
 
 def write(model: Model) -> str:
     """Return the text of the file for a model."""
-    data: dict[str, Any] = {"schema": SCHEMA, "version": VERSION, "name": model.name, "units": "SI"}
-    data |= {"gravity": model.gravity, "time": dict(zip(SPAN, model.span, strict=True))}
-    for key in ("bodies", "joints", "couplings"):
-        data[key] = [*getattr(model, key).values()]
-    data["motions"] = model.motions
-    data |= {"posture": model.posture} if model.posture else {}
-    data |= {"drives": model.drives} if model.drives is not None else {}
-    data |= {"notes": model.notes} if model.notes else {}
-    return json.dumps(data, indent=1, allow_nan=False, default=_plain) + "\n"
+    data = {
+        "schema": SCHEMA,
+        "version": VERSION,
+        "name": model.name,
+        "units": "SI",
+        "gravity": model.gravity,
+        "time": dict(zip(SPAN, model.span, strict=True)),
+        "bodies": [*model.bodies.values()],
+        "joints": [*model.joints.values()],
+        "couplings": [*model.couplings.values()],
+        "motions": model.motions,
+        "posture": model.posture or None,
+        "drives": model.drives,
+        "notes": model.notes or None,
+    }
+    given = {key: value for key, value in data.items() if value is not None}
+    return json.dumps(given, indent=1, allow_nan=False, default=_plain) + "\n"
 
 
 def _plain(part: object) -> object:

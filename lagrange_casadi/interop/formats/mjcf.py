@@ -240,9 +240,15 @@ class _Reader:
         own = self.frame(where, m.body_ipos[k], m.body_iquat[k])
         moments = model.numbers(where, m.body_inertia[k].tolist(), "inertia")
         weight = 1.0 if "passive" in self.off else 1.0 - float(m.body_gravcomp[k])
-        given = mass, own.place, own.tensor(np.diag(moments)), frame
         name = model.add(
-            Body, stated, where, *given, weight=model.number(where, weight, "gravcomp")
+            Body,
+            stated,
+            where,
+            mass,
+            own.place,
+            own.tensor(np.diag(moments)),
+            frame,
+            weight=model.number(where, weight, "gravcomp"),
         )
         self.bodies[k], above = name, self.bodies[int(m.body_parentid[k])]
         first, count = int(m.body_jntadr[k]), int(m.body_jntnum[k])

@@ -90,9 +90,14 @@ def beam_model(case: LoadCase, _number: int, nodes: Mapping[str, str]) -> Iterat
     yield from _elements(case.link, beam, x / rod.length_and_density[0])
     named = [(name, k + 1) for name, k in sets.items() if not name.isdecimal()]
     yield from (f"*NSET, NSET={name}\n{number}" for name, number in named)
-    moduli, density = listed([young, poisson]), listed([beam.material.density])
-    words = {"material": beam.material.name, "moduli": moduli, "density": density}
-    yield _STEP.format(**words, base=base, tip=tip, within=within)
+    yield _STEP.format(
+        material=beam.material.name,
+        moduli=listed([young, poisson]),
+        density=listed([beam.material.density]),
+        base=base,
+        tip=tip,
+        within=within,
+    )
     for number, row in enumerate(loads.tolist(), 1):
         yield from (f"{number}, {k}, {value:.12g}" for k, value in enumerate(row, 1) if value)
     yield from ("*NODE FILE", "U", "*EL FILE", "S", "*END STEP")

@@ -29,7 +29,6 @@ REST = "rest:"
 CORNERS = "Corners of motions, constraints and lifts were checked with the default parameters only."
 """Note for whoever changes parameters."""
 
-_DIGITS = 3
 FAINT = 1e-9
 """Relative size below which a value is written as zero, for its digits are rounding."""
 
@@ -356,7 +355,7 @@ def _range(solution: Solution, output: Output, largest: float) -> str:
     values = solution.outputs[output]
     faint = max(FAINT * largest, 2.0 * solution.errors.get(str(output), 0.0))
     low, high = (0.0 if abs(x) <= faint else float(x) for x in (values.min(), values.max()))
-    ends = [f"{x:.{_DIGITS}g}" for x in (low, high)]
+    ends = [f"{x:.3g}" for x in (low, high)]
     return (
         f"{ends[0] if ends[0] == ends[1] else f'from {ends[0]} to {ends[1]}'} over the scene's"
         " motion"

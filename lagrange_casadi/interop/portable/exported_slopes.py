@@ -86,8 +86,9 @@ def types(c: Contract, slopes: ExportedSlopes) -> str:
         f"  {c.prefix}_changes {m.name}; /* [{comment(unit)}] */"
         for m, unit in zip(c.outputs, units, strict=True)
     )
-    words = {"rows": "\n".join(rows), "members": "\n".join(members)}
-    return template("sensitivity_types.h", **c.words, **words)
+    return template(
+        "sensitivity_types.h", **c.words, rows="\n".join(rows), members="\n".join(members)
+    )
 
 
 def code(c: Contract, slopes: ExportedSlopes) -> str:

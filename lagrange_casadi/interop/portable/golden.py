@@ -92,8 +92,8 @@ def golden(
             forces_off[i, k] = (
                 ALLOWED * errors[str(Output("section", link.name, force))]
                 + least * np.abs(true).max()
+                + 2.0 * np.abs(found - true).max()
             )
-            forces_off[i, k] += 2.0 * np.abs(found - true).max()
     inputs_off = _MOTION * ROUNDING[precision] * np.abs(inputs).max(axis=0)
     steps = stride if program.newton is not None else 1
     worst = _worst(contract, exact, rounding / ALLOWED + saved)

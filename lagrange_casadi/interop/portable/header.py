@@ -17,13 +17,15 @@ from .text import filled, member, template
 def header(source: Source) -> str:
     """The header, ``<prefix>.h``."""
     c, span, words = source.contract, source.span, source.words
+    described = source.exported.program.data.at([*source.values.values()])
+    gravity = ", ".join(f"{one:g}" for one in described.components(described.gravity))
     return template(
         "mechanism.h",
         **words,
         begin=_begin(source),
         story=filled(source.story),
         conventions=filled(
-            f"Conventions: {c.table.conventions}. {_ZERO} Gravity is ({_gravity(source)}) m/s^2."
+            f"Conventions: {c.table.conventions}. {_ZERO} Gravity is ({gravity}) m/s^2."
         ),
         law=law_in_words(c),
         mapping=(
@@ -111,11 +113,6 @@ def _follows(source: Source) -> str:
         " a call fails they stay where they stood. To begin elsewhere than the scene does, go"
         " there in small steps."
     )
-
-
-def _gravity(source: Source) -> str:
-    described = source.exported.program.data.at([*source.values.values()])
-    return ", ".join(f"{component:g}" for component in described.components(described.gravity))
 
 
 def _parameters(source: Source) -> str:

@@ -183,8 +183,9 @@ class Statements:
         ends = (0, self.exported.positive, self.exported.sizes["sound_of"])
         for (start, stop), test in zip(itertools.pairwise(ends), (">", ">="), strict=True):
             if stop > start:
-                words = {"start": start, "stop": stop, "test": test}
-                yield template("sound.c", **self.contract.words, **words).rstrip()
+                yield template(
+                    "sound.c", **self.contract.words, start=start, stop=stop, test=test
+                ).rstrip()
 
     def motion(self) -> Iterator[str]:
         """Yield what fills the inputs with the motion of the drives at a time."""

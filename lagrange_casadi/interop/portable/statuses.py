@@ -6,15 +6,11 @@ from __future__ import annotations
 
 from ...base.status import Status
 
-_BAD_PARAMETER = (
-    "a parameter is not finite, or out of its range, or gives a link no length or a negative mass"
-)
-_UNDETERMINED = "equilibrium does not determine all outputs: the mechanism is over-constrained"
-
 _MEANINGS: dict[str, str | tuple[Status, ...]] = {
     "OK": "there is a result",
     "NOT_PREPARED": "the model was not prepared",
-    "BAD_PARAMETER": _BAD_PARAMETER,
+    "BAD_PARAMETER": "a parameter is not finite, or out of its range, or gives a link no length or"
+    " a negative mass",
     "BAD_INPUT": "an input is not finite",
     "BAD_TIME": "the time is not finite, or outside the samples or beyond the curves of the motion",
     "BAD_RATIO": "a ratio xi/l is outside 0 to 1",
@@ -26,7 +22,7 @@ _MEANINGS: dict[str, str | tuple[Status, ...]] = {
     "SLOW": (Status.SLOW,),
     "INCONSISTENT": (Status.MISFIT, Status.ROW_VIOLATED),
     "NOT_CLOSED": (Status.NOT_CLOSED,),
-    "UNDETERMINED": _UNDETERMINED,
+    "UNDETERMINED": "equilibrium does not determine all outputs: the mechanism is over-constrained",
     "NOT_FINITE": (Status.NOT_FINITE,),
     "TURNED": (Status.TURNED,),
     "BEYOND_ENDS": (Status.BEYOND_ENDS,),
