@@ -56,8 +56,7 @@ def checked(model: Model, *, accept_inertias: bool = False) -> Model:
         assemble(model)
     _connected(model)
     _lengths(model)
-    names = (name for joint in model.joints.values() for name in joint.coordinates)
-    valid = dict.fromkeys(names)
+    valid = {name: None for joint in model.joints.values() for name in joint.coordinates}
     single = {name: None for name in valid if ":" not in name}
     stated = {name: law.where for name, law in model.motions.items()}
     stated |= dict.fromkeys(model.posture, "posture")

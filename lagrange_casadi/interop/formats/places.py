@@ -49,9 +49,8 @@ class Places:
         origins = []
         for joint in sorted(mine, key=lambda one: one.child != body.name):
             near, far = self.model.frames(joint)
-            origins.append(self.place((near if joint.parent == body.name else far).place))
-            if joint.name in self.at:
-                origins[-1] = self.at[joint.name]
+            own = self.place((near if joint.parent == body.name else far).place)
+            origins.append(self.at.get(joint.name, own))
         centre, base = self.place(body.frame.at(body.centre)), origins[0]
         tip = max(origins, key=lambda one: math.dist(base, one))
         if math.dist(base, tip) < 1e-6 * self.size:

@@ -8,7 +8,8 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from heapq import heapify, heappop, heappush
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -16,6 +17,8 @@ from ...base.arrays import Array
 from .file_frames import Frame, turned
 from .record import GROUND, MOVES, Joint, Model, Row
 from .separate_systems import Rows, blocks
+
+Closure = TypeVar("Closure", Joint, SimpleNamespace)
 
 SLACK = 1e-6
 """Frames of a joint that are apart by less, of the mechanism's size and in rad, are one."""
@@ -48,13 +51,15 @@ def extent(model: Model) -> float:
     return float(np.max(np.ptp(np.array(places), axis=0))) or 1.0 if places else 1.0
 
 
-def outward(closures: Sequence[Joint], reached: set[str]) -> Iterator[Joint]:
+def outward(
+    closures: Sequence[Closure], reached: set[str], *, down: bool = False
+) -> Iterator[Closure]:
     """Yield the joints and ties that hang on bodies, each after one that reaches it, the first one
-    of those that can follow; add what is reached.
+    of those that can follow; add what is reached. ``down`` leads to children alone.
     """
     on: dict[str, list[int]] = {}
     for k, one in enumerate(closures):
-        for body in (one.parent, one.child):
+        for body in (one.parent,) if down else (one.parent, one.child):
             on.setdefault(body, []).append(k)
     waiting = [k for body in sorted(reached) for k in on.pop(body, ())]
     heapify(waiting)

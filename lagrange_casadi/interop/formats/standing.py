@@ -54,10 +54,8 @@ def placed(model: Model, posture: Mapping[str, Number], contacts: Sequence[str])
     for stated in contacts:
         body, frame = model.spot(stated)
         place = Frame(found.frame_of(body).then(frame).place)
-        words = f"{stated}_contact"
-        model.contacts.append(
-            model.add(Joint, words, "", "spherical", GROUND, body, place, Frame(frame.place))
-        )
+        ends = GROUND, body, place, Frame(frame.place)
+        model.contacts.append(model.add(Joint, f"{stated}_contact", "", "spherical", *ends))
     if contacts:
         for name in (name for one in joints if one.kind == "free" for name in one.coordinates):
             model.motions.setdefault(name, Law(repr(model.posture.get(name, 0.0))))

@@ -9,7 +9,7 @@ and joints of SDF in ``<gazebo>``.
 from __future__ import annotations
 
 from dataclasses import replace
-from heapq import heappop, heappush
+from types import SimpleNamespace
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from ...base.brief import listed
 from ...errors import shown
 from .file_elements import Element, note_unread, parsed, six_moments
 from .file_frames import Frame
+from .posture import outward
 from .record import GROUND, Body, Coupling, Joint, Model
 from .sdf import Joints, limit, resist
 
@@ -34,7 +35,6 @@ KINDS: dict[str, str] = {
 }
 """Types of joints; those after ``planar`` are of loops alone in most dialects."""
 
-_LOOPS = ("constraint", "loop", "loop_joint")
 _ONE = ("parent", "predecessor", "link1")
 _OTHER = ("child", "successor", "link2")
 
@@ -61,8 +61,11 @@ class _Robot:
 
     def read(self) -> None:
         """Read the robot."""
-        ends = [[self.end(joint, names)[0] for names in (_ONE, _OTHER)] for joint in self.joints]
-        children = {child for _, child in ends}
+        joints = [
+            SimpleNamespace(line=one, parent=self.end(one, _ONE)[0], child=self.end(one, _OTHER)[0])
+            for one in self.joints
+        ]
+        children = {one.child for one in joints}
         roots = [name for name in self.links if name not in children]
         if len(roots) != 1:
             none = "none: each link is the child of a joint" if self.links else "no link"
@@ -70,22 +73,17 @@ class _Robot:
             raise self.root.refuse(f"expected one root link, found {found}")
         self.on[roots[0]] = (GROUND, Frame())
         if self.model.floating:
-            for joint, (parent, child) in zip(self.joints, ends, strict=True):
-                if parent == roots[0] and joint.attribute("type") == "floating":
-                    raise joint.refuse(f"frees {shown(child)} already: leave floating out")
+            for one in joints:
+                if one.parent == roots[0] and one.line.attribute("type") == "floating":
+                    raise one.line.refuse(f"frees {shown(one.child)} already: leave floating out")
             self.on[roots[0]] = (name := self.body(roots[0], Frame()), Frame())
             self.model.base(name, self.links[roots[0]].where)
-        hung: dict[str, list[int]] = {}
-        for k, (parent, _) in enumerate(ends):
-            hung.setdefault(parent, []).append(k)
-        ready = hung.pop(roots[0], [])
-        while ready:
-            self.grow(self.joints[first := heappop(ready)])
-            for k in hung.pop(ends[first][1], ()):
-                heappush(ready, k)
-        for k in sorted(k for group in hung.values() for k in group):
-            raise self.joints[k].refuse("its links are not connected to the root")
-        for loop in self.root.all(*_LOOPS):
+        for one in outward(joints, {roots[0]}, down=True):
+            self.grow(one.line)
+        for one in joints:
+            if one.parent not in self.on:
+                raise one.line.refuse("its links are not connected to the root")
+        for loop in self.root.all("constraint", "loop", "loop_joint"):
             self.loop(loop)
         for line in self.root.all("drake:ball_constraint"):
             self.ball_constraint(line)
@@ -94,8 +92,7 @@ class _Robot:
                 name, leader = joint.attribute("name"), mimic.attribute("joint")
                 law = mimic.amount("multiplier", 1.0), mimic.amount("offset", 0.0)
                 self.model.follow(name, leader, mimic.where, *law)
-        below = zip(reversed(ends), reversed(self.joints), strict=True)
-        above = {child: joint for (_, child), joint in below}
+        above = {one.child: one.line for one in reversed(joints)}
         for coupling in self.root.all("coupling"):
             self.coupling(coupling, above)
         self.gazebo()
