@@ -127,8 +127,9 @@ class _Block:
             yield "k : DINT;\nsize : LREAL;\nbefore : LREAL;"
         if "square" in self.arrays:
             zeros = [_number(zero) for zero in self.source.exported.zeros]
-            words = {"last": len(zeros) - 1, "zeros": ", ".join(zeros)}
-            yield template("structured_registers.st", **words).rstrip()
+            yield template(
+                "structured_registers.st", last=len(zeros) - 1, zeros=", ".join(zeros)
+            ).rstrip()
         for numbers, name in self.tables.items():
             yield from _table(name, numbers)
 

@@ -19,7 +19,7 @@ from ...base.status import Status
 from ...base.symbolic import symbolic
 from ...base.vocabulary import Precision
 from ...engine.codegen.emit import hoisted, newton_rule
-from ...engine.codegen.printer import Format, literal, print_functions
+from ...engine.codegen.printer import Format, literal
 from ...engine.codegen.stages import controlled
 from ...engine.dead_centres import CLOSURES
 from ...engine.instants.cycle_table import CycleTable
@@ -90,11 +90,6 @@ class ExportedProgram:
             for bound, limit in zip(program.bounds, most, strict=True)
             if bound.beside in CLOSURES
         ]
-
-    @property
-    def text(self) -> str:
-        """The C of its functions."""
-        return print_functions(self.functions, self.precision, prefix="graph")
 
     @property
     def rule(self) -> dict[str, float]:

@@ -10,6 +10,7 @@ import casadi as ca
 import numpy as np
 
 from ...base.arrays import Array
+from ...engine.codegen.printer import print_functions
 from ...version import __version__
 from .contract import Contract
 from .exported_calls import MODEL
@@ -53,7 +54,7 @@ class Source:
             "mechanism.c",
             **self.words,
             includes="\n#include <string.h>" if self.exported.cycle is not None else "",
-            graph=self.exported.text,
+            graph=print_functions(self.exported.functions, self.contract.precision, prefix="graph"),
             seal=f"0x{self.identity[:8]}u",
             helpers=written.helpers(),
             put=indented(written.put()),
