@@ -11,7 +11,7 @@ fall unseen. The search for peaks (``codegen/between.c``) reads them.
 from __future__ import annotations
 
 import enum
-from collections.abc import Iterable, Iterator, Sequence, Set
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence, Set
 from dataclasses import dataclass
 from typing import Any
 
@@ -165,9 +165,6 @@ def bent(program: Program, sharpness: Sharpness, t: Array, p: Array) -> Flags:
 
 _ROUNDING = 1e-12
 
-_FLAT = {ca.OP_TANH: 20.0, ca.OP_ERF: 6.0}
-"""Beyond which these are one, but for less than a rounding."""
-
 
 class _Found:
     """Watched functions that have been found, by kind and argument, and their symbols.
@@ -262,28 +259,48 @@ _NONE: frozenset[int] = frozenset()
 _ALIKE = codes("neg inv sq sqrt twice fabs copysign constpow")
 
 
+_WATCHED: tuple[tuple[Collection[int], Kind, Callable[[Any, Any], Any], tuple[float, ...]], ...] = (
+    (codes("div inv"), Kind.POLE, lambda _, y: y, ()),
+    (codes("sin cos tan"), Kind.TURN, lambda x, _: x, ()),
+    (codes("tan"), Kind.POLE, lambda x, _: ca.cos(x), ()),
+    (codes("sqrt"), Kind.ROOT, lambda x, _: x, ()),
+    (codes("hypot"), Kind.ROOT, lambda x, y: x * x + y * y, ()),
+    (codes("eq ne fmin fmax"), Kind.SWITCH, lambda x, y: x - y, (0.0,)),
+    (codes("fabs sign"), Kind.SWITCH, lambda x, _: x, (0.0,)),
+    (codes("fmod"), Kind.STEP, lambda x, y: x / y, ()),
+    (codes("remainder"), Kind.STEP, lambda x, y: x / y + 0.5, ()),
+    (codes("fmod remainder"), Kind.POLE, lambda _, y: y, ()),
+    # Beyond these numbers they are one, but for less than a rounding.
+    (codes("tanh"), Kind.SOFT, lambda x, _: x, (20.0,)),
+    (codes("erf"), Kind.SOFT, lambda x, _: x, (6.0,)),
+    (codes("exp expm1 sinh cosh"), Kind.POWER, lambda x, _: x, ()),
+    (codes("sinh cosh"), Kind.POWER, lambda x, _: -x, ()),
+    (codes("log"), Kind.POLE, lambda x, _: x, ()),
+    (codes("log1p"), Kind.POLE, lambda x, _: 1 + x, ()),
+    (codes("asin acos"), Kind.ROOT, lambda x, _: 1 - x * x, ()),
+    (codes("atanh"), Kind.POLE, lambda x, _: 1 - x * x, ()),
+    (codes("acosh"), Kind.ROOT, lambda x, _: x * x - 1, ()),
+    (codes("atan asinh"), Kind.POLE, lambda x, _: 1 + x * x, ()),
+    (codes("atan2"), Kind.POLE, lambda x, y: x * x + y * y, ()),
+)
+"""Operations, and the watched argument that they make of their first and their last operand."""
+
+
 def _watched(
     operation: int, operands: Sequence[ca.SX]
 ) -> Iterator[tuple[Kind, ca.SX, tuple[float, ...]]]:
     """Watched functions of an operation."""
     x, y = operands[0], operands[-1]
-    if operation in (ca.OP_DIV, ca.OP_INV):
-        yield Kind.POLE, y, ()
-    elif operation in (ca.OP_SIN, ca.OP_COS):
-        yield Kind.TURN, x, ()
-    elif operation == ca.OP_TAN:
-        yield Kind.TURN, x, ()
-        yield Kind.POLE, ca.cos(x), ()
-    elif operation in (ca.OP_SQRT, ca.OP_HYPOT):
-        yield Kind.ROOT, x if operation == ca.OP_SQRT else x * x + y * y, ()
-    elif operation in (ca.OP_LT, ca.OP_LE) and y.is_constant():
-        yield Kind.SWITCH, x, (float(y),)
-    elif operation in (ca.OP_LT, ca.OP_LE) and x.is_constant():
-        yield Kind.SWITCH, y, (float(x),)
-    elif operation in (ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_FMIN, ca.OP_FMAX):
-        yield Kind.SWITCH, x - y, (0.0,)
-    elif operation in (ca.OP_FABS, ca.OP_SIGN):
-        yield Kind.SWITCH, x, (0.0,)
+    for operations, kind, argument, at in _WATCHED:
+        if operation in operations:
+            yield kind, argument(x, y), at
+    if operation in (ca.OP_LT, ca.OP_LE):
+        if y.is_constant():
+            yield Kind.SWITCH, x, (float(y),)
+        elif x.is_constant():
+            yield Kind.SWITCH, y, (float(x),)
+        else:
+            yield Kind.SWITCH, x - y, (0.0,)
     elif operation == ca.OP_COPYSIGN:
         # That of a root or a reciprocal keeps a sign through a division or a reflection, and makes
         # no jump.
@@ -294,25 +311,6 @@ def _watched(
     elif operation in (ca.OP_FLOOR, ca.OP_CEIL):
         if not is_entry(x):
             yield Kind.STEP, x, ()
-    elif operation in (ca.OP_FMOD, ca.OP_REMAINDER):
-        yield Kind.STEP, x / y + (0.5 if operation == ca.OP_REMAINDER else 0.0), ()
-        yield Kind.POLE, y, ()
-    elif operation in _FLAT:
-        yield Kind.SOFT, x, (_FLAT[operation],)
-    elif operation in (ca.OP_EXP, ca.OP_EXPM1, ca.OP_SINH, ca.OP_COSH):
-        yield Kind.POWER, x, ()
-        if operation in (ca.OP_SINH, ca.OP_COSH):
-            yield Kind.POWER, -x, ()
-    elif operation in (ca.OP_LOG, ca.OP_LOG1P):
-        yield Kind.POLE, x if operation == ca.OP_LOG else 1 + x, ()
-    elif operation in (ca.OP_ASIN, ca.OP_ACOS, ca.OP_ATANH):
-        yield Kind.POLE if operation == ca.OP_ATANH else Kind.ROOT, 1 - x * x, ()
-    elif operation == ca.OP_ACOSH:
-        yield Kind.ROOT, x * x - 1, ()
-    elif operation in (ca.OP_ATAN, ca.OP_ASINH):
-        yield Kind.POLE, 1 + x * x, ()
-    elif operation == ca.OP_ATAN2:
-        yield Kind.POLE, x * x + y * y, ()
     elif operation in (ca.OP_POW, ca.OP_CONSTPOW):
         power = float(y) if y.is_constant() else None
         if power is None or power < 0 or power != int(power):
