@@ -170,9 +170,7 @@ def place_roughly(
         if spherical is None:
             numbers.note(
                 coordinate.variables,
-                numbers.of(
-                    coordinate.placed(coordinate.value, ca.SX(posture.get(coordinate, 0.0)))
-                ),
+                numbers.of(coordinate.placed(ca.SX(posture.get(coordinate, 0.0)))),
             )
             continue
         angles = [posture.get(c, 0.0) for c in multibody.coordinates if c.spherical is spherical]

@@ -392,7 +392,7 @@ class _Solver:
             symbol = self.iterated.number(
                 coordinate.name, scale, guess[coordinate], turning=turning
             )
-            self._know(coordinate, coordinate.placed(coordinate.value, symbol))
+            self._know(coordinate, coordinate.placed(symbol))
             if turning:
                 self.wrapped.add(coordinate.name)
         for spherical in sphericals:

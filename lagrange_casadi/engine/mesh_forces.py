@@ -13,10 +13,10 @@ from collections.abc import Iterator
 import casadi as ca
 
 from ..base.arrays import Expression
-from ..base.vectors import cross, nil, plus, times
+from ..base.vectors import cross, plus, times
 from ..model.declared_parts import Point, Vector
 from ..model.mechanism import Mechanism
-from ..model.meshes import Loss, Mesh, Transmission, Wrench
+from ..model.meshes import Loss, Mesh, Transmission
 from .growing import Grown
 from .multibody import Applied, Multibody
 from .pressing import Contact, FrictionContact, slowest_of
@@ -76,21 +76,13 @@ def braking(multibody: Multibody, loss: Loss, multiplier: Expression) -> Frictio
 
 def _summed(transmission: Transmission, mesh: Mesh, multiplier: ca.SX) -> tuple[Vector, Vector]:
     """The force on the first body, and the couple about its point, in the carrier's axes."""
-    force, couple = _times(multiplier, mesh.along)
+    force, couple = times(multiplier, mesh.along.force), times(multiplier, mesh.along.couple)
     beside = [
         (transmission.symbol, mesh.apart),
         (transmission.loss and transmission.loss.symbol, mesh.braking),
     ]
     for factor, wrench in beside:
         if factor is not None and wrench is not None:
-            more, about = _times(factor, wrench)
-            force, couple = plus(force, more), plus(couple, about)
+            force = plus(force, times(factor, wrench.force))
+            couple = plus(couple, times(factor, wrench.couple))
     return force, couple
-
-
-def _times(factor: ca.SX, wrench: Wrench) -> tuple[Vector, Vector]:
-    force, couple = (
-        tuple(0.0 if nil(x) else factor * x for x in vector)
-        for vector in (wrench.force, wrench.couple)
-    )
-    return (force[0], force[1], force[2]), (couple[0], couple[1], couple[2])

@@ -94,10 +94,9 @@ class Coordinate:
             return self.value
         return ca.vertcat(ca.cos(self.turn), ca.sin(self.turn), self.value)
 
-    def placed(self, symbols: ca.SX, values: ca.SX) -> ca.SX:
-        """Variables for values of the coordinates ``symbols``."""
-        placed: ca.SX = ca.substitute(self.by_values, symbols, values)
-        return placed
+    def placed(self, value: ca.SX) -> Expression:
+        """Variables for a value of the coordinate."""
+        return ca.substitute(self.by_values, self.value, value)
 
     @cached_property
     def keys(self) -> tuple[int, ...]:

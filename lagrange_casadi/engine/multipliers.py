@@ -23,13 +23,13 @@ def multipliers_of(
     lambda comes from the undriven rows of R = Phi_q' lambda + A' mu (paper eq. 2, 8), the blocks of
     the loops last one first; mu from the driven rows that bear no effort.
     """
-    rows = {c: along[i] for i, c in enumerate(multibody.coordinates)}
+    rows = {c.name: along[i] for i, c in enumerate(multibody.coordinates)}
     symbols, values, free = ca.SX(0, 1), ca.SX(0, 1), ca.SX(0, 1)
     meshed = transmissions_of(multibody.mechanism)
     every = column(loop.multipliers for loop in multibody.loop_equations if loop.name not in meshed)
     for block, system in reversed(list(zip(kinematics.blocks, kinematics.systems, strict=True))):
         local = block.multipliers
-        residual = column(rows[c] for c in block.unknown)
+        residual = column(rows[c.name] for c in block.unknown)
         residual = ca.substitute(residual, symbols, values)
         # What no equation of theirs moves, others may still be written in, with factors that
         # cancel.
@@ -42,10 +42,8 @@ def multipliers_of(
         symbols, values = ca.vertcat(local, symbols), ca.vertcat(found, values)
     if multibody.rows:
         mu = column(program.multiplier for program in multibody.rows)
-        replaced = [
-            next(c for c in rows if c.name == program.row.replaces) for program in multibody.rows
-        ]
-        unaided = ca.substitute(column(rows[c] for c in replaced), symbols, values)
+        unaided = column(rows[program.row.replaces] for program in multibody.rows)
+        unaided = ca.substitute(unaided, symbols, values)
         solved = ca.solve(
             ca.jacobian(unaided, mu), -ca.substitute(unaided, mu, ca.SX.zeros(mu.numel()))
         )

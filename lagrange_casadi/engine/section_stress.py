@@ -161,7 +161,7 @@ class CrossSections:
                 half = (p.iz + p.iy) / 2
                 least = half - (((p.iz - p.iy) / 2) ** 2 + p.iyz**2) ** 0.5
                 every.append((p.area, *((p.iz, p.iy) if straight else (least, least)), p.wz, p.wy))
-        area, *others = (_least(values) for values in zip(*every, strict=True))
+        area, *others = (functools.reduce(smaller, values) for values in zip(*every, strict=True))
         return Thinnest(area, (others[0], others[1]), (others[2], others[3]))
 
 
@@ -213,13 +213,6 @@ def notch_factor(notch: Notch) -> Notch:
     return Notch(
         notch.at, *(1.0 + q * (k - 1.0) for k in (notch.axial, notch.bending, notch.shear))
     )
-
-
-def _least(values: Sequence[float]) -> float:
-    found = values[0]
-    for value in values[1:]:
-        found = smaller(found, value)
-    return found
 
 
 def _same(a: _Row, b: _Row) -> bool:

@@ -23,7 +23,6 @@ import numpy as np
 
 from ..base.arrays import Array, Expression
 from ..base.rotation import Rotation, direction
-from ..base.vectors import Vector
 from ..model.joints import Joint
 
 
@@ -52,8 +51,8 @@ class SphericalCoordinates:
     @property
     def rotation(self) -> Rotation:
         """Rotation of the body."""
-        x, y, z = (self._axis(k) for k in range(3))
-        return Rotation(x, y, None, z)
+        a, b, c, d, e, f, g, h, i = ca.vertsplit(self.axes)
+        return Rotation((a, b, c), (d, e, f), None, (g, h, i))
 
     def changes(self, rates: Sequence[Expression]) -> tuple[Expression, Expression, Expression]:
         """The rates of the axes, by those about them."""
@@ -74,10 +73,6 @@ class SphericalCoordinates:
             else base.then(turned).then(zero)
         )
         return ca.vertcat(*found.x, *found.y, *found.z)
-
-    def _axis(self, k: int) -> Vector:
-        x, y, z = ca.vertsplit(self.axes[3 * k : 3 * k + 3])
-        return x, y, z
 
 
 def axes_of(quaternion: ca.SX) -> ca.SX:
@@ -113,20 +108,12 @@ def turn(quaternion: Expression, rotation: Expression) -> Expression:
 
 
 def quaternion_of(axes: Array) -> list[float]:
-    """The quaternion of three axes, the rows of a matrix: that of the largest part, so that nothing
-    cancels (Shepperd 1978).
+    """The quaternion of three axes, the rows of a matrix, from the products of its parts with the
+    largest one, so that nothing cancels (Shepperd 1978).
     """
-    r = axes.T
-    trace = float(np.trace(r))
-    parts = [trace, *np.diag(r)]
-    k = int(np.argmax(parts))
-    across = [r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]]
-    if k == 0:
-        found = np.array([1.0 + trace, *across])
-    else:
-        i = k - 1
-        found = np.zeros(4)
-        found[0] = across[i]
-        for j in range(3):
-            found[j + 1] = 1.0 - trace + 2.0 * r[i, i] if i == j else r[i, j] + r[j, i]
+    trace, twist = np.trace(axes), axes - axes.T
+    across = np.array([[twist[1, 2], twist[2, 0], twist[0, 1]]])
+    along = axes + axes.T + (1.0 - trace) * np.eye(3)
+    products = np.block([[np.array([[1.0 + trace]]), across], [across.T, along]])
+    found = products[np.argmax(np.diag(products))]
     return [float(part) for part in found / np.linalg.norm(found)]

@@ -48,10 +48,6 @@ class TwoForceLink:
         """True if the y axis was declared."""
         return self.link.beside is not None
 
-    def on_bar(self, joint: Joint) -> Point:
-        """A joint's point on the bar."""
-        return joint.on(self.link)
-
     def other(self, joint: Joint) -> Point:
         """A joint's point on the other body."""
         return joint.parent if joint.child.body is self.link else joint.child
@@ -59,12 +55,12 @@ class TwoForceLink:
     @property
     def start(self) -> Expression:
         """Position of the first joint along the bar [m]."""
-        return self.on_bar(self.joints[0]).x
+        return self.joints[0].on(self.link).x
 
     @property
     def length(self) -> Expression:
         """Distance of the joints [m]."""
-        return self.on_bar(self.joints[1]).x - self.start
+        return self.joints[1].on(self.link).x - self.start
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,11 +10,12 @@ the error of the first parabolas, a hundredth, the result may be below the large
 
 from __future__ import annotations
 
+import functools
 import itertools
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Any
 
 import casadi as ca
@@ -178,7 +179,7 @@ def _buckling(link: Loaded, effective: tuple[float, float]) -> Expression:
     """
     compression = _largest(link, lambda part, x: -part.force("axial", x))
     names = ("bending_z", "bending_y") if link.space else ("bending",)
-    moments = [ca.sqrt(_largest(link, partial(_squared, name))) for name in names]
+    moments = [ca.sqrt(_largest(link, functools.partial(_squared, name))) for name in names]
     return buckling.used(
         buckling.Column.of(link.cross, link.link.length, effective), compression, moments
     )
@@ -192,7 +193,7 @@ def _largest(link: Loaded, value: Callable[[Part, Expression], Expression]) -> c
     """The largest value along a link, of those at all places that are looked at."""
     found: list[Any] = []
     for part in link.parts:
-        found += sampled(partial(value, part), link.degree_along(part))
+        found += sampled(functools.partial(value, part), link.degree_along(part))
     return most(found)
 
 
@@ -264,7 +265,4 @@ def _in_order(marks: Sequence[ca.SX]) -> list[ca.SX]:
 
 def most(values: Sequence[Expression]) -> ca.SX:
     """The largest of values."""
-    found = values[0]
-    for value in values[1:]:
-        found = ca.fmax(found, value)
-    return ca.SX(found)
+    return ca.SX(functools.reduce(ca.fmax, values))

@@ -66,11 +66,6 @@ class Tolerances:
     rounding: float
     extent: Expression
 
-    @property
-    def zero(self) -> float:
-        """Roundings below which a closure says nothing but that it is zero."""
-        return DEAD[self.precision]
-
     def residual(self, limits: Mapping[Precision, float]) -> float:
         """Limit of a residual that depends on how far loops are closed."""
         return max(limits[self.precision], _COUNTED if self.counted else 0.0)
@@ -176,7 +171,7 @@ def _closure(dead: str, passes: str, *reach: Rule, beside: Beside = "CLOSURE") -
     ``passes`` one; a closure of loops has a rule of its own for values below zero.
     """
     return Verdict(
-        lambda at: math.sqrt(at.zero) if beside == "BRANCH" else at.zero,
+        lambda at: math.sqrt(DEAD[at.precision]) if beside == "BRANCH" else DEAD[at.precision],
         (
             *reach,
             Rule(Status.DEAD_CENTRE, _not_above, dead),
@@ -348,7 +343,7 @@ VERDICTS: Mapping[str, Verdict] = {
     ),
     # How far frictions are from holding each other (:mod:`.friction`).
     "jam": Verdict(
-        lambda at: at.zero,
+        lambda at: DEAD[at.precision],
         (
             Rule(
                 Status.JAMS,
