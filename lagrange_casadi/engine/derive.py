@@ -211,7 +211,7 @@ def _program(scene: Scene, want: Wanted) -> Program:
     if text is not None:
         program = Program.loads(text)
         # Scenes of one name may differ in what follows from nothing that is derived.
-        return replace(program, data=program.data.asked_by(scene))
+        return replace(program, data=replace(program.data, timing=scene.timing()))
     program = replace(_derive(scene, want), identity=identity)
     if identity:
         cache.write(f"{identity}.graph", program.dumps())
@@ -266,8 +266,7 @@ class _JointForces:
         """The forces that are wanted, and those of ``columns`` that friction goes into."""
         want = moving.want
         links = moving.scene.mechanism.links.values()
-        forces = internal_forces(moving.body, moving.solved, want, moving.scene)
-        friction = forces.friction
+        forces, free, friction = internal_forces(moving.body, moving.solved, want, moving.scene)
         dependent = {
             key: value
             for key, value in columns.items()
@@ -275,14 +274,14 @@ class _JointForces:
         }
         placed = ca.substitute(column(dependent.values()), friction.symbols, friction.values)
         pressed = dict(zip(dependent, ca.vertsplit(placed) if dependent else (), strict=True))
-        acting = gathered(forces.columns, forces.free, links, Sampling.of(moving.body)) | pressed
+        acting = gathered(forces, free, links, Sampling.of(moving.body)) | pressed
         # Beside the start of the motion, for a drive through a gear moves little of what it drives,
         # and holds it all the same.
         for check in [
             check for check in acting if isinstance(check, Check) and check.kind == "hold"
         ]:
             acting[check] = closure(acting[check], float(moving.begins(acting[check])))
-        return cls(acting, forces.free, friction.forces)
+        return cls(acting, free, friction.forces)
 
 
 def _derive(scene: Scene, asked: Wanted) -> Program:

@@ -48,7 +48,7 @@ class Gap:
 
 def gaps_of(nearest: Nearest, state: State, left: Sequence[int]) -> tuple[Gap, ...]:
     """The gaps of the loops that are ``left`` open in a state."""
-    closed = nearest.rows([k for k in range(len(nearest.loops)) if k not in left])
+    closed = nearest.rows([k for k in range(len(nearest.released.loops)) if k not in left])
     held = nearest.held(state, closed) if left else set()
     found = []
     for k in left:

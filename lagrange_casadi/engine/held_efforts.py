@@ -43,20 +43,19 @@ def held_efforts(scene: Scene) -> HeldEfforts:
     moving = Moving.of(scene, want)
     losses = (t.loss.name for t in transmissions_of(mechanism).values() if t.loss is not None)
     signs = {name: ca.SX.sym(f"sign_{name}") for name in (*frictions_of(mechanism), *losses)}
-    forces = internal_forces(moving.body, moving.solved, want, scene, signs)
-    efforts = {key: value for key, value in forces.columns.items() if isinstance(key, Output)}
-    slopes = ca.jacobian(column(efforts.values()), forces.free)
-    found: dict[Column, Any] = dict(forces.columns)
-    found |= {
+    columns, free, _ = internal_forces(moving.body, moving.solved, want, scene, signs)
+    efforts = {key: value for key, value in columns.items() if isinstance(key, Output)}
+    slopes = ca.jacobian(column(efforts.values()), free)
+    columns |= {
         Check("open", key): ca.sum2(ca.fabs(slopes[k, :]))
         for k, key in enumerate(efforts)
         if slopes[k, :].nnz()
     }
-    out = ca.substitute(column(found.values()), forces.free, ca.SX.zeros(forces.free.numel()))
+    out = ca.substitute(column(columns.values()), free, ca.SX.zeros(free.numel()))
     instant = graph("held", moving.inputs | {"signs": column(signs.values())}, out=out)
     every_way = (
         name
         for name, load in frictions_of(mechanism).items()
         if load.every_way or load.beside is not None
     )
-    return HeldEfforts(instant, tuple(found), tuple(signs), tuple(every_way))
+    return HeldEfforts(instant, tuple(columns), tuple(signs), tuple(every_way))

@@ -435,7 +435,7 @@ class _Solver:
         """Rates and accelerations, block by block, and the substitution of everything."""
         body, newton, found = self.multibody, self.newton(), self.found
         if body.sphericals:
-            found = found.with_values(self.iterated.placed)
+            found.change(self.iterated.placed)
         for symbols, direction in self._asides():
             found.note(symbols, column(direction))
         for spherical in body.sphericals:

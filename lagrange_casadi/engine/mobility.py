@@ -52,22 +52,6 @@ from .pressing import frictions_of, joint_friction
 from .sizes import reach
 
 
-@dataclass(frozen=True, eq=False)
-class InternalForces:
-    """Every force that was asked for, over time, the driven motion, the iterated unknowns and the
-    parameters.
-
-    ``free`` are the symbols of what equilibrium leaves open in an over-constrained mechanism. Among
-    the columns, a check measures how far drives are from a place where they cannot make the motion,
-    where they are others than the joints whose motion is given. ``friction`` are the forces of
-    frictions.
-    """
-
-    columns: dict[Column, Any]
-    free: Any
-    friction: Solved
-
-
 def needed_reactions(
     mechanism: Mechanism, reactions: Sequence[str], sections: Sequence[str]
 ) -> tuple[str, ...]:
@@ -89,12 +73,16 @@ def internal_forces(
     want: Wanted,
     scene: Scene,
     signs: Mapping[str, Expression] | None = None,
-) -> InternalForces:
+) -> tuple[dict[Column, Any], ca.SX, Solved]:
     """Derive the efforts, reactions, multipliers of constraints and rows, laws of links and
-    frictions that are wanted.
+    frictions that are wanted: columns over time, the driven motion, the iterated unknowns and the
+    parameters; the symbols of what equilibrium leaves open in an over-constrained mechanism; and
+    the forces of frictions.
 
-    Guides of points and poses bear nothing, and load no link. ``signs`` are those of frictions at
-    rest, which are open without: see :func:`.solve`.
+    Among the columns, a check measures how far drives are from a place where they cannot make the
+    motion, where they are others than the joints whose motion is given. Guides of points and poses
+    bear nothing, and load no link. ``signs`` are those of frictions at rest, which are open
+    without: see :func:`.solve`.
     """
     weights = scene.weights
     along, across = multibody.terms()
@@ -110,11 +98,8 @@ def internal_forces(
     held: dict[Column, Any] = {}
     if weights is not None and multibody.efforts:
         needs = {
-            name: ca.substitute(ca.SX(need), unknowns, values) for name, need in drives.items()
-        }
-        needs = {
-            name: need
-            for name, need in needs.items()
+            name: ca.substitute(ca.SX(need), unknowns, values)
+            for name, need in drives.items()
             if name in multibody.efforts or name not in weights
         }
         size = reach(multibody.mechanism)
@@ -188,7 +173,7 @@ def internal_forces(
             Output("friction", name, "along"): acting.forces[name],
             Output("friction", name, "loss"): acting.lost[name],
         }
-    return InternalForces(columns | acting.checks | held, free, acting)
+    return columns | acting.checks | held, free, acting
 
 
 @dataclass(frozen=True, eq=False)
@@ -420,13 +405,10 @@ def _on_parent(multibody: Multibody, joint: Joint, actions: Mapping[str, ca.SX])
     the joint's own turns.
     """
     force, moment = _on_child(multibody, joint, actions)
-    rotations = [
-        own_coordinate(axis, multibody.coordinates) for axis in joint.axes if axis.kind == "angle"
-    ]
     turned = [
         Rotation.about(c.axis.direction, *ca.vertsplit(c.variables))
-        for c in rotations
-        if c is not None
+        for axis in joint.axes
+        if axis.kind == "angle" and (c := own_coordinate(axis, multibody.coordinates)) is not None
     ] + [joint.turned]
     if joint.child.body is multibody.tree.branch_of[joint.name].far.body:
         for rotation in reversed(turned):

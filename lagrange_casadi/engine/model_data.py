@@ -135,10 +135,6 @@ class ModelData(Graphs, Brief):
             template=template(scene),
         )
 
-    def asked_by(self, scene: Scene) -> ModelData:
-        """The same, with how a scene of the same name asks for instants."""
-        return replace(self, timing=scene.timing())
-
     @property
     def content(self) -> Description:
         """The description, with a :class:`.Leaf` for each number that parameters change."""

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
@@ -64,7 +64,7 @@ class Moving:
             want.own,
         )
         laws, start, solved = solved_motion(scene, body)
-        solved, deviations = _with_turns(body, solved, start, _seeing(body, want))
+        deviations = _with_turns(body, solved, start, _seeing(body, want))
         return cls(scene, want, body, laws, start, solved, deviations)
 
     @property
@@ -186,9 +186,9 @@ def solved_motion(scene: Scene, body: Multibody) -> tuple[Laws, Start, kinematic
 
 def _with_turns(
     body: Multibody, solved: kinematics.Kinematics, start: Start, used: Mapping[str, ca.SX]
-) -> tuple[kinematics.Kinematics, dict[str, Any]]:
-    """The kinematics with the angles that ``used`` expressions of loads and rows see, by their
-    names; and swings, by angle.
+) -> dict[str, Any]:
+    """Note in the kinematics the angles that ``used`` expressions of loads and rows see, by their
+    names; swings, by angle.
 
     At the start of the motion angles lie in (-pi, pi]. Those that are seen only where whole turns
     make no difference, as under a sine, are left there. Raises :class:`DeclarationError` for angles
@@ -220,11 +220,11 @@ def _with_turns(
             )
         c, s = (solved.evaluate(part) for part in (turned.cosine, turned.sine))
         values[turned.name], deviations[turned.name] = rule.angle(c, s, counted)
-    found = solved.found.and_of(
+    solved.found.note(
         column(turned.symbol for turned in body.turned),
         solved.evaluate(column(values[turned.name] for turned in body.turned)),
     )
-    return replace(solved, found=found), deviations
+    return deviations
 
 
 def instant_inputs(mechanism: Mechanism, solved: kinematics.Kinematics) -> dict[str, Expression]:
@@ -286,10 +286,11 @@ def _locks(mechanism: Mechanism, body: Multibody, *, forces: bool) -> dict[Colum
     """
     found: dict[Column, Any] = {}
     for joint in mechanism.joints.values():
-        revolutions = [
-            own_coordinate(axis, body.coordinates) for axis in joint.axes if axis.kind == "angle"
+        known = [
+            turn
+            for axis in joint.axes
+            if axis.kind == "angle" and (turn := own_coordinate(axis, body.coordinates)) is not None
         ]
-        known = [turn for turn in revolutions if turn is not None]
         if len(known) == 3 and (forces or not all(turn.driven for turn in known)):
             found[Check("gimbal", joint.name)] = ca.cos(known[1].value) ** 2
     return found
@@ -332,28 +333,24 @@ def _motion_columns(
     mechanism: Mechanism, body: Multibody, solved: kinematics.Kinematics, driven: Sequence[str]
 ) -> dict[Output, Expression]:
     columns: dict[Output, Any] = {}
+    given = {
+        name: (solved.driven[i], solved.driven_rate[i], solved.driven_acceleration[i])
+        for i, name in enumerate(driven)
+    }
     for name, (joint, axis) in mechanism.coordinates.items():
-        if name in driven:
-            i = driven.index(name)
-            motion = (solved.driven[i], solved.driven_rate[i], solved.driven_acceleration[i])
-        elif not body.tree.measures(joint, axis):
-            continue
-        else:
-            motion = body.motion_along(joint, axis)
-        columns |= dict(zip(motions_of(name), motion, strict=True))
+        if name in given or body.tree.measures(joint, axis):
+            motion = given[name] if name in given else body.motion_along(joint, axis)
+            columns |= dict(zip(motions_of(name), motion, strict=True))
     for part in mechanism.moving:
         frame = body.frames[part.name]
         place = zip("xyz" if mechanism.space else "xy", frame.place_of(ZERO), strict=False)
         columns |= {Output("pose", part.name, component): value for component, value in place}
         if part.oriented and mechanism.space:
-            axes = zip("xyz", (frame.rotation.x, frame.rotation.y, frame.rotation.z), strict=True)
-            cosines = (
-                (f"{name}{component}", value)
-                for name, axis in axes
-                for component, value in zip("xyz", axis, strict=True)
-            )
+            axes = (frame.rotation.x, frame.rotation.y, frame.rotation.z)
             columns |= {
-                Output("pose", part.name, member): ca.SX(value) for member, value in cosines
+                Output("pose", part.name, name + component): ca.SX(value)
+                for name, axis in zip("xyz", axes, strict=True)
+                for component, value in zip("xyz", axis, strict=True)
             }
         elif part.oriented:
             columns[Output("pose", part.name, "angle")] = frame.rotation.angle

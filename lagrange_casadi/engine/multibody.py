@@ -332,12 +332,8 @@ def motion_along(
 
 def own_coordinate(axis: Axis, coordinates: tuple[Coordinate, ...]) -> Coordinate | None:
     """The coordinate of the tree that is along an axis; an absolute direction is not."""
-    for coordinate in coordinates:
-        if coordinate.name == axis.coordinate and (
-            coordinate.driven or coordinate.relative or coordinate.kind == "slide"
-        ):
-            return coordinate
-    return None
+    own = (c for c in coordinates if c.driven or c.relative or c.kind == "slide")
+    return next((c for c in own if c.name == axis.coordinate), None)
 
 
 def change(expression: ca.SX, coordinates: tuple[Coordinate, ...], time: ca.SX) -> ca.SX:

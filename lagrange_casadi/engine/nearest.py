@@ -41,7 +41,7 @@ change with less of which a loop must be open, and what is open of an equation t
 
 @dataclass(frozen=True, eq=False)
 class Nearest:
-    """The loops of a mechanism, by the rows of their equations.
+    """The loops of a mechanism near a state.
 
     Of the coordinates some are ``driven``, the others in the equations are ``free``, and some are
     ``posed``, given by a posture. ``numbers`` are those of the mechanism's symbols, and follow
@@ -51,7 +51,6 @@ class Nearest:
     multibody: Multibody
     numbers: Numbers
     released: ReleasedLoops
-    loops: Sequence[slice]
     driven: Flags
     free: Flags
     posed: Flags
@@ -62,14 +61,12 @@ class Nearest:
         a posture.
         """
         released, coordinates = ReleasedLoops.of(multibody, numbers), multibody.coordinates
-        ends = np.cumsum([0, *(loop.residual.numel() for loop in multibody.loop_equations)])
         present = released.gaps.sparsity_out(1).get_triplet()[1]
         driven = np.array([c.driven for c in coordinates], bool)
         return cls(
             multibody,
             numbers,
             released,
-            [slice(*pair) for pair in itertools.pairwise(ends.tolist())],
             driven,
             np.isin(np.arange(len(coordinates)), present) & ~driven,
             np.array([c.posture_key in posed for c in coordinates], bool),
@@ -134,13 +131,13 @@ class Nearest:
 
     def found(self, state: State) -> tuple[State, list[int]]:
         """The state that comes nearest, and the loops that it leaves open."""
-        if not self.loops:
+        if not self.released.loops:
             return state, []
         for start in self._starts(state):
             if (found := self.closed(start)) is not None:
                 return found, []
         closed, left = self.rows([]), []
-        for k in range(len(self.loops)):
+        for k in range(len(self.released.loops)):
             closed |= self.rows([k])
             if (found := self.closed(state, closed)) is None:
                 closed &= ~self.rows([k])
@@ -151,13 +148,13 @@ class Nearest:
         beside = np.where(self.free, 1e-3 * np.cos(np.arange(self.free.size)), 0.0)
         state = self.least(self.released.moved(state, beside), closed, ~closed)
         apart = np.abs(self.released.at(state)[0]) > _OPEN
-        return state, [k for k in left if apart[self.loops[k]].any()]
+        return state, [k for k in left if apart[self.released.loops[k]].any()]
 
     def rows(self, loops: Sequence[int]) -> Flags:
         """The equations of loops, marked."""
         marked = np.zeros(self.released.residuals.numel(), bool)
         for k in loops:
-            marked[self.loops[k]] = True
+            marked[self.released.loops[k]] = True
         return marked
 
     @cached_property

@@ -158,14 +158,8 @@ class Program(Graphs):
         """
         return closing_of(self.instant, self.bounds, self.newton)
 
-    def seen(self, constraint: str, out: Array) -> Array:
-        """Symbols, (..., symbols, t), of a constraint that may have kinks, from columns ``out``
-        (..., columns, t).
-        """
-        return np.asarray(out[..., self.seen_columns(constraint), :], float)
-
     def seen_columns(self, constraint: str) -> list[int]:
-        """The rows of ``out`` that have it."""
+        """The rows of ``out`` that have the symbols of a constraint that may have kinks."""
         return [
             k for part, k in self.checks("seen").items() if part.rpartition(":")[0] == constraint
         ]

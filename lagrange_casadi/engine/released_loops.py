@@ -4,6 +4,7 @@ rank in numbers.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -42,8 +43,9 @@ class ReleasedLoops:
     ``gaps(u, q, *inputs)`` gives the equations and their derivatives by u; ``turned(u, q)`` the
     quaternions after the small rotations u of balls, which ``resting`` marks;
     ``placed(u, q, *inputs)`` the coordinates' ``variables``. ``residuals`` are the equations over
-    ``given``, the symbols of u and q and the inputs. ``first`` is the state at the start, and
-    ``sizes`` are the units of u. What is below ``slack`` may be the rounding of axes and places.
+    ``given``, the symbols of u and q and the inputs, and ``loops`` their rows by loop. ``first`` is
+    the state at the start, and ``sizes`` are the units of u. What is below ``slack`` may be the
+    rounding of axes and places.
     """
 
     gaps: Any
@@ -51,6 +53,7 @@ class ReleasedLoops:
     placed: Any
     variables: Any
     residuals: Any
+    loops: Sequence[slice]
     given: Sequence[Any]
     first: State
     sizes: Array
@@ -91,12 +94,13 @@ class ReleasedLoops:
         given = [free, quaternion, *inputs]
         slope = ca.Function("slope", given, [ca.jacobian(residuals, free)])
         rows = np.linalg.norm(slope(*first).full(), axis=1)
-        start = 0
-        for loop in multibody.loop_equations:
-            stop = start + loop.residual.numel()
+        ends = itertools.accumulate(
+            (e.residual.numel() for e in multibody.loop_equations), initial=0
+        )
+        loops = [slice(*pair) for pair in itertools.pairwise(ends)]
+        for loop, own in zip(multibody.loop_equations, loops, strict=True):
             if not loop.declared:
-                rows[start:stop] = units(loop, size)
-            start = stop
+                rows[own] = units(loop, size)
         residuals /= ca.DM(np.where(rows > 0.0, rows, 1.0))
         return cls(
             ca.Function("gaps", given, [residuals, ca.jacobian(residuals, free)]),
@@ -108,6 +112,7 @@ class ReleasedLoops:
             ca.Function("placed", given, [column(placed)]),
             column(variables),
             residuals,
+            loops,
             given,
             first,
             sizes,

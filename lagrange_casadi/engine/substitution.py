@@ -25,22 +25,11 @@ class Expressions:
         for symbol, value in zip(entries(symbols), entries(values), strict=True):
             self._known[symbol.element_hash()] = symbol, value
 
-    def and_of(self, symbols: ca.SX, values: ca.SX) -> Expressions:
-        """Substitution with more symbols."""
-        more = Expressions()
-        more._known = dict(self._known)
-        more.note(symbols, values)
-        return more
-
-    def with_values(self, of: Callable[[ca.SX], ca.SX]) -> Expressions:
-        """Substitution with another expression made of each."""
-        more = Expressions()
+    def change(self, of: Callable[[ca.SX], ca.SX]) -> None:
+        """Let another expression, made of each, stand for its symbol."""
         if self._known:
-            symbols, values = (
-                ca.vertcat(*parts) for parts in zip(*self._known.values(), strict=True)
-            )
-            more.note(symbols, of(values))
-        return more
+            symbols, values = (column(parts) for parts in zip(*self._known.values(), strict=True))
+            self.note(symbols, of(values))
 
     def put_into(self, expression: ca.SX) -> ca.SX:
         """An expression with what is known in the place of its symbols."""

@@ -80,13 +80,6 @@ class Loaded:
             0,
         )
 
-    @property
-    def has_formula(self) -> bool:
-        """True if stresses have a formula: in space torsion must have one."""
-        return not self.space or all(
-            shape.properties().torsion is not None for shape in self.course.shapes
-        )
-
     @cached_property
     def parts(self) -> list[Part]:
         """Parts of the link, with their section forces."""
@@ -141,9 +134,11 @@ class Loaded:
 def stresses(
     mechanism: Mechanism, name: str, columns: Mapping[Column, Expression]
 ) -> dict[Column, ca.SX]:
-    """Von Mises' stress that is largest along a link [Pa]; nothing where there is no formula."""
+    """Von Mises' stress that is largest along a link [Pa]; nothing in space where torsion has no
+    formula.
+    """
     link = Loaded(mechanism.space, mechanism.links[name], columns)
-    if not link.has_formula:
+    if link.space and any(shape.properties().torsion is None for shape in link.course.shapes):
         return {}
     return {Output("stress", name, "von_mises"): ca.sqrt(_largest(link, link.square))}
 

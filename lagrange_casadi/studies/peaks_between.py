@@ -387,7 +387,9 @@ class ContinuousSolution(Brief):
         corners.refuse_isolated_laws(t, p, between=True)
         if corners.constraints:
             out = self.interpreter.columns(t, self.p, self.z)
-            corners.refuse_constraints(lambda name: self.program.seen(name, out), p, between=True)
+            corners.refuse_constraints(
+                lambda name: out[..., self.program.seen_columns(name), :], p, between=True
+            )
 
     def signals(self, quantities: Sequence[Quantity], turned: Mapping[int, Array]) -> Signals:
         """Quantities as curves over time; ``turned`` as in :class:`.Signals`."""

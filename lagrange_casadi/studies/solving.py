@@ -78,7 +78,9 @@ def solve(
         explain(error, scene, values)
         raise
     out = np.asarray(evaluated.out, float)
-    data.corners.refuse_constraints(lambda name: program.seen(name, out), p.tolist())
+    data.corners.refuse_constraints(
+        lambda name: out[..., program.seen_columns(name), :], p.tolist()
+    )
     indeterminate += undetermined(program, out, p, method)
 
     elasticity, unbalanced = completed(program, evaluated, instants.t, p, indeterminate)

@@ -184,7 +184,7 @@ def _posture_entry(nearest: Nearest, state: State, known: Mapping[str, int]) -> 
                 "rows": [rows.start, rows.stop],
                 "bodies": [] if loop.declared else [point.body.name for point in joined(loop)],
             }
-            for loop, rows in zip(multibody.loop_equations, nearest.loops, strict=True)
+            for loop, rows in zip(multibody.loop_equations, nearest.released.loops, strict=True)
         ],
     }
 
