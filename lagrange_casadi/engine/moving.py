@@ -5,7 +5,7 @@ checks of loops and curves.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -27,7 +27,7 @@ from .assembly import assemble
 from .drives import pushed
 from .iteration import Start
 from .loop_turns import Guide, depends_on_turns
-from .mobility import needed_reactions
+from .mobility import Action, needed_reactions
 from .model_data import template
 from .multibody import Coordinate, Multibody, own_coordinate
 from .tree import span
@@ -93,9 +93,10 @@ class Moving:
             columns |= motions
         for part in reversed(self.body.applied):
             if part.source in self.want.loads:
-                members = force_members(self.scene.mechanism.space)
+                action = Action(part.force, part.couple)
                 columns |= {
-                    Output("load", part.source, member): part.members[member] for member in members
+                    Output("load", part.source, member): action.member(member)
+                    for member in force_members(self.scene.mechanism.space)
                 }
         placed = self.solved.evaluate(column(columns.values()))
         return dict(zip(columns, ca.vertsplit(placed) if columns else (), strict=True)), loop_angles
@@ -138,7 +139,7 @@ class Moving:
         into them.
         """
         mechanism, body, solved = self.scene.mechanism, self.body, self.solved
-        motions = _motion_columns(mechanism, body, solved, self.laws.joints)
+        motions = _motion_columns(mechanism, body)
         kinds = template(self.scene).content.kinds
         angles = [c for c in body.coordinates if c.kind == "angle"]
         wrapped: dict[Column, Any] = {
@@ -329,18 +330,11 @@ def _unmeasured_angles(body: Multibody, motions: Collection[Output]) -> dict[Col
     return columns
 
 
-def _motion_columns(
-    mechanism: Mechanism, body: Multibody, solved: kinematics.Kinematics, driven: Sequence[str]
-) -> dict[Output, Expression]:
+def _motion_columns(mechanism: Mechanism, body: Multibody) -> dict[Output, Expression]:
     columns: dict[Output, Any] = {}
-    given = {
-        name: (solved.driven[i], solved.driven_rate[i], solved.driven_acceleration[i])
-        for i, name in enumerate(driven)
-    }
     for name, (joint, axis) in mechanism.coordinates.items():
-        if name in given or body.tree.measures(joint, axis):
-            motion = given[name] if name in given else body.motion_along(joint, axis)
-            columns |= dict(zip(motions_of(name), motion, strict=True))
+        if body.tree.measures(joint, axis):
+            columns |= zip(motions_of(name), body.motion_along(joint, axis), strict=True)
     for part in mechanism.moving:
         frame = body.frames[part.name]
         place = zip("xyz" if mechanism.space else "xy", frame.place_of(ZERO), strict=False)

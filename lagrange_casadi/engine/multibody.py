@@ -153,12 +153,6 @@ class Applied:
     couple: Vector = ZERO
     distributed: tuple[Vector, ...] | None = None
 
-    @property
-    def members(self) -> dict[str, Expression]:
-        """Force and couple by what files call them."""
-        names = ("fx", "fy", "fz", "mx", "my", "mz")
-        return dict(zip(names, (*self.force, *self.couple), strict=True))
-
 
 @dataclass(frozen=True, eq=False)
 class Turned:
@@ -255,11 +249,6 @@ class Multibody:
         return column(c.rate for c in self.coordinates)
 
     @property
-    def accelerations(self) -> Expression:
-        """All coordinates' accelerations, one column."""
-        return column(c.acceleration for c in self.coordinates)
-
-    @property
     def mobility_rates(self) -> Expression:
         """The rates of all extra mobilities, one column."""
         return column(self.mobilities.values())
@@ -281,7 +270,7 @@ class Multibody:
             force_function=ca.SX(0),
             coordinates=column(c.variables for c in integrable),
             rates=self.rates,
-            accelerations=self.accelerations,
+            accelerations=column(c.acceleration for c in self.coordinates),
             coordinate_rates=column(c.change for c in integrable),
             mobility_rates=self.mobility_rates,
             velocities=column(self.velocities.symbols),

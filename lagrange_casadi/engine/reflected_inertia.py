@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import casadi as ca
 
 from ..base.quantities import Column, Output
-from ..base.scalars import column, entries, graph
+from ..base.scalars import column, graph
 from ..base.vectors import dot
 from ..model.scene import Scene, Wanted
 from .assembly import assemble
@@ -58,13 +58,7 @@ def reflected_inertia(scene: Scene, parameters: Mapping[str, float]) -> Reflecte
         energy += (drive.reflected * rate / 2 + drive.spin * about) * rate
     still = body.mobility_rates
     energy = solved.evaluate(ca.substitute(energy, still, ca.SX.zeros(still.numel())))
-    given = dict(zip(driven, entries(solved.driven_rate), strict=True))
-    rates = [
-        given[name]
-        if name in given
-        else solved.evaluate(body.motion_along(*mechanism.coordinates[name])[1])
-        for name in drives
-    ]
+    rates = [solved.evaluate(body.motion_along(*mechanism.coordinates[name])[1]) for name in drives]
     matrix = ca.hessian(energy, solved.driven_rate)[0]
     by_rate = ca.jacobian(column(rates), solved.driven_rate)
     out = ca.vertcat(ca.vec(matrix.T), ca.vec(by_rate.T))

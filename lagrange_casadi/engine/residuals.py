@@ -7,9 +7,9 @@ import casadi as ca
 from ..base.arrays import Expression
 from ..base.scalars import column
 from .blocks import Block, Equation
-from .joint_closure import held_directions, off
+from .joint_closure import off
 from .multibody import Multibody
-from .sizes import reach
+from .sizes import directs, reach
 
 
 def loop_residual(multibody: Multibody, block: Block, length: ca.SX) -> ca.SX:
@@ -33,12 +33,10 @@ def lengths(multibody: Multibody, block: Block, length: ca.SX, *, sizes: bool = 
     """
     found = []
     for equation in block.equations:
-        held = held_directions(equation.loop.joint) if equation.loop.joint is not None else 0
         if equation.loop.declared:
             found.append(length / _slope(multibody, equation, length, sizes=sizes))
         else:
-            directs = equation.row >= equation.loop.residual.numel() - held
-            found.append(length if directs else ca.SX(1))
+            found.append(length if directs(equation.loop)[equation.row] else ca.SX(1))
     return column(found)
 
 

@@ -41,8 +41,9 @@ def drawn(expression: ca.SX, coordinates: Iterable[Coordinate]) -> Values:
     symbols = ca.symvar(ca.SX(expression))
     generator = np.random.default_rng(0)
     values = {symbol.element_hash(): generator.uniform(0.5, 1.5, COUNT) for symbol in symbols}
-    turned: dict[SphericalCoordinates, list[Any]] = {}
+    turned = set[SphericalCoordinates]()
     for coordinate in coordinates:
+        spherical = coordinate.spherical
         if coordinate.kind == "angle" and not values.keys().isdisjoint(coordinate.keys):
             angle = generator.uniform(-np.pi, np.pi, COUNT)
             values |= dict(
@@ -50,19 +51,13 @@ def drawn(expression: ca.SX, coordinates: Iterable[Coordinate]) -> Values:
             )
         elif coordinate.kind == "slide" and coordinate.keys[0] in values:
             values[coordinate.keys[0]] *= coordinate.size
-        elif coordinate.spherical is not None and not values.keys().isdisjoint(coordinate.keys):
-            if coordinate.spherical not in turned:
-                turned[coordinate.spherical] = [
-                    np.asarray(row) for row in _turned(generator.normal(size=(4, COUNT)))
-                ]
-            number = int(np.argmax(coordinate.resting))
-            values |= dict(
-                zip(
-                    coordinate.keys,
-                    turned[coordinate.spherical][3 * number : 3 * number + 3],
-                    strict=False,
-                )
-            )
+        elif not (
+            spherical is None or spherical in turned or values.keys().isdisjoint(coordinate.keys)
+        ):
+            turned.add(spherical)
+            axes = _turned(generator.normal(size=(4, COUNT)))
+            for symbol, row in zip(ca.vertsplit(spherical.axes), axes, strict=True):
+                values[symbol.element_hash()] = row
     rows = [values[symbol.element_hash()] for symbol in symbols]
     function = ca.Function("drawn", [column(symbols)], [ca.densify(ca.vec(ca.SX(expression)))])
     with np.errstate(all="ignore"):

@@ -140,14 +140,7 @@ class Section:
         if terms.arm:
             across = self._of("station", self.table.sections[terms.shear].acting, load_point)
             value = value + across * (terms.arm * (self.length * (place - ratio)))
-        accelerated = ca.SX(beyond) < place
-        return (
-            ca.SX(value)
-            if accelerated.is_one()
-            else ca.SX(0)
-            if accelerated.is_zero()
-            else ca.if_else(accelerated, value, 0)
-        )
+        return ca.if_else(ca.SX(beyond) < place, ca.SX(value), 0)
 
     def _distributed(self, terms: Terms, ratio: ca.SX) -> Iterator[Expression]:
         """The parts of a force by what acts along the link: loads by their arms, couples of slices

@@ -70,15 +70,11 @@ class Fibres(Graphs):
     alone: tuple[int, ...]
     needed: tuple[int, ...]
 
-    @classmethod
-    def of(cls, shape: Shape, space: bool) -> Fibres:
-        """Make the fibres of the kind of a shape, once."""
-        return _fibres(shape.kind, tuple(shape.dimensions), space)
-
 
 @functools.cache
 @symbolic
 def _fibres(kind: str, dimensions: tuple[str, ...], space: bool) -> Fibres:
+    """The fibres of a kind of shape with some dimensions."""
     symbols = ca.SX.sym("dimensions", len(dimensions))
     shape = Shape(kind, dict(zip(dimensions, ca.vertsplit(symbols), strict=True)))
     p = shape.properties(space=space)
@@ -120,7 +116,8 @@ class CrossSections:
 
     def fibres(self, cell: int) -> Fibres:
         """The fibres between two breaks."""
-        return Fibres.of(self.beam.course.cells[cell][0], self.space)
+        shape, _ = self.beam.course.cells[cell]
+        return _fibres(shape.kind, tuple(shape.dimensions), self.space)
 
     def stresses(
         self, cell: int, u: Expression, fibres: Sequence[int], forces: Sequence[Expression]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import casadi as ca
 import numpy as np
 
-from ..base.arrays import Array
+from ..base.arrays import Array, Flags
 from ..base.symbolic import symbolic
 from ..model.declaration import Declaration
 from .joint_closure import held_directions
@@ -40,5 +40,10 @@ def extent(declared: Declaration) -> ca.SX:
 
 def units(loop: LoopEquations, size: float) -> Array:
     """Units of a loop's residuals: the mechanism's size [m], or 1 for directions."""
+    return np.where(directs(loop), 1.0, size)
+
+
+def directs(loop: LoopEquations) -> Flags:
+    """Which of a loop's equations hold directions: its last ones."""
     held = held_directions(loop.joint) if loop.joint is not None else 0
-    return np.array([size] * (loop.residual.numel() - held) + [1.0] * held)
+    return np.arange(loop.residual.numel())[::-1] < held

@@ -101,9 +101,7 @@ def find_two_force_links(mechanism: Mechanism, driven: Collection[str]) -> tuple
         if isinstance(measure.of, Joint)
     }
     checked |= {load.joint.name for load in mechanism.loads.values() if isinstance(load, Friction)}
-    driven_joints = {
-        joint.name for name, (joint, _) in mechanism.coordinates.items() if name in driven
-    }
+    checked |= {joint.name for name, (joint, _) in mechanism.coordinates.items() if name in driven}
     off = mechanism.rounding and mechanism.rounding * mechanism.ownership.at_defaults(
         sum(ca.SX(link.length) for link in mechanism.links.values())
     )
@@ -111,20 +109,13 @@ def find_two_force_links(mechanism: Mechanism, driven: Collection[str]) -> tuple
         joints = ends.get(link, [])
         if len(joints) != 2 or not isinstance(link.mass, Density) or link.mass.slices is not None:
             continue
-        points = [joint.on(link) for joint in joints]
+        points = [*(joint.on(link) for joint in joints), *_marked(mechanism, link)]
         others = [body for joint in joints for body in joint.bodies if body is not link]
-        sphericals = all(
-            joint.kind == "spherical" and joint.name not in checked | driven_joints
-            for joint in joints
-        )
         if (
-            not sphericals
-            or not all(_on_axis(point, off) for point in points)
-            or any(body in found for body in others)
-        ):
-            continue
-        if all(_on_axis(point, off) for point in _marked(mechanism, link)) and not _twisted(
-            mechanism, link
+            all(joint.kind == "spherical" and joint.name not in checked for joint in joints)
+            and all(_on_axis(point, off) for point in points)
+            and not any(body in found for body in others)
+            and not _twisted(mechanism, link)
         ):
             values = parameter_values(mechanism.parameters, None)
             first, second = sorted(joints, key=lambda joint: _place(mechanism, joint, link, values))
