@@ -25,9 +25,6 @@ from ..model.mechanism import Mechanism
 from .strains import Moduli, moduli_of, strains
 from .utilisation import Loaded, Part, most, sampled
 
-_MORE = 6
-"""More nodes where the cross-section changes."""
-
 
 def deflections(
     mechanism: Mechanism, name: str, columns: Mapping[Column, Expression], *, ends: bool
@@ -98,8 +95,7 @@ def _curve(
     found: list[tuple[Part, Any]] = []
     turn, across = ca.SX(0.0), ca.SX(0.0)
     for part in link.parts:
-        first, last = link.course.cells[part.cell]
-        nodes, once, twice = _integrals(link.degree + (0 if first is last else _MORE))
+        nodes, once, twice = _integrals(link.degree_along(part))
         each = [
             strains(link.at(part, x), {name: part.force(name, x) for name in part.forces}, moduli)
             for x in nodes

@@ -17,7 +17,7 @@ from ..base import cache
 from ..base.arguments import Outputs, public, texts
 from ..base.arrays import Expression
 from ..base.quantities import Check, Column, Output
-from ..base.scalars import column, graph
+from ..base.scalars import column, entries, graph
 from ..base.symbolic import symbolic
 from ..base.tables import Table, table_of
 from ..errors import AssemblyError, DeclarationError, MobilityError, PostureError
@@ -273,7 +273,7 @@ class _JointForces:
             if friction.symbols.numel() and ca.depends_on(ca.SX(value), friction.symbols)
         }
         placed = ca.substitute(column(dependent.values()), friction.symbols, friction.values)
-        pressed = dict(zip(dependent, ca.vertsplit(placed) if dependent else (), strict=True))
+        pressed = dict(zip(dependent, entries(placed), strict=True))
         acting = gathered(forces, free, links, Sampling.of(moving.body)) | pressed
         # Beside the start of the motion, for a drive through a gear moves little of what it drives,
         # and holds it all the same.

@@ -51,7 +51,7 @@ def held_efforts(scene: Scene) -> HeldEfforts:
         for k, key in enumerate(efforts)
         if slopes[k, :].nnz()
     }
-    out = ca.substitute(column(columns.values()), free, ca.SX.zeros(free.numel()))
+    out = ca.substitute(column(columns.values()), free, 0)
     instant = graph("held", moving.inputs | {"signs": column(signs.values())}, out=out)
     every_way = (
         name

@@ -38,7 +38,6 @@ from ..model.scene import Wanted
 from ..model.scene_arguments import Elastic
 from .indeterminate import Forces
 from .section_function import Place, Section
-from .section_stress import FORCES
 from .sizes import extent
 from .strains import Moduli, moduli_of, resultants
 from .utilisation import Loaded
@@ -333,11 +332,10 @@ def _loading(
     if isinstance(link.mass, Density):
         section = Section(link.name, table_of(mechanism.space), columns, link.length, link.mass)
         places = [Place(0.0), *section.marks, Place(1.0, side="base")]
-        names = FORCES[mechanism.space]
         return [
             section.at(name, place, END["single"]) / _unit(mechanism, name)
             for place in places
-            for name in names
+            for name in section.table.sections
         ]
     sums: dict[tuple[str, ...], Any] = {}
     for name, joint in mechanism.joints.items():

@@ -30,7 +30,7 @@ from ..base.arrays import Expression
 from ..base.frames import Frame, Velocities
 from ..base.quantities import Check, Column, Output, force_members
 from ..base.rotation import Rotation
-from ..base.scalars import column
+from ..base.scalars import column, entries
 from ..base.tables import table_of
 from ..base.vectors import ZERO, cross, dot, plus, times
 from ..model.declared_parts import Link, Point, PointMass, Vector
@@ -141,8 +141,6 @@ def internal_forces(
         }
     for name in want.sections:
         columns |= _section_law(multibody, name, found, drives)
-    # All at once, for a substitution visits the whole graph; and mobilities rest.
-    rates = multibody.mobility_rates
     losses = {}
     for name, friction in frictions_of(multibody.mechanism).items():
         supported_there = found[friction.joint.name].ground
@@ -155,10 +153,9 @@ def internal_forces(
         if transmission.loss is not None:
             losses[transmission.loss.name] = braking(multibody, transmission.loss, tying[name])
     rows = [*columns.values(), *(row for one in losses.values() for row in one.rows)]
-    resting = ca.substitute(column(rows), rates, ca.SX.zeros(rates.numel()))
-    every = iter(
-        ca.vertsplit(ca.substitute(kinematics.evaluate(resting), unknowns, values)) if rows else ()
-    )
+    # All at once, for a substitution visits the whole graph; and mobilities rest.
+    resting = ca.substitute(column(rows), multibody.mobility_rates, 0)
+    every = iter(entries(ca.substitute(kinematics.evaluate(resting), unknowns, values)))
     columns = {name: next(every) for name in columns}
     losses = {name: one.of_rows([next(every) for _ in one.rows]) for name, one in losses.items()}
     acting = solve(
@@ -167,7 +164,7 @@ def internal_forces(
         signs,
     )
     known = ca.substitute(column(columns.values()), acting.symbols, acting.values)
-    columns = dict(zip(columns, ca.vertsplit(known) if columns else (), strict=True))
+    columns = dict(zip(columns, entries(known), strict=True))
     for name in want.frictions:
         columns |= {
             Output("friction", name, "along"): acting.forces[name],

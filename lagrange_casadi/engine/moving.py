@@ -13,7 +13,7 @@ import casadi as ca
 
 from ..base.arrays import Expression
 from ..base.quantities import Check, Column, Output, force_members, motions_of
-from ..base.scalars import column
+from ..base.scalars import column, entries
 from ..base.tables import ANGLE
 from ..base.vectors import ZERO, dot
 from ..errors import DeclarationError
@@ -99,7 +99,7 @@ class Moving:
                     for member in force_members(self.scene.mechanism.space)
                 }
         placed = self.solved.evaluate(column(columns.values()))
-        return dict(zip(columns, ca.vertsplit(placed) if columns else (), strict=True)), loop_angles
+        return dict(zip(columns, entries(placed), strict=True)), loop_angles
 
     def _checks(self) -> dict[Column, Expression]:
         """Checks that loops close, and that rows and curves are kept to."""

@@ -33,7 +33,7 @@ def multipliers_of(
         residual = ca.substitute(residual, symbols, values)
         # What no equation of theirs moves, others may still be written in, with factors that
         # cancel.
-        residual = ca.substitute(residual, every, ca.SX.zeros(every.numel()))
+        residual = ca.substitute(residual, every, 0)
         open_here = ca.SX.sym(f"free_{block.loop_equations[0].name}", system.free)
         free = ca.vertcat(free, open_here)
         found = system.solve_transposed(residual, open_here)
@@ -44,9 +44,7 @@ def multipliers_of(
         mu = column(program.multiplier for program in multibody.rows)
         unaided = column(rows[program.row.replaces] for program in multibody.rows)
         unaided = ca.substitute(unaided, symbols, values)
-        solved = ca.solve(
-            ca.jacobian(unaided, mu), -ca.substitute(unaided, mu, ca.SX.zeros(mu.numel()))
-        )
+        solved = ca.solve(ca.jacobian(unaided, mu), -ca.substitute(unaided, mu, 0))
         values = ca.substitute(values, mu, solved)
         symbols, values = ca.vertcat(symbols, mu), ca.vertcat(values, solved)
     return symbols, values, free
@@ -72,13 +70,13 @@ def _where_they_touch(
     local = column(found[row] for row in rows)
     every = transmissions_of(multibody.mechanism)
     idle = column(transmission.symbol for transmission in every.values())
-    local = ca.substitute(local, idle, ca.SX.zeros(idle.numel()))
+    local = ca.substitute(local, idle, 0)
     if all(len(transmission.meshes) == 1 for transmission in every.values()):
         others = column(loop.multipliers for loop in multibody.loop_equations if loop.name in every)
-        solved = ca.substitute(local, others, ca.SX.zeros(others.numel()))
+        solved = ca.substitute(local, others, 0)
     else:
         slopes = ca.jacobian(local, symbols)
-        rest = ca.substitute(local, symbols, ca.SX.zeros(symbols.numel()))
+        rest = ca.substitute(local, symbols, 0)
         solved = -ca.solve(slopes, rest)
     found, values = (ca.substitute(part, symbols, solved) for part in (found, values))
     for k, row in enumerate(rows):

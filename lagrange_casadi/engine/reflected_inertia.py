@@ -56,8 +56,7 @@ def reflected_inertia(scene: Scene, parameters: Mapping[str, float]) -> Reflecte
             body.along[drive.axis.coordinate], body.frames[drive.joint.parent.body.name].rate
         )
         energy += (drive.reflected * rate / 2 + drive.spin * about) * rate
-    still = body.mobility_rates
-    energy = solved.evaluate(ca.substitute(energy, still, ca.SX.zeros(still.numel())))
+    energy = solved.evaluate(ca.substitute(energy, body.mobility_rates, 0))
     rates = [solved.evaluate(body.motion_along(*mechanism.coordinates[name])[1]) for name in drives]
     matrix = ca.hessian(energy, solved.driven_rate)[0]
     by_rate = ca.jacobian(column(rates), solved.driven_rate)

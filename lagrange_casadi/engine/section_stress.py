@@ -19,18 +19,13 @@ import numpy as np
 from ..base.arrays import Array, Expression, Operand
 from ..base.scalars import called
 from ..base.symbolic import Graphs, symbolic
+from ..base.tables import table_of
 from ..model.beams.beam import Beam, Notch
 from ..model.beams.properties import Properties, smaller
 from ..model.beams.shape import Shape, between
 
-FORCES = {
-    False: ("axial", "shear", "bending"),
-    True: ("axial", "shear_y", "shear_z", "torsion", "bending_y", "bending_z"),
-}
-"""The section forces that stresses are linear in: in the plane, and in space."""
-
 _PLACES = {False: (0, 1, 5), True: (0, 1, 2, 3, 4, 5)}
-"""Places of the forces in :meth:`.Properties.rows`."""
+"""Places of the table's section forces in :meth:`.Properties.rows`."""
 
 KINDS = {"normal": (1.0, 0.0), "shear": (0.0, 1.0), "von_mises": (1.0, 3.0), "tresca": (1.0, 4.0)}
 """Weights of s^2 and t^2 in the square of each kind of stress."""
@@ -100,8 +95,8 @@ class CrossSections:
 
     @property
     def forces(self) -> tuple[str, ...]:
-        """The names of the section forces that stresses are made of."""
-        return FORCES[self.space]
+        """The names of the section forces that stresses are made of, and are linear in."""
+        return tuple(table_of(self.space).sections)
 
     def shape(self, cell: int, u: Expression) -> Shape:
         """The shape between two breaks, at ratios ``u``."""

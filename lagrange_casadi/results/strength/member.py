@@ -15,9 +15,10 @@ from ...base.arrays import Array
 from ...base.bernstein import interpolated, nodes, product, raised, value, within
 from ...base.brief import Brief
 from ...base.quantities import Output
+from ...base.tables import table_of
 from ...engine.model_data import ModelData
 from ...engine.section_function import Side
-from ...engine.section_stress import FORCES, CrossSections
+from ...engine.section_stress import CrossSections
 from ...engine.two_force_links import unaimed
 from ...errors import DeclarationError
 from ...model.beams.beam import Beam
@@ -181,7 +182,9 @@ class Member(Brief):
             )
         space = solution.description.space
         if indeterminate := [
-            force for force in FORCES[space] if not solution.determined(f"section:{link}:{force}")
+            force
+            for force in table_of(space).sections
+            if not solution.determined(f"section:{link}:{force}")
         ]:
             names = " and ".join(indeterminate)
             raise DeclarationError(
