@@ -32,7 +32,7 @@ from ..base.quantities import Check, Column, Output, force_members
 from ..base.rotation import Rotation
 from ..base.scalars import column, entries
 from ..base.tables import table_of
-from ..base.vectors import ZERO, cross, dot, plus, times
+from ..base.vectors import ZERO, cross, dot, nil, plus, times
 from ..model.declared_parts import Link, Point, PointMass, Vector
 from ..model.joints import Joint
 from ..model.limits import at_end
@@ -290,10 +290,8 @@ def _of_any_link(space: bool) -> tuple[Expression, Expression]:
     velocity, and its change; and these symbols.
     """
     symbols = ca.SX.sym("motion", 12)
-    at_rest = () if space else (2, 5, 6, 7, 9, 10)
-    entries = [0.0 if k in at_rest else symbols[k] for k in range(12)]
     speed, acceleration, rate, angular = (
-        (entries[k], entries[k + 1], entries[k + 2]) for k in (0, 3, 6, 9)
+        (symbols[k], symbols[k + 1], symbols[k + 2]) for k in (0, 3, 6, 9)
     )
     base_frame = Frame(speed=speed, acceleration=acceleration, rate=rate, angular=angular)
     mass, first, second = (ca.SX.sym(f"mu{i}") for i in range(3))
@@ -331,39 +329,34 @@ def _loads_on(
                         along = axis.direction if len(joint.axes) == 1 else rotation.resolve(along)
                     push = times(drives[axis.coordinate], along)
                     action += Action(couple=push) if axis.kind == "angle" else Action(push)
-            x, y, z = point.place
             if joint.slides and point is joint.parent:
-                parent, child = (multibody.frames[body.name] for body in joint.bodies)
-                x, y, z = carried(joint, parent, child)
+                place = carried(joint, *(multibody.frames[body.name] for body in joint.bodies))
             elif _at_base(point):
                 continue
-            elif point.end == "tip":
-                x = None
             else:
-                x = at_end(point)
+                place = _place(point)
             action = action if sign > 0 else -action
-            yield joint.name, (x, y, z), action if local else action.resolved(rotation)
+            yield joint.name, place, action if local else action.resolved(rotation)
     counts: dict[str, int] = {}
     m = multibody.mechanism
     acting = {*m.joints, *m.loads, *m.constraints, *m.rows, *m.drives}
     for part in (*multibody.applied, *multibody.held):
         if part.point.body is link and part.distributed is None and not _at_base(part.point):
-            x = None if part.point.end == "tip" else at_end(part.point)
             name = part.source
             while counts.setdefault(part.source, 0) and name in acting:
                 counts[part.source] += 1
                 name = f"{part.source}_{counts[part.source]}"
             counts[part.source] = max(counts[part.source], 1)
-            yield (
-                name,
-                (x, *part.point.place[1:]),
-                Action(part.force, part.couple).resolved(rotation),
-            )
+            yield name, _place(part.point), Action(part.force, part.couple).resolved(rotation)
 
 
 def _at_base(point: Point) -> bool:
-    x = at_end(point)
-    return isinstance(x, float) and x == 0.0
+    return nil(at_end(point))
+
+
+def _place(point: Point) -> Vector:
+    """A point in the axes of its link [m]; at the tip x is None."""
+    return (None if point.end == "tip" else at_end(point), *point.place[1:])
 
 
 def _reaction(multibody: Multibody, joint: Joint, actions: Mapping[str, Expression]) -> Reaction:

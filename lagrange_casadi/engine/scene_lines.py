@@ -10,6 +10,7 @@ import numpy as np
 
 from ..base.arrays import Expression
 from ..base.lookups import PREFIX
+from ..base.vectors import nil
 from ..model.constraints import Constraint
 from ..model.loads import Force, Friction, LineLoad, Load, Torque
 from ..model.motion_inverse import MotionInverse
@@ -172,10 +173,7 @@ def _along(powers: Sequence[Expression]) -> str:
     """
     first, last = sum(powers[1:], powers[0]), powers[0]
     words = " to ".join(dict.fromkeys((_short(first), _short(last))))
-    degree = max(
-        (j for j, power in enumerate(powers) if not (isinstance(power, float) and power == 0.0)),
-        default=0,
-    )
+    degree = max((j for j, power in enumerate(powers) if not nil(power)), default=0)
     return f"{words} N/m" if degree < 2 else f"{words} N/m by a polynomial of degree {degree}"
 
 
