@@ -44,6 +44,6 @@ def units(loop: LoopEquations, size: float) -> Array:
 
 
 def directs(loop: LoopEquations) -> Flags:
-    """Which of a loop's equations hold directions: its last ones."""
+    """The equations of a loop that hold directions, marked: its last ones."""
     held = held_directions(loop.joint) if loop.joint is not None else 0
     return np.arange(loop.residual.numel())[::-1] < held
