@@ -2,18 +2,17 @@
 /* What bends a row at a value downwards. */
 static search_real search_bend(const search_real* y) { return 2*y[0] - y[-1] - y[1]; }
 
-/* How far what bends the flanks of a kink in step i of n - 1 upwards may take it beyond their chords. */
-static search_real search_flanks(const search_real* row, long long i, long long n, search_real sign) {
-  const search_real* y = row + i;
-  if (i < 2) return 2*search_magnitude(search_bend(y + 2));
-  if (i > n - 4) return 2*search_magnitude(search_bend(y - 1));
-  return search_upper(-sign*search_bend(y - 1), 0) + search_upper(-sign*search_bend(y + 2), 0);
-}
-
 /* What a curve bends upwards beside step i of n - 1. */
 static search_real search_inflected(const search_real* row, long long i, long long n, search_real sign) {
   const search_real *y = row + i, before = i > 1 ? -sign*search_bend(y - 1) : 0, after = i < n - 3 ? -sign*search_bend(y + 2) : 0;
   return search_upper(before, 0) + search_upper(after, 0);
+}
+
+/* How far what bends the flanks of a kink in step i of n - 1 upwards may take it beyond their chords. */
+static search_real search_flanks(const search_real* row, long long i, long long n, search_real sign) {
+  if (i < 2) return 2*search_magnitude(search_bend(row + i + 2));
+  if (i > n - 4) return 2*search_magnitude(search_bend(row + i - 1));
+  return search_inflected(row, i, n, sign);
 }
 
 /* Upper bounds of a curve in step i of n - 1, and of what it is below zero. Where it bends downwards at both ends of a step, a curve is
@@ -48,25 +47,27 @@ static search_real search_furthest(const search_real* row, long long i, long lon
 
 static search_real search_floor(search_real x) { return x - x == 0 ? (search_real) floor((double) x) : x; }
 
-/* How many kinks one of the watched has in a step, 2 for more; or SEARCH_MANY where it may do anything. Unless it may have a kink
-   itself there, as bent says, one that bends little beside how far it goes stays between its ends. */
+/* How many kinks one of the watched has in step i of a panel, 2 for more; or SEARCH_MANY where it may do anything. Unless it may have a
+   kink itself there, as bent says, one that bends little beside how far it goes stays between its ends. */
 #define SEARCH_MANY 100
 #define SEARCH_NUMBERED(kind) ((kind) == SEARCH_IS_SWITCH || (kind) == SEARCH_IS_KNOT)
-static int search_kinks(const search_real* row, long long i, long long n, int kind, const search_real* at, int count, double step,
-                         int bent) {
-  const search_real a = row[i], b = row[i + 1], least = a < b ? a : b, most = a < b ? b : a;
-  search_real low, high, nearest, sizes, turned;
+static int search_kinks(const search_now* now, const search_panel* panel, int watch, long long i, int bent) {
+  const search_real *row = search_watched(panel, watch), *at = now->curves->watch_at + now->curves->watch_first[watch];
+  const search_real a = row[i], b = row[i + 1], least = search_lower(a, b), most = search_upper(b, a);
+  const int kind = now->curves->watch[watch], count = now->curves->watch_first[watch + 1] - now->curves->watch_first[watch];
+  const long long n = panel->n;
+  search_real low, high, nearest, turned;
   long long j;
   int k, kinks = 0;
   if (kind == SEARCH_IS_RATE) {
-    nearest = (a < 0 ? -a : a) < (b < 0 ? -b : b) ? (b < 0 ? -b : b) : (a < 0 ? -a : a);
-    return (double) nearest*step > SEARCH_RATE ? SEARCH_MANY : 0;
+    nearest = search_upper(search_magnitude(b), search_magnitude(a));
+    return (double) nearest*search_width(panel) > SEARCH_RATE ? SEARCH_MANY : 0;
   }
   if (kind == SEARCH_IS_TURN) {
     for (j = i > 0 ? i - 1 : i; j <= i + 1 && j < n - 1; ++j) {
       turned = row[j + 1] - row[j];
       turned -= SEARCH_TURN*search_floor(turned*(1/SEARCH_TURN) + SEARCH_HALF);
-      if ((turned < 0 ? -turned : turned) > SEARCH_RATE) return SEARCH_MANY;
+      if (search_magnitude(turned) > SEARCH_RATE) return SEARCH_MANY;
     }
     return 0;
   }
@@ -79,8 +80,7 @@ static int search_kinks(const search_real* row, long long i, long long n, int ki
   if (kind == SEARCH_IS_POLE || kind == SEARCH_IS_ROOT) {
     nearest = a > 0 ? low : -high;
     if (kind == SEARCH_IS_ROOT) return (a > 0) != (b > 0) || nearest < 0;
-    sizes = (a < 0 ? -a : a) < (b < 0 ? -b : b) ? (a < 0 ? -a : a) : (b < 0 ? -b : b);
-    if ((a > 0) != (b > 0) || nearest < SEARCH_DIP*sizes) return SEARCH_MANY;
+    if ((a > 0) != (b > 0) || nearest < SEARCH_DIP*search_lower(search_magnitude(a), search_magnitude(b))) return SEARCH_MANY;
     if ((a - a == 0 || a != a) && (b - b == 0 || b != b)) return 0;
     for (j = 0; j < n; ++j) if (row[j] - row[j] == 0 || row[j] != row[j]) return SEARCH_MANY;
     return 0;
@@ -217,12 +217,12 @@ static int search_lingers(const search_now* now, int watch, long long step) {
    and on which sides it is beyond that, before and after. */
 static void search_measure(search_now* now, long long step) {
   const search_panel* all = &now->all;
-  const int own = (int) (now->curves->curves + now->curves->places), watches = (int) now->curves->watches;
-  const int together = now->call->together;
+  const int rows = search_rows(now), watches = (int) now->curves->watches;
   const double beside = search_beside(now, all);
   double t[2*SEARCH_QUIET];
+  search_real near[2*SEARCH_QUIET];
   long long at;
-  int i, j, k, any = 0;
+  int j, k, any = 0;
   for (k = 0; k < watches; ++k) {
     now->noise[k] = 0;
     if (!search_is_switching(now, k) || now->ignored[k] || any) continue;
@@ -234,15 +234,11 @@ static void search_measure(search_now* now, long long step) {
     t[j] = all->t[step] + j*beside;
     t[SEARCH_QUIET + j] = all->t[step + 1] - j*beside;
   }
-  for (i = 0; i < 2*SEARCH_QUIET; i += together) {
-    search_evaluate(now, t + i, 2*SEARCH_QUIET - i < together ? 2*SEARCH_QUIET - i : together, 0, now->found, together);
-    for (j = i; j < 2*SEARCH_QUIET && j < i + together; ++j) {
-      for (k = 0; k < watches; ++k) now->near[2*SEARCH_QUIET*k + j] = search_found(now, own + k, j - i);
-    }
-  }
+  search_columns_at(now, t, 2*SEARCH_QUIET, 0, now->near);
   for (k = 0; k < watches; ++k) {
-    const search_real *near = now->near + 2*SEARCH_QUIET*k, *row = search_watched(all, k);
+    const search_real* row = search_watched(all, k);
     if (!search_is_switching(now, k)) continue;
+    for (j = 0; j < 2*SEARCH_QUIET; ++j) near[j] = now->near[(j + 1)*rows - watches + k];
     now->noise[k] = search_upper(search_shaken(near, 0, SEARCH_QUIET, 1), search_shaken(near + SEARCH_QUIET, 0, SEARCH_QUIET, 1));
     for (at = step; at > 0 && search_gap(now, k, row[at]) <= now->noise[k]; --at) {}
     now->sides[2*k] = search_side(now, k, row[at]);
@@ -274,35 +270,31 @@ static int search_switches(const search_now* now, const search_panel* panel, int
   return 0;
 }
 
-/* Take in what all curves are at a time, of a column with what is so far apart. */
-static void search_note_column(search_now* now, double t, const search_real* column, long long apart) {
-  const search_real *places = column + now->curves->curves*apart, *watched = places + now->curves->places*apart;
+/* Take in what all curves are at a time, from a column. */
+static void search_note_column(search_now* now, double t, const search_real* column) {
+  const search_real *places = column + now->curves->curves, *watched = places + now->curves->places;
   int k;
   for (k = 0; k < now->curves->curves; ++k) {
-    if (!search_counts(now, now->quantity[k], t, watched, apart)) continue;
-    search_note(now, k, column[k*apart], t, search_ratio(now, k, places, apart));
+    if (search_counts(now, now->quantity[k], t, watched, 1)) search_note(now, k, column[k], t, search_ratio(now, k, places, 1));
   }
 }
 
 /* Sample ever closer to both ends of steps in a row in which rounding switches one of the watched: what that switches is largest at one
    of them. Becomes the last of these steps. */
 static long long search_toward_ends(search_now* now, const search_panel* panel, int watch, long long step) {
-  const int together = now->call->together;
   long long first = step, last = step;
   double t[2*SEARCH_INNER], width;
-  int i, j;
+  int j;
   while (search_undecided(now, panel, watch, first - 1)) --first;
   while (search_undecided(now, panel, watch, last + 1)) ++last;
   width = panel->t[last + 1] - panel->t[first];
-  for (i = 0; i < SEARCH_INNER; ++i) {
+  for (j = 0; j < SEARCH_INNER; ++j) {
     width /= SEARCH_INNER + 1;
-    t[i] = panel->t[first] + width;
-    t[SEARCH_INNER + i] = panel->t[last + 1] - width;
+    t[j] = panel->t[first] + width;
+    t[SEARCH_INNER + j] = panel->t[last + 1] - width;
   }
-  for (i = 0; i < 2*SEARCH_INNER; i += together) {
-    search_evaluate(now, t + i, 2*SEARCH_INNER - i < together ? 2*SEARCH_INNER - i : together, ~0ull, now->found, together);
-    for (j = i; j < 2*SEARCH_INNER && j < i + together; ++j) search_note_column(now, t[j], now->found + j - i, together);
-  }
+  search_columns_at(now, t, 2*SEARCH_INNER, ~0ull, now->near);
+  for (j = 0; j < 2*SEARCH_INNER; ++j) search_note_column(now, t[j], now->near + j*search_rows(now));
   return last;
 }
 
@@ -350,7 +342,6 @@ static int search_leaps(const search_now* now, const search_panel* panel, int wa
 static void search_hide(search_now* now, const search_panel* panel, int depth) {
   const lagrange_casadi_curves* curves = now->curves;
   const long long steps = panel->n - 1;
-  const double step = search_width(panel);
   long long i, sampled;
   int any = 0, k;
   memset(panel->kinks, 0, (size_t) steps);
@@ -362,11 +353,10 @@ static void search_hide(search_now* now, const search_panel* panel, int depth) {
   }
   for (k = 0; k < curves->watches; ++k) {
     search_real* row = search_watched(panel, k);
-    const int kind = curves->watch[k], first = curves->watch_first[k];
-    if (now->ignored[k] || !search_is_sharp(row, panel->n, kind, step)) continue;
+    const int kind = curves->watch[k];
+    if (now->ignored[k] || !search_is_sharp(row, panel->n, kind, search_width(panel))) continue;
     for (sampled = -1, i = 0; i < steps; ++i) {
-      const int found = search_kinks(row, i, panel->n, kind, curves->watch_at + first, curves->watch_first[k + 1] - first, step,
-                                     panel->kinks[i] || panel->hiding[i] & SEARCH_HIDES);
+      const int found = search_kinks(now, panel, k, i, panel->kinks[i] || panel->hiding[i] & SEARCH_HIDES);
       if (found && search_undecided(now, panel, k, i)) {
         if (i > sampled && depth < SEARCH_FINEST && !now->call->error) sampled = search_toward_ends(now, panel, k, i);
         continue;
@@ -395,19 +385,12 @@ static int search_kinked(const search_now* now, const search_panel* panel, long 
   return kinked;
 }
 
-/* How many kinks one of the watched has in a step. */
-static int search_kinks_in(const search_now* now, const search_panel* panel, int watch, long long step) {
-  const int first = now->curves->watch_first[watch];
-  return search_kinks(search_watched(panel, watch), step, panel->n, now->curves->watch[watch], now->curves->watch_at + first,
-                      now->curves->watch_first[watch + 1] - first, search_width(panel), 0);
-}
-
 /* Whether one of the watched may hide something in a step, alone or with another kink there or beside it. */
 static int search_hides_at(const search_now* now, const search_panel* panel, int watch, long long step) {
   long long i;
   int found;
   for (i = step > 0 ? step - 1 : 0; i <= step + 1 && i < panel->n - 1; ++i) {
-    found = search_kinks_in(now, panel, watch, i);
+    found = search_kinks(now, panel, watch, i, 0);
     if (found && (i == step || found != SEARCH_MANY) && !search_undecided(now, panel, watch, i)) return 1;
   }
   return 0;

@@ -47,32 +47,21 @@ static void designs_place(const designs_now* now, const double* t, const casadi_
   if (SCENE_NZ) memcpy(at + SCENE_PLACE, place, sizeof place);
 }
 
-/* The columns there. */
-static void designs_at(const designs_now* now, const double* t, const casadi_int* near, casadi_real* y) {
-  casadi_real at[SCENE_PLACE + SCENE_NZ];
-  designs_place(now, t, near, at);
-  scene_columns(&now->scene, at, y);
-}
-
-/* The instant that is nearest to a time. */
-static casadi_int designs_near(const designs_now* now, double t) {
-  const double x = (t - now->t[0])/(2*now->half) + 0.5;
-  const casadi_int i = x > 0 ? (casadi_int) x : 0;
-  return i < now->n ? i : now->n - 1;
-}
-
 /* Curves, their places and what is watched at up to LANES times, into rows that are as far apart: what the search asks for. */
 static int designs_asked(void* of, long long count, const double* t, unsigned long long need, lanes_real* out, long long apart) {
   const designs_now* now = (const designs_now*) of;
-  casadi_real y[SCENE_COLUMNS], value[DESIGNS_CURVES], place[SCENE_SOME(DESIGNS_PLACES)];
-  double times[LANES];
+  casadi_real at[SCENE_PLACE + SCENE_NZ], y[SCENE_COLUMNS], value[DESIGNS_CURVES], place[SCENE_SOME(DESIGNS_PLACES)];
+  double times[LANES], x;
   casadi_int near[LANES];
   int j, k;
   for (j = 0; j < LANES; ++j) {
     times[j] = t[j < count ? j : count - 1];
-    near[j] = designs_near(now, times[j]);
+    /* The instant that is nearest. */
+    x = (times[j] - now->t[0])/(2*now->half) + 0.5;
+    near[j] = !(x > 0) ? 0 : x < (double) now->n ? (casadi_int) x : now->n - 1;
   }
-  designs_at(now, times, near, y);
+  designs_place(now, times, near, at);
+  scene_columns(&now->scene, at, y);
   designs_curves(y, now->matter, need, value, place);
   for (k = 0; k < DESIGNS_CURVES; ++k) scene_store(out + k*apart, value[k]);
   for (k = 0; k < DESIGNS_PLACES; ++k) scene_store(out + (DESIGNS_CURVES + k)*apart, place[k]);
@@ -170,9 +159,6 @@ static void centre_path(const centre_step* step, int which, const centre_real* x
 }
 
 DESIGNS_CENTRE
-#endif
-
-#if DESIGNS_CLOSINGS
 /* Whether the square of a sine may come to zero in a step: see steps_near of engine/dead_centres.py. */
 static int designs_near_zero(const designs_now* now, const lanes_real* row, int sine, casadi_int i, lanes_real limit) {
   const double* t = now->t + i;
@@ -209,22 +195,16 @@ static casadi_int designs_passed(const designs_now* now, int check) {
   return now->n;
 }
 
-/* The largest of what is checked over all instants. */
-static lanes_real designs_most(const designs_now* now, int check) {
-  const lanes_real* row = designs_row(now, DESIGNS_CHECKED + check);
-  lanes_real most = 0;
-  casadi_int i;
-  for (i = 0; i < now->n; ++i) most = row[i] > most ? row[i] : most;
-  return most;
-}
-
 /* What is beside the checks of a design: the largest terms of rows, and after which instant a dead centre is passed. */
 static void designs_bind(designs_now* now) {
-  int k, kind;
+  casadi_int i;
+  int k;
   for (k = 0; k < DESIGNS_BOUNDS; ++k) {
-    lanes_real* row = designs_row(now, DESIGNS_CHECKED + k);
-    kind = designs_kind[k];
-    now->terms[k] = kind == DESIGNS_IS_ROW ? designs_most(now, designs_sized[k]) : (lanes_real) 0;
+    const int kind = designs_kind[k];
+    const lanes_real* terms = designs_row(now, DESIGNS_CHECKED + designs_sized[k]);
+    lanes_real *row = designs_row(now, DESIGNS_CHECKED + k), most = 0;
+    for (i = 0; kind == DESIGNS_IS_ROW && i < now->n; ++i) most = terms[i] > most ? terms[i] : most;
+    now->terms[k] = most;
     if (kind == DESIGNS_IS_TURNED) row[now->n] = row[now->n - 1];
     now->passed[k] = kind == DESIGNS_IS_CLOSURE || kind == DESIGNS_IS_BRANCH ? designs_passed(now, k) : now->n;
   }

@@ -54,16 +54,8 @@ static inline __attribute__((always_inline)) void combine(long long many, long l
   }
 }
 
-/* What acts at a load point is carried by the sections whose edge it is beyond: see edge in engine/section_function.py. */
-static void act(long long n, double station, double constant, double slope, const double* u, const double* beyond,
-                double* restrict row) {
-  long long j;
-  for (j = 0; j < n; ++j) {
-    row[j] += beyond[j] < station ? constant + slope*(station - u[j]) : 0.0;
-  }
-}
-
-/* Rows of one plane, with what acts there. */
+/* Rows of one plane. What acts at a load point is carried by the sections whose edge it is beyond: see edge in
+   engine/section_function.py. */
 static void add_up(long long many, long long n, int terms, const double* const* columns, const double* const* basis,
                    const double* const* acting, int loads, long long i, const double* u, const double* beyond,
                    double* restrict row) {
@@ -79,7 +71,10 @@ static void add_up(long long many, long long n, int terms, const double* const* 
       const double c = columns[m][i], *b = basis[m];
       for (j = 0; j < n; ++j) row[j] = row[j] + c*b[j];
     }
-    for (s = 0; s < loads; ++s) act(n, acting[3*s][i], acting[3*s + 1][i], acting[3*s + 2][i], u, beyond, row);
+    for (s = 0; s < loads; ++s) {
+      const double station = acting[3*s][i], constant = acting[3*s + 1][i], slope = acting[3*s + 2][i];
+      for (j = 0; j < n; ++j) row[j] += beyond[j] < station ? constant + slope*(station - u[j]) : 0.0;
+    }
   }
 }
 

@@ -29,7 +29,7 @@ enum { SEARCH_HIDES = 1, SEARCH_DONE = 2 };
 
 /* A search. left are panels that it may still take of a quota; none says which curves are no number at any instant, ignored which of
    the watched hide too much. In a step between instants that is searched, noise is the rounding of what is watched, and sides are those on which it is before and after;
-   step is below zero elsewhere, near what is watched there. inner are rows of panels within each other, columns what such panels
+   step is below zero elsewhere, near are columns of times near its ends. inner are rows of panels within each other, columns what such panels
    have at their ends, found what was evaluated last. */
 typedef struct {
   const lagrange_casadi_search_call* call;
@@ -81,6 +81,18 @@ static void search_evaluate(search_now* now, const double* t, int many, unsigned
 }
 
 static search_real search_found(const search_now* now, int k, int j) { return now->found[k*now->call->together + j]; }
+
+/* What is found at times, in columns one after another. */
+static void search_columns_at(search_now* now, const double* t, int many, unsigned long long need, search_real* columns) {
+  const int together = now->call->together, rows = search_rows(now);
+  int i, j, k;
+  for (i = 0; i < many; i += together) {
+    search_evaluate(now, t + i, many - i < together ? many - i : together, need, now->found, together);
+    for (j = i; j < many && j < i + together; ++j) {
+      for (k = 0; k < rows; ++k) columns[j*rows + k] = search_found(now, k, j - i);
+    }
+  }
+}
 
 /* The ratio xi/l of a curve, of rows of places that begin so and are so far apart. */
 static search_real search_ratio(const search_now* now, int curve, const search_real* places, long long apart) {

@@ -3,9 +3,6 @@
 
    Compiled as C++ by gcc or clang: operators are the compiler's own on vectors, functions are libmvec's where it is there, and a
    loop over the pack where not. */
-#ifndef LAGRANGE_CASADI_LANES_H
-#define LAGRANGE_CASADI_LANES_H
-
 #include <math.h>
 #include <string.h>
 
@@ -62,6 +59,7 @@ typedef long long lanes_whole;
 
 typedef lanes_real lanes_vector __attribute__((vector_size(LANES_BYTES)));
 typedef lanes_whole lanes_mask __attribute__((vector_size(LANES_BYTES)));
+typedef double lanes_doubles __attribute__((vector_size(LANES_BYTES)));
 
 struct lanes_pack {
   lanes_vector v;
@@ -104,21 +102,23 @@ LANES_INLINE lanes_pack lanes_choose(lanes_pack a, lanes_pack b) { return lanes_
 LANES_INLINE lanes_pack lanes_sign(lanes_pack x) {
   return lanes_pick(x.v < lanes_vector{}, lanes_real(-1), lanes_pick(x.v > lanes_vector{}, lanes_real(1), x));
 }
-LANES_INLINE lanes_real lanes_choose(lanes_real a, lanes_real b) { return a != 0 ? b : 0; }
-LANES_INLINE lanes_real lanes_sign(lanes_real x) { return x < 0 ? -1 : x > 0 ? 1 : x; }
 
-/* a where x < y, else b; and whether x < y in any lane. */
+/* a where x < y, else b. */
 LANES_INLINE lanes_pack lanes_less(lanes_pack x, lanes_pack y, lanes_pack a, lanes_pack b) { return lanes_pick(x.v < y.v, a, b); }
 /* In which lanes x < y, a bit each; and whether any lane is no number. */
 #if defined(__AVX512F__) && !defined(__clang__)
 /* gcc writes masks out as vectors; these stay masks. */
 #ifdef LANES_SINGLE
 #define LANES_COMPARED(x, y, how) __builtin_ia32_cmpps512_mask((x).v, (y).v, how, -1, 4)
+#define LANES_LARGER __builtin_ia32_maxps512_mask
 #else
 #define LANES_COMPARED(x, y, how) __builtin_ia32_cmppd512_mask((x).v, (y).v, how, -1, 4)
+#define LANES_LARGER __builtin_ia32_maxpd512_mask
 #endif
 LANES_INLINE unsigned lanes_where_less(lanes_pack x, lanes_pack y) { return LANES_COMPARED(x, y, 17); }
 LANES_INLINE int lanes_any_nan(lanes_pack x) { return LANES_COMPARED(x, x, 3) != 0; }
+/* b where a < b, else a: what is no number in a stays, in b it does not count. One instruction, which compilers do not find. */
+LANES_INLINE lanes_pack lanes_larger(lanes_pack a, lanes_pack b) { return (lanes_vector)LANES_LARGER(b.v, a.v, a.v, -1, 4); }
 #else
 LANES_INLINE unsigned lanes_where(lanes_mask where) {
 #if defined(__AVX__) && LANES_BYTES == 32
@@ -135,6 +135,7 @@ LANES_INLINE unsigned lanes_where(lanes_mask where) {
 }
 LANES_INLINE unsigned lanes_where_less(lanes_pack x, lanes_pack y) { return lanes_where(x.v < y.v); }
 LANES_INLINE int lanes_any_nan(lanes_pack x) { return lanes_where(x.v != x.v) != 0; }
+LANES_INLINE lanes_pack lanes_larger(lanes_pack a, lanes_pack b) { return lanes_pick(a.v < b.v, b, a); }
 #endif
 
 LANES_INLINE lanes_pack LANES_OF(fmin)(lanes_pack a, lanes_pack b) { return lanes_pick((a.v < b.v) | (b.v != b.v), a, b); }
@@ -145,33 +146,16 @@ LANES_INLINE lanes_pack LANES_OF(copysign)(lanes_pack a, lanes_pack b) {
 }
 LANES_INLINE lanes_pack LANES_OF(fabs)(lanes_pack a) { return (lanes_vector)((lanes_mask)a.v & ~(lanes_mask)lanes_pack(-lanes_real(0)).v); }
 
-/* b where a < b, else a: what is no number in a stays, in b it does not count. One instruction, which compilers do not find. */
-#if defined(__AVX512F__) && !defined(__clang__)
-#ifdef LANES_SINGLE
-LANES_INLINE lanes_pack lanes_larger(lanes_pack a, lanes_pack b) { return (lanes_vector)__builtin_ia32_maxps512_mask(b.v, a.v, a.v, -1, 4); }
-#else
-LANES_INLINE lanes_pack lanes_larger(lanes_pack a, lanes_pack b) { return (lanes_vector)__builtin_ia32_maxpd512_mask(b.v, a.v, a.v, -1, 4); }
-#endif
-#else
-LANES_INLINE lanes_pack lanes_larger(lanes_pack a, lanes_pack b) { return lanes_pick(a.v < b.v, b, a); }
-#endif
-
 /* Store a pack past the caches, at a multiple of its size. A line of the cache that is filled so is not read from memory before. */
 LANES_INLINE void lanes_stream(lanes_real* to, lanes_pack x) {
 #if defined(__clang__)
   __builtin_nontemporal_store(x.v, (lanes_vector*)to);
-#elif defined(__AVX512F__) && defined(LANES_SINGLE)
-  __builtin_ia32_movntps512(to, x.v);
 #elif defined(__AVX512F__)
-  __builtin_ia32_movntpd512(to, x.v);
-#elif defined(__AVX2__) && defined(LANES_SINGLE)
-  __builtin_ia32_movntps256(to, x.v);
+  __builtin_ia32_movntpd512((double*)to, (lanes_doubles)x.v);
 #elif defined(__AVX2__)
-  __builtin_ia32_movntpd256(to, x.v);
-#elif defined(__SSE2__) && defined(LANES_SINGLE)
-  __builtin_ia32_movntps(to, x.v);
+  __builtin_ia32_movntpd256((double*)to, (lanes_doubles)x.v);
 #elif defined(__SSE2__)
-  __builtin_ia32_movntpd(to, x.v);
+  __builtin_ia32_movntpd((double*)to, (lanes_doubles)x.v);
 #else
   memcpy(to, &x, sizeof x);
 #endif
@@ -202,57 +186,36 @@ LANES_EACH(LANES_OF(ceil))
 LANES_EACH_OF_TWO(LANES_OF(fmod))
 LANES_EACH_OF_TWO(LANES_OF(remainder))
 
+/* What each version has, or a loop. */
 #if LANES_LIBMVEC >= 1
-LANES_CALL(LANES_OF(sin))
-LANES_CALL(LANES_OF(cos))
-LANES_CALL(LANES_OF(exp))
-LANES_CALL(LANES_OF(log))
+#define LANES_FIRST LANES_CALL
 #else
-LANES_EACH(LANES_OF(sin))
-LANES_EACH(LANES_OF(cos))
-LANES_EACH(LANES_OF(exp))
-LANES_EACH(LANES_OF(log))
+#define LANES_FIRST LANES_EACH
 #endif
-
 #if LANES_LIBMVEC >= 2
-LANES_CALL(LANES_OF(tan))
-LANES_CALL(LANES_OF(asin))
-LANES_CALL(LANES_OF(acos))
-LANES_CALL(LANES_OF(atan))
-LANES_CALL(LANES_OF(sinh))
-LANES_CALL(LANES_OF(cosh))
-LANES_CALL(LANES_OF(tanh))
-LANES_CALL(LANES_OF(asinh))
-LANES_CALL(LANES_OF(acosh))
-LANES_CALL(LANES_OF(atanh))
-LANES_CALL(LANES_OF(log1p))
-LANES_CALL(LANES_OF(expm1))
-LANES_CALL(LANES_OF(erf))
-LANES_CALL_OF_TWO(LANES_OF(atan2))
-LANES_CALL_OF_TWO(LANES_OF(hypot))
-LANES_CALL_OF_TWO(LANES_OF(pow))
+#define LANES_LATER LANES_CALL
+#define LANES_LATER_OF_TWO LANES_CALL_OF_TWO
 #else
-LANES_EACH(LANES_OF(tan))
-LANES_EACH(LANES_OF(asin))
-LANES_EACH(LANES_OF(acos))
-LANES_EACH(LANES_OF(atan))
-LANES_EACH(LANES_OF(sinh))
-LANES_EACH(LANES_OF(cosh))
-LANES_EACH(LANES_OF(tanh))
-LANES_EACH(LANES_OF(asinh))
-LANES_EACH(LANES_OF(acosh))
-LANES_EACH(LANES_OF(atanh))
-LANES_EACH(LANES_OF(log1p))
-LANES_EACH(LANES_OF(expm1))
-LANES_EACH(LANES_OF(erf))
-LANES_EACH_OF_TWO(LANES_OF(atan2))
-LANES_EACH_OF_TWO(LANES_OF(hypot))
-LANES_EACH_OF_TWO(LANES_OF(pow))
+#define LANES_LATER LANES_EACH
+#define LANES_LATER_OF_TWO LANES_EACH_OF_TWO
 #endif
-
-/* CasADi's helpers take C99's functions where they see C99. */
-#ifndef __STDC_VERSION__
-#define __STDC_VERSION__ 199901L
-#endif
-
-#endif
+LANES_FIRST(LANES_OF(sin))
+LANES_FIRST(LANES_OF(cos))
+LANES_FIRST(LANES_OF(exp))
+LANES_FIRST(LANES_OF(log))
+LANES_LATER(LANES_OF(tan))
+LANES_LATER(LANES_OF(asin))
+LANES_LATER(LANES_OF(acos))
+LANES_LATER(LANES_OF(atan))
+LANES_LATER(LANES_OF(sinh))
+LANES_LATER(LANES_OF(cosh))
+LANES_LATER(LANES_OF(tanh))
+LANES_LATER(LANES_OF(asinh))
+LANES_LATER(LANES_OF(acosh))
+LANES_LATER(LANES_OF(atanh))
+LANES_LATER(LANES_OF(log1p))
+LANES_LATER(LANES_OF(expm1))
+LANES_LATER(LANES_OF(erf))
+LANES_LATER_OF_TWO(LANES_OF(atan2))
+LANES_LATER_OF_TWO(LANES_OF(hypot))
+LANES_LATER_OF_TWO(LANES_OF(pow))

@@ -34,21 +34,17 @@ LANES_INLINE casadi_real designs_value(const casadi_real* c, int n, casadi_real 
   return sum + power*c[n];
 }
 
-/* A polynomial of degree n as one of a higher degree. */
-LANES_INLINE void designs_raised(casadi_real* c, int n, int degree) {
-  int i;
-  for (; n < degree; ++n) {
-    c[n + 1] = c[n];
-    for (i = n; i > 0; --i) c[i] = c[i]*((lanes_real) (n + 1 - i)/(n + 1)) + c[i - 1]*((lanes_real) i/(n + 1));
-  }
-}
-
 /* The product of a polynomial of degree n with a line from first to last. */
 LANES_INLINE void designs_times(casadi_real* c, int n, casadi_real first, casadi_real last) {
   int i;
   c[n + 1] = c[n]*last;
   for (i = n; i > 0; --i) c[i] = c[i]*(first*((lanes_real) (n + 1 - i)/(n + 1))) + c[i - 1]*(last*((lanes_real) i/(n + 1)));
   c[0] = c[0]*first;
+}
+
+/* A polynomial of degree n as one of a higher degree. */
+LANES_INLINE void designs_raised(casadi_real* c, int n, int degree) {
+  for (; n < degree; ++n) designs_times(c, n, 1, 1);
 }
 
 /* A polynomial of degree n on a part of 0 to 1 (de Casteljau). */
@@ -144,10 +140,23 @@ LANES_INLINE void designs_even(const casadi_real* matter, const casadi_real* law
 
 #if DESIGNS_PIECES
 
+/* Put places in order. */
+LANES_INLINE void designs_sort(casadi_real* marks, int count) {
+  casadi_real swap;
+  int k, s;
+  for (s = count - 1; s > 0; --s) {
+    for (k = 0; k < s; ++k) {
+      swap = lanes_less(marks[k + 1], marks[k], marks[k + 1], marks[k]);
+      marks[k + 1] = lanes_less(marks[k + 1], marks[k], marks[k], marks[k + 1]);
+      marks[k] = swap;
+    }
+  }
+}
+
 /* The zeros from 0 to 1 of a polynomial of degree n, all among n places, and whether it falls (1) or rises (-1) there: see zeros in
    base/bernstein.py. */
 static void designs_zeros(const casadi_real* c, int n, casadi_real* at, casadi_real* turns) {
-  casadi_real slope[DESIGNS_DEGREE + 1], inner[DESIGNS_DEGREE + 2], changes, one;
+  casadi_real slope[DESIGNS_DEGREE + 1], inner[DESIGNS_DEGREE + 2], changes;
   int i, k, many;
   if (n == 1) {
     at[0] = designs_root(c[0]/(c[0] - c[1]), lanes_less(0, c[0], 1, -1), turns);
@@ -166,11 +175,7 @@ static void designs_zeros(const casadi_real* c, int n, casadi_real* at, casadi_r
   if (lanes_where_less(1, changes)) {
     many = n - 1;
     designs_zeros(slope, many, inner + 1, turns);
-    if (many == 2) {
-      one = inner[1];
-      inner[1] = lanes_less(one, inner[2], one, inner[2]);
-      inner[2] = lanes_less(one, inner[2], inner[2], one);
-    }
+    if (many == 2) designs_sort(inner + 1, 2);
   }
   inner[0] = 0;
   inner[many + 1] = 1;
@@ -280,19 +285,6 @@ static void designs_cell(const designs_link* link, int cell, designs_piece* piec
     for (i = 0; i <= n; ++i) value[i + 1] = value[i] + slope[i]*((lanes_real) 1/(n + 1));
     /* What acts at load points is no part of what is smooth. */
     piece->smooth[k] = piece->smooth[k] + (value[n + 1] - value[0] + smooth);
-  }
-}
-
-/* Put places in order. */
-LANES_INLINE void designs_sort(casadi_real* marks, int count) {
-  casadi_real swap;
-  int k, s;
-  for (s = count - 1; s > 0; --s) {
-    for (k = 0; k < s; ++k) {
-      swap = lanes_less(marks[k + 1], marks[k], marks[k + 1], marks[k]);
-      marks[k + 1] = lanes_less(marks[k + 1], marks[k], marks[k], marks[k + 1]);
-      marks[k] = swap;
-    }
   }
 }
 

@@ -72,8 +72,7 @@ static search_real search_noise(const search_now* now, const search_panel* panel
 /* Whether what was found closes both steps beside a summit; else, if it is worth another look, the summit says where. */
 static int search_closed(const search_now* now, const search_panel* panel, search_summit* summit, search_real found) {
   const search_peak* peak = now->peaks + now->quantity[summit->curve];
-  const search_real rounding = peak->rounding, missed = found - summit->size;
-  const search_real off = missed < 0 ? -missed : missed;
+  const search_real rounding = peak->rounding, missed = found - summit->size, off = search_magnitude(missed);
   search_real slope, gain;
   if (summit->broken || !(summit->curve_there < 0 && summit->rough <= rounding - SEARCH_ROUGH*summit->curve_there)) return 0;
   if (!(off <= rounding || off <= -summit->trust*summit->curve_there)) return 0;
@@ -135,9 +134,7 @@ static int search_broken(const search_now* now, const search_panel* panel, int c
   for (k = 0; k < now->curves->watches; ++k) {
     if (!search_is_switching(now, k) || now->curves->watch[k] == SEARCH_IS_KNOT) continue;
     if (!search_depends(now, k, now->quantity[curve])) continue;
-    for (i = first; i < first + SEARCH_FIT - 1; ++i) {
-      if (search_kinks_in(now, panel, k, i)) return 1;
-    }
+    for (i = first; i < first + SEARCH_FIT - 1; ++i) if (search_kinks(now, panel, k, i, 0)) return 1;
   }
   return 0;
 }
@@ -215,8 +212,7 @@ static void search_settle(search_now* now, const search_panel* panel, search_lis
     if (summit->kinked) {
       most = 0;
       for (k = 0; k < 3; ++k) {
-        off = summit->sign*found[many++] - summit->kink_size[k];
-        off = off < 0 ? -off : off;
+        off = search_magnitude(summit->sign*found[many++] - summit->kink_size[k]);
         if (!(off <= most)) most = off;
       }
       if (most <= now->peaks[now->quantity[summit->curve]].rounding) summit->closed = 1;
@@ -235,8 +231,7 @@ static void search_settle(search_now* now, const search_panel* panel, search_lis
     search_summit* summit = list->summits + j;
     if (!summit->closed && summit->again) {
       rounding = now->peaks[now->quantity[summit->curve]].rounding;
-      missed = summit->sign*found[many++] - summit->size;
-      missed = missed < 0 ? -missed : missed;
+      missed = search_magnitude(summit->sign*found[many++] - summit->size);
       /* What was missed now bends the slope in turn. */
       summit->closed = missed <= rounding || 10*missed*missed*(1 + summit->steep*summit->steep) <= -summit->curve_there*rounding;
     }

@@ -243,7 +243,7 @@ LANES_INLINE void search_panel_of(search_now* now, const search_panel* panel, in
   }
 }
 
-/* Leave out what friction at rest leaves open; a curve that is open at all instants has no number. */
+/* Leave out what friction at rest leaves open, and take the largest sizes of the rest; a curve that is open at all instants has no number. */
 static void search_leave_out(search_now* now) {
   const long long padded = (now->n + LANES - 1)/LANES*LANES;
   search_real most;
@@ -280,12 +280,7 @@ static void search_one_way(search_now* now) {
       }
     }
     now->peaks[q].base = low <= high ? 2*low - high : 0;
-    for (k = now->curves->first[q]; k < now->curves->first[q + 1]; ++k) {
-      row = search_row(&now->all, k);
-      search_count(now, k, row, padded);
-      now->call->most[k] = 0;
-      for (i = 0; i < now->n; ++i) if (search_magnitude(row[i]) > now->call->most[k]) now->call->most[k] = search_magnitude(row[i]);
-    }
+    for (k = now->curves->first[q]; k < now->curves->first[q + 1]; ++k) search_count(now, k, search_row(&now->all, k), padded);
   }
 }
 
@@ -297,7 +292,7 @@ static void search_largest(search_now* now) {
   memset(now->ignored, 0, (size_t) curves->watches);
   for (q = 0; q < curves->quantities; ++q) now->peaks[q].base = 0;
   if (now->call->way) search_one_way(now);
-  if (now->call->rests) search_leave_out(now);
+  if (now->call->way || now->call->rests) search_leave_out(now);
   for (k = 0; k < curves->units; ++k) now->scale[k] = now->call->scales ? now->call->scales[k] : 0;
   memset(now->zigzags, -1, (size_t) curves->curves);
   for (q = 0; q < curves->quantities; ++q) {
@@ -364,31 +359,23 @@ static void search_sampled(search_now* now, int q) {
   const search_real least = peak->best - peak->rounding, under = least - SEARCH_CLOSE*least - SEARCH_LEAST;
   const search_real* row;
   search_real size = -1, x;
-  lanes_pack pack, most;
+  lanes_pack pack;
   long long i, at, first = all->n;
   unsigned where;
-  int k, j, curve = -1;
+  int k, curve = -1;
   if (peak->sampled < least) return;
   for (k = now->curves->first[q]; k < now->curves->first[q + 1]; ++k) {
     if (!(under < now->call->most[k])) continue;
     row = search_row(all, k);
-    for (i = 0; i <= first && i < all->n; i += SEARCH_CHUNK*LANES) {
-      most = 0;
-      for (j = 0; j < SEARCH_CHUNK && i + j*LANES < all->n; ++j) {
-        memcpy(&pack, row + i + j*LANES, sizeof pack);
-        most = search_larger(most, search_size(pack));
-      }
-      if (!lanes_where_less(under, most)) continue;
-      for (at = i; at < i + SEARCH_CHUNK*LANES && at < all->n && at <= first; at += LANES) {
-        memcpy(&pack, row + at, sizeof pack);
-        where = lanes_where_less(under, search_size(pack));
-        for (j = 0; where >> j && at + j < all->n && at + j <= first; ++j) {
-          x = search_magnitude(row[at + j]);
-          if (!(where >> j & 1 && x >= least) || (at + j == first && !(x > size)) || (now->call->rests && search_nothing(row[at + j]))) continue;
-          first = at + j;
-          size = x;
-          curve = k;
-        }
+    for (i = 0; i <= first && i < all->n; i += LANES) {
+      memcpy(&pack, row + i, sizeof pack);
+      where = lanes_where_less(under, search_size(pack));
+      for (at = i; where >> (at - i) && at < all->n && at <= first; ++at) {
+        x = search_magnitude(row[at]);
+        if (!(x >= least) || (at == first && !(x > size)) || (now->call->rests && search_nothing(row[at]))) continue;
+        first = at;
+        size = x;
+        curve = k;
       }
     }
   }
@@ -475,7 +462,7 @@ static long long search_lay(search_now* now, const lagrange_casadi_search_call* 
   now->ignored = (signed char*) search_take(&room, curves->watches, 1);
   now->noise = (search_real*) search_take(&room, curves->watches, sizeof *now->noise);
   now->sides = (search_real*) search_take(&room, 2*curves->watches, sizeof *now->sides);
-  now->near = (search_real*) search_take(&room, 2*SEARCH_QUIET*curves->watches, sizeof *now->near);
+  now->near = (search_real*) search_take(&room, 2*SEARCH_QUIET*rows, sizeof *now->near);
   return room - call->room;
 }
 

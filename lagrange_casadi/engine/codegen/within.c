@@ -13,18 +13,6 @@ static void search_column(const search_now* now, const search_panel* panel, long
   for (k = 0; k < now->curves->watches; ++k) column[own + k] = search_watched(panel, k)[i];
 }
 
-/* What is found at times, in columns one after another. */
-static void search_columns_at(search_now* now, const double* t, int many, search_real* columns) {
-  const int together = now->call->together, rows = search_rows(now);
-  int i, j, k;
-  for (i = 0; i < many; i += together) {
-    search_evaluate(now, t + i, many - i < together ? many - i : together, ~0ull, now->found, together);
-    for (j = i; j < many && j < i + together; ++j) {
-      for (k = 0; k < rows; ++k) columns[j*rows + k] = search_found(now, k, j - i);
-    }
-  }
-}
-
 /* Take in what a curve is at the times inside a step, where it is larger than what is known: of local peaks none of their flanks. */
 static void search_note_inner(search_now* now, const search_panel* within, int curve) {
   const int q = now->quantity[curve];
@@ -75,11 +63,9 @@ static void search_part(search_now* now, double start, double stop, const search
     row = within.rows + k*SEARCH_STRIDE;
     row[0] = first[k];
     row[SEARCH_WITHIN - 1] = last[k];
-    if (k < curves && !search_lacks(now, k, (start + stop)/2)) search_note_inner(now, &within, k);
-  }
-  for (k = 0; now->call->rests && k < curves; ++k) {
-    if (!search_lacks(now, k, (start + stop)/2)) continue;
-    for (j = 0; j < SEARCH_WITHIN; ++j) search_row(&within, k)[j] = 0;
+    if (k >= curves) continue;
+    if (!search_lacks(now, k, (start + stop)/2)) search_note_inner(now, &within, k);
+    else memset(row, 0, SEARCH_WITHIN*sizeof *row);
   }
   search_panel_of(now, &within, depth + 1);
 }
@@ -119,7 +105,7 @@ static int search_apart(search_now* now, const search_panel* panel, long long st
       t[j] = j == 0 ? at - beside : j == 1 ? at + beside : at;
       t[j] = t[j] < start ? start : t[j] > stop ? stop : t[j];
     }
-    search_columns_at(now, t, 3, columns);
+    search_columns_at(now, t, 3, ~0ull, columns);
     sum = 0;
     for (j = 0; j < 3; ++j) {
       for (k = 0; k < now->curves->curves; ++k) sum += 0*columns[j*rows + k];
@@ -149,7 +135,7 @@ static int search_find_sides(search_now* now, const search_panel* panel, long lo
   for (k = 0; k < curves->watches; ++k) {
     kind = curves->watch[k];
     if (kind == SEARCH_IS_STEP || SEARCH_NUMBERED(kind) || now->ignored[k]) continue;
-    if (search_kinks_in(now, panel, k, step) == SEARCH_MANY) return 0;
+    if (search_kinks(now, panel, k, step, 0) == SEARCH_MANY) return 0;
   }
   for (numbered = 0; numbered < 2; ++numbered) {
     for (k = 0; k < curves->watches; ++k) {
@@ -184,7 +170,7 @@ static void search_inside(search_now* now, const search_panel* panel, long long 
     search_part(now, start, stop, first, last, depth);
     return;
   }
-  for (j = 0; j < 3; ++j) search_note_column(now, t[j], sides + j*rows, 1);
+  for (j = 0; j < 3; ++j) search_note_column(now, t[j], sides + j*rows);
   --now->left;
   if (t[0] - start > 2*beside) search_part(now, start, t[0], first, sides, depth);
   if (stop - t[1] > 2*beside) search_part(now, t[1], stop, sides + rows, last, depth);
