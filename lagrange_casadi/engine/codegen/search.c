@@ -8,10 +8,6 @@
 
    Where friction at rest leaves a curve open at an instant, the steps beside it are searched by themselves from where, or up to where, it
    is a number. */
-/* Packs that are screened at once. */
-#ifndef SEARCH_CHUNK
-#define SEARCH_CHUNK 8
-#endif
 
 /* What is left in a step that is as short as can be: a kink, a jump, or what grows on without an end. */
 static void search_end(search_now* now, const search_panel* panel, int curve, long long step, int deepest) {
@@ -179,22 +175,11 @@ LANES_INLINE lanes_pack search_reach(const search_real* row) {
 LANES_INLINE void search_screen(search_now* now, const search_panel* panel, int curve, search_real limit, search_list* list, int depth) {
   const search_real* row = search_row(panel, curve);
   const long long n = panel->n;
-  lanes_pack twice[SEARCH_CHUNK], most;
   unsigned where;
   long long i;
-  int k, many;
-  for (i = 0; i < n; i += SEARCH_CHUNK*LANES) {
-    many = n - i < SEARCH_CHUNK*LANES ? (int) ((n - i + LANES - 1)/LANES) : SEARCH_CHUNK;
-    most = 0;
-    for (k = 0; k < many; ++k) {
-      twice[k] = search_reach(row + i + k*LANES);
-      most = search_larger(most, twice[k]);
-    }
-    if (!lanes_where_less(2*limit, most)) continue;
-    for (k = 0; k < many; ++k) {
-      where = lanes_where_less(2*limit, twice[k]);
-      if (where) search_list_steps(now, panel, curve, i + k*LANES, where, list, depth);
-    }
+  for (i = 0; i < n; i += LANES) {
+    where = lanes_where_less(2*limit, search_reach(row + i));
+    if (where) search_list_steps(now, panel, curve, i, where, list, depth);
   }
 }
 
