@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from ...base.arrays import Array
 from .calls import Call
-from .compiler import WIDE, Compiler, entry_of, loaded, packed, start
+from .compiler import WIDE, Compiler, entry_of, loaded, start
 from .printer import print_functions
 
 if TYPE_CHECKING:
@@ -92,13 +92,9 @@ class BatchLibrary:
         return partial(self.entry, self.call.made(n=n, **pointers, **each, found=into.ctypes.data))
 
 
-def _names(function: ca.Function) -> list[str]:
-    return [function.name_in(k) for k in range(function.n_in())]
-
-
 def _call(function: ca.Function) -> Call:
     members = {"n": "long long"}
-    for name in _names(function):
+    for name in function.name_in():
         members |= {
             name: "const int*" if name == CHOSEN else "const double*",
             f"{name}_every": "long long",
@@ -109,7 +105,7 @@ def _call(function: ca.Function) -> Call:
 def emit_batch(function: ca.Function) -> str:
     """The C of a function of one output at many points; the same text in every process."""
     arguments, rows, cleared, first = list[str](), list[str](), "", 0
-    for k, name in enumerate(_names(function)):
+    for k, name in enumerate(function.name_in()):
         arguments.append(f"  arg[{k}] = at + {first};")
         size = function.numel_in(k)
         if name == CHOSEN:
@@ -141,6 +137,5 @@ def load_batch(
     function: ca.Function, compiler: Compiler, extra: Sequence[str] = ()
 ) -> BatchLibrary:
     """Build that, or take it from the cache, and load it. Raises :class:`CompilerError`."""
-    source = packed(emit_batch(function), compiler)
-    library, call = loaded(source, compiler, tuple(extra)), _call(function)
+    library, call = loaded(emit_batch(function), compiler, tuple(extra)), _call(function)
     return BatchLibrary(call, call.declare(entry_of(library, _ENTRY, compiler)))

@@ -27,13 +27,13 @@ class Call:
     """A struct of C: its ``name``, and the C type of each member.
 
     A type is ``long long``, ``int``, ``double`` or a pointer; ``real`` in it stands for a floating
-    type that :meth:`text` is given.
+    type that :meth:`text` is given, by default that of an emitted file.
     """
 
     name: str
     members: Mapping[str, str]
 
-    def text(self, real: str = "double") -> str:
+    def text(self, real: str = "lanes_real") -> str:
         """The definition in C, with the floating type ``real``."""
         lines = (
             f"  {kind}{'' if kind.endswith('*') else ' '}{name};\n"

@@ -277,21 +277,18 @@ def written(*names: str) -> str:
     return "\n".join(folder.joinpath(name).read_text() for name in names)
 
 
-def packed(text: str, compiler: Compiler) -> str:
-    """An emitted file as a compiler takes it: for C++ with packs before it."""
-    return text if compiler.language == "c" else text.replace(LANES_PLACE, written("lanes.h"), 1)
-
-
 def loaded(
     source: str, compiler: Compiler, extra: tuple[str, ...] = (), level: str = LEVEL
 ) -> ctypes.CDLL:
-    """The shared library of a source, from the cache or newly built.
+    """The shared library of a source, for C++ with packs before it, from the cache or newly built.
 
     ``extra`` flags come after the package's own. Warns where the cache cannot be used, and where
     what it held was damaged. Raises :class:`CompilerError` where the compiler refuses the source,
     whose whole message is kept beside the source in the cache, does not end in time, or builds what
     does not load.
     """
+    if compiler.language == "c++":
+        source = source.replace(LANES_PLACE, written("lanes.h"), 1)
     flags = (*compiler.flags(source, level), *extra)
     machine = _machine() if "-march=native" in flags else platform.machine()
     identity = "\0".join([source, *flags, *compiler.command, compiler.version, machine])

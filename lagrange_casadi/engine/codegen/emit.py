@@ -26,16 +26,16 @@ from .stages import Stages, plain
 
 EVALUATE, FOLLOW = "lagrange_casadi_evaluate", "lagrange_casadi_follow"
 NEWTON_STEPS = 50
-NEWTON_DONE, NEWTON_DONE_SINGLE = 1e-9, 1e-4
-"""A correction after which the next one would be rounding."""
 
-NEWTON_RATE, NEWTON_RATE_SINGLE = 1e-2, 0.25
-"""Least ratio of one correction to the one before from which corrections shrink too slowly to be
-quadratic. At a dead centre it is 1/2; if corrections end early, as in single precision, their
-square is not far below them.
+_NEWTON: dict[Precision, dict[str, float]] = {
+    "double": {"done": 1e-9, "rate": 1e-2, "rounding": 1e-13},
+    "single": {"done": 1e-4, "rate": 0.25, "rounding": 1e-5},
+}
+"""Of each precision, the correction after which the next one would be rounding (``done``), and the
+size that is ``rounding``; and the least ratio of one correction to the one before, the ``rate``,
+from which corrections shrink too slowly to be quadratic. At a dead centre it is 1/2; if corrections
+end early, as in single precision, their square is not far below them.
 """
-
-NEWTON_ROUNDING, NEWTON_ROUNDING_SINGLE = 1e-13, 1e-5
 
 INSTANTS = Call(
     "lagrange_casadi_instants",
@@ -75,7 +75,6 @@ def emit(
     constants, instant = hoisted(stages.instant)
     narrow = {"lead": stages.drive, "loops": stages.loops} if stages.loops else {}
     wide = {"drive": stages.drive, "constants_of": constants, "instant": instant}
-    real = "double" if precision == "double" else "float"
     macros = _sizes(program, stages, reduction) | {"CONSTANTS": constants.size1_out(0)}
     macros |= {status.name: int(status) for status in Status}
     if program.newton is not None:
@@ -88,7 +87,7 @@ def emit(
             rare["closing"] = stages.closing
     text = (
         start(precision)
-        + INSTANTS.text(real)
+        + INSTANTS.text()
         + print_functions(narrow, precision, prefix="follow")
         + WIDE
         + print_functions(wide, precision, prefix="scene", packs=True)
@@ -143,15 +142,10 @@ def newton_rule(precision: Precision, steps: int | None) -> dict[str, float]:
     """Limits of Newton's method for iterated loops: the numbers that the emitted C and the virtual
     machine share.
     """
-    single = precision == "single"
-    done = NEWTON_DONE_SINGLE if single else NEWTON_DONE
-    rule = {
-        "rate": NEWTON_RATE_SINGLE if single else NEWTON_RATE,
-        "rounding": NEWTON_ROUNDING_SINGLE if single else NEWTON_ROUNDING,
-    }
+    rule = _NEWTON[precision]
     if steps is not None:
         return rule | {"steps": steps, "done": 0.0, "lost": NEWTON_LOST}
-    return rule | {"steps": NEWTON_STEPS, "done": done, "lost": done}
+    return rule | {"steps": NEWTON_STEPS, "lost": rule["done"]}
 
 
 @symbolic

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from ...base.compensated import DTYPES
 from ...base.threads import in_threads
 from ...base.vocabulary import Precision
-from .compiler import Compiler, entry_of, loaded, packed, statements
+from .compiler import Compiler, entry_of, loaded, statements
 from .emit import EVALUATE, FOLLOW, INSTANTS
 from .peak_search import Listed, Search, Tables, load_search
 from .reduction import CALL, DESIGNS, Reduction
@@ -209,17 +209,12 @@ class Library:
         instants = _instants(room[:2, :n], own, many.guess, room[iterated:], None, status)
         arrays: dict[str, Array | None] = {"t": t, "p": p, "hiding": hiding}
         arrays |= dict.fromkeys(("iterated", "tops", "error", "near")) | dict(results)
-        single = {
-            name: np.empty(array.shape, dtype)
+        rounded = [
+            (name, array, np.empty(array.shape, dtype))
             for name in ("history", "iterated")
             if (array := arrays.get(name)) is not None and array.dtype != dtype
-        }
-        rounded = [
-            (array, converted)
-            for name, converted in single.items()
-            if (array := arrays[name]) is not None
         ]
-        arrays |= single
+        arrays |= {name: converted for name, _, converted in rounded}
         search, within = many.search.call(many.tables, _CUT)
         call = CALL.made(
             search=ctypes.addressof(search),
@@ -260,12 +255,12 @@ def _instants(
 def _enter(
     entry: CFuncPtr,
     call: ctypes.Structure,
-    rounded: Sequence[tuple[Array, Array]],
+    rounded: Sequence[tuple[str, Array, Array]],
     _kept: object,
 ) -> None:
     """Call, with what must live as long as the call's addresses; then widen what was rounded."""
     entry(call)
-    for array, converted in rounded:
+    for _, array, converted in rounded:
         array[...] = converted
 
 
@@ -281,14 +276,16 @@ def load(
     ``extra`` flags come after the package's own; loops take up to so many ``steps``. A file with a
     reduction is for ``designs``. Raises :class:`CompilerError`.
     """
-    library = loaded(packed(source, compiler), compiler, extra)
+    library = loaded(source, compiler, extra)
     some = (ctypes.c_longlong, ctypes.c_longlong)
-    names = (FOLLOW, EVALUATE) if designs is None else (DESIGNS,)
-    entries = {name: entry_of(library, name, compiler) for name in names}
-    for entry in entries.values():
-        if designs is None:
-            INSTANTS.declare(entry, *some)
-        else:
-            CALL.declare(entry)
+    calls = (
+        {FOLLOW: (INSTANTS, *some), EVALUATE: (INSTANTS, *some)}
+        if designs is None
+        else {DESIGNS: (CALL,)}
+    )
+    entries = {
+        name: call.declare(entry_of(library, name, compiler), *more)
+        for name, (call, *more) in calls.items()
+    }
     flags = (*compiler.flags(source), *extra)
     return Library(entries, flags, statements(source), steps, designs)

@@ -22,7 +22,7 @@ from ...base.compensated import DTYPES
 from ...base.vocabulary import Precision
 from ..sharpness import Kind, Watch
 from .calls import Call
-from .compiler import Compiler, entry_of, loaded, packed, start, written
+from .compiler import Compiler, entry_of, loaded, start, written
 from .printer import defined
 
 FUNCTION = "lagrange_casadi_search"
@@ -57,7 +57,7 @@ BASE, TIP, OFF = -1, -2, -3
 
 AT = """\
 typedef int lagrange_casadi_at(void* of, long long count, const double* t, unsigned long long need,
-                               real* out, long long apart);
+                               lanes_real* out, long long apart);
 """
 """Function that evaluates curves: at given times, for the links whose bits ``need`` sets, into rows
 that lie ``apart``: of curves, of their places, of watched functions. It returns 0, or another
@@ -115,11 +115,11 @@ _TOGETHER = 64
 """Times at which Python evaluates at once."""
 
 
-def interface(precision: Precision) -> str:
+def interface() -> str:
     """The C of what crosses to the search and back."""
-    real = "double" if precision == "double" else "float"
-    at, curves, call = AT.replace("real*", f"{real}*"), CURVES.text(real), CALL.text(real)
-    return f"{at}{curves}{call}typedef void lagrange_casadi_find({CALL.name}* call);\n"
+    return (
+        f"{AT}{CURVES.text()}{CALL.text()}typedef void lagrange_casadi_find({CALL.name}* call);\n"
+    )
 
 
 def source(precision: Precision) -> str:
@@ -131,7 +131,7 @@ def source(precision: Precision) -> str:
         "TOPS": TOPS,
         **{f"IS_{kind.name}": int(kind) for kind in Kind},
     }
-    text = start(precision) + interface(precision) + defined("SEARCH", macros)
+    text = start(precision) + interface() + defined("SEARCH", macros)
     return f"{text}\n{written(*_FILES)}"
 
 
@@ -267,17 +267,7 @@ class Search:
         """A call for some curves, of which ``together`` times are evaluated at once, and its room;
         other members are left out.
         """
-        given = (
-            dict.fromkeys(CALL.members, 0)
-            | {"curves": ctypes.addressof(tables.struct), "together": together}
-            | members
-        )
-        made = CALL.made(
-            **{
-                name: value or (None if CALL.members[name].endswith("*") else 0)
-                for name, value in given.items()
-            }
-        )
+        made = CALL.type(curves=ctypes.addressof(tables.struct), together=together, **members)
         self.room(made)
         room = np.empty(made.size + 4 * _LINE, np.int8)
         made.room = room.ctypes.data + -room.ctypes.data % (4 * _LINE)
@@ -409,7 +399,7 @@ def load_search(
 
     Raises :class:`CompilerError`.
     """
-    library = loaded(packed(source(precision), compiler), compiler, extra, _LEVEL)
+    library = loaded(source(precision), compiler, extra, _LEVEL)
     entry, room = (
         CALL.declare(entry_of(library, name, compiler)) for name in (FUNCTION, _CAPACITY)
     )

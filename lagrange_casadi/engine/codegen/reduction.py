@@ -129,14 +129,11 @@ class Reduction:
 
 def reduced(program: Program, reduction: Reduction, precision: Precision) -> str:
     """The C that follows that of a scene's instants: :data:`DESIGNS`, and what it calls."""
-    functions = {
-        "matter_of": reduction.mass_properties,
-        "status_of": program.status,
-    }
+    functions = {"matter_of": reduction.mass_properties, "status_of": program.status}
     return (
         print_functions(functions, precision, prefix="matter", packs=True)
-        + interface(precision)
-        + CALL.text("double" if precision == "double" else "float")
+        + interface()
+        + CALL.text()
         + defined("DESIGNS", _macros(program, reduction, precision))
         + _tables(program, reduction)
         + "\n"

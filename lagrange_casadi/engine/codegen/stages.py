@@ -55,7 +55,6 @@ class Stages(Graphs):
     instant: ca.Function
     closing: ca.Function | None = None
     precision: Precision = "double"
-    compensated: bool = False
 
     def instructions(self, steps: int) -> int:
         """Number of instructions an instant, with ``steps`` Newton steps if loops are iterated."""
@@ -101,7 +100,7 @@ def compensated(program: Program, precision: Precision, *, closing: bool = False
     )
     given = [handed, *(_column([pair.value for pair in row]) for row in changes)]
     drive = ca.Function("drive", [time, ca.vec(parameters)], given, {"cse": True})
-    return Stages(drive, loops, instant, closed, precision, compensated=True)
+    return Stages(drive, loops, instant, closed, precision)
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,14 +164,9 @@ def _paired_law(smooth: ca.Function, pairs: Pairs, p: ca.SX, known: Sequence[Pai
     """
     time = ca.SX.sym("t", 2)
     values, *changes = interpret(smooth, [[Pair(time[0], time[1])], known], pairs.arithmetic)
-    found = [[x.high for x in values], [_rest(x) for x in values]]
-    found += [[pair.value for pair in row] for row in changes]
-    return ca.Function(
-        "law",
-        [time, p],
-        [_column([*found[0], *found[1]]), *(_column(row) for row in found[2:])],
-        {"cse": True},
-    )
+    driven = [*(x.high for x in values), *map(_rest, values)]
+    found = [_column(driven), *(_column([pair.value for pair in row]) for row in changes)]
+    return ca.Function("law", [time, p], found, {"cse": True})
 
 
 def stages_for(

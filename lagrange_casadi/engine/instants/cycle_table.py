@@ -18,15 +18,11 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.arrays import Array
-from ...errors import DeclarationError
 from ..codegen.calls import Call
 from ..codegen.compiler import find_compiler, loaded, no_compiler, written
 
 if TYPE_CHECKING:
     from _ctypes import CFuncPtr
-
-FACTORS = ("1", "rate", "rate^2", "acceleration")
-"""Factors of a term."""
 
 LEAST = 8
 """Nodes: so many coefficients at least that no weight falls twice on one."""
@@ -34,7 +30,6 @@ LEAST = 8
 _MORE = 5
 _TILE = 32
 _OPTIONS = ("-O3", "-march=native", "-fno-trapping-math")
-_FIRST_DIGITS = {"float64": 26, "float32": 12}
 _TURN = Fraction(math.tau) + Fraction(2.4492935982947064e-16)
 """Twice the digits of a turn: what they leave out adds up over many turns."""
 
@@ -88,7 +83,8 @@ class CycleTable:
     columns
         Names, one a row of what :meth:`evaluate` fills.
     kept
-        Which terms are not zero (factors, columns), factors as in :data:`FACTORS`.
+        Which terms are not zero (factors, columns); factors are 1, the rate, the rate's square and
+        the acceleration.
     coefficients
         Of the splines, over 120, (nodes + 5, terms), as float64 or float32, in the order of
         ``terms``: row k belongs to node k - 2, and the last five rows are the first ones again, so
@@ -102,8 +98,6 @@ class CycleTable:
     errors
         The largest error of each column halfway between nodes at such rates, over its peak
         (columns).
-
-    Raises :class:`DeclarationError` where these do not fit each other.
     """
 
     turns: int
@@ -115,28 +109,6 @@ class CycleTable:
     peaks: Array
     errors: Array
 
-    def __post_init__(self) -> None:
-        c = self.coefficients
-        if self.kept.shape != (len(FACTORS), len(self.columns)):
-            raise DeclarationError(
-                f"kept: expected the shape {(len(FACTORS), len(self.columns))}, got"
-                f" {self.kept.shape}"
-            )
-        if c.dtype.name not in _REAL or not c.flags.c_contiguous:
-            raise DeclarationError(
-                f"coefficients: expected contiguous rows of float64 or float32, got {c.dtype}"
-            )
-        if c.ndim != 2 or c.shape[0] < LEAST + _MORE or c.shape[1] != np.count_nonzero(self.kept):
-            expected = f"at least {LEAST + _MORE} rows of {np.count_nonzero(self.kept)}"
-            raise DeclarationError(f"coefficients: expected {expected}, got {c.shape}")
-        for what, row in (("drift", self.drift), ("peaks", self.peaks), ("errors", self.errors)):
-            if row.shape != (len(self.columns),):
-                raise DeclarationError(
-                    f"{what}: expected one of each column, {len(self.columns)}, got {row.shape}"
-                )
-        if self.turns < 1:
-            raise DeclarationError(f"turns: expected at least 1, got {self.turns}")
-
     @property
     def period(self) -> float:
         """The period [rad]."""
@@ -146,11 +118,6 @@ class CycleTable:
     def nodes(self) -> int:
         """Number of tabulated angles of a period."""
         return int(self.coefficients.shape[0]) - _MORE
-
-    @property
-    def terms(self) -> tuple[tuple[str, str], ...]:
-        """The column and the factor of each term."""
-        return tuple((self.columns[k], FACTORS[factor]) for factor, k in self.layout.terms)
 
     @property
     def error(self) -> float:
@@ -196,24 +163,8 @@ class CycleTable:
         ``out`` is of the table's own ``dtype``, its rows contiguous; where an angle, a rate or an
         acceleration is not finite, neither are the columns that it goes into.
 
-        Raises :class:`DeclarationError` for arrays that do not fit each other, or an ``out`` of
-        another type, and :class:`.CompilerError` where there is no compiler.
+        Raises :class:`.CompilerError` where there is no compiler.
         """
-        if not angle.shape == rate.shape == acceleration.shape == (angle.size,):
-            raise DeclarationError(
-                f"expected three rows of one length, got {angle.shape}, {rate.shape} and"
-                f" {acceleration.shape}"
-            )
-        shape = (len(self.columns), angle.size)
-        if (
-            out.shape != shape
-            or out.dtype != self.dtype
-            or (shape[1] > 1 and out.strides[1] != out.itemsize)
-        ):
-            raise DeclarationError(
-                f"out: expected an array of {self.dtype} of shape {shape} with contiguous rows, got"
-                f" {out.dtype} of {out.shape}"
-            )
         angle, rate, acceleration = (
             np.ascontiguousarray(row, dtype=self.dtype) for row in (angle, rate, acceleration)
         )
@@ -249,7 +200,8 @@ class CycleTable:
         code takes them.
         """
         width = _TURN * self.turns / self.nodes
-        digits = _FIRST_DIGITS[self.dtype.name] - math.frexp(width)[1]
+        # The first part has half of the digits.
+        digits = (np.finfo(self.dtype.name).nmant + 1) // 2 - math.frexp(width)[1]
         first = math.ldexp(round(math.ldexp(width, digits)), -digits)
         return np.array(
             [1 / width, first, width - Fraction(first), Fraction(1, self.nodes)]
@@ -292,22 +244,6 @@ def arranged(kept: npt.NDArray[np.bool_]) -> Layout:
         (factor, int(k)) for factor, first, count in runs for k in order[first : first + count]
     )
     return Layout(order, np.array(runs, dtype=np.int32).reshape(-1, 3), terms)
-
-
-def weights(u: Reals) -> tuple[Reals, ...]:
-    """The weights, times 120, of the six coefficients around places ``u`` from one node (0) to the
-    next (1).
-    """
-    v = 1 - u
-    u2, v2 = u * u, v * v
-    return (
-        v2 * (v2 * v),
-        (26 - 50 * u) + u2 * (20 + u * (20 + u * (5 * u - 20))),
-        66 + u2 * (u2 * (30 - 10 * u) - 60),
-        66 + v2 * (v2 * (30 - 10 * v) - 60),
-        (26 - 50 * v) + v2 * (20 + v * (20 + v * (5 * v - 20))),
-        u2 * (u2 * u),
-    )
 
 
 def splines(values: Array) -> Array:

@@ -191,12 +191,6 @@ class Drive:
         self._refuse(angles, values)
         return values
 
-    def columns_at(self, angles: Array, places: Array, rate: float, acceleration: float) -> Array:
-        """The columns themselves at angles, (columns, n)."""
-        return np.asarray(
-            self.program.instant(0.0, angles[None], rate, acceleration, places, self.p).full()
-        )
-
     def settle(self, angles: Array, places: Array) -> Array:
         """The iterated coordinates at angles, from ones that are near.
 
@@ -381,7 +375,8 @@ def _refuse_other_powers(
     for by_rate, by_acceleration in _PROBES:
         rate, acceleration = by_rate * (rates[0] or 1.0), by_acceleration * (rates[1] or 1.0)
         factors = np.array([1.0, rate, rate**2, acceleration])
-        found = drive.columns_at(angles, places, rate, acceleration)
+        moving = (angles[None], rate, acceleration, places)
+        found = drive.program.instant(0.0, *moving, drive.p).full()
         near = _SAME * np.abs(found).max(axis=-1) + _FAINT * np.abs(factors) @ sizes
         wrong |= ~(np.abs(found - np.tensordot(factors, revolutions_of, 1)).max(axis=-1) <= near)
     if wrong.any():

@@ -206,10 +206,7 @@ def resting(program: Program, out: Array) -> npt.NDArray[np.bool_]:
     """Instants, from the columns ``out`` (columns, t), at which a joint with friction is at rest:
     forces that depend on its friction are indeterminate.
     """
-    found = np.zeros(out.shape[-1], dtype=bool)
-    for row in program.checks("rest").values():
-        found |= np.asarray(out[row]) > 0.5
-    return found
+    return np.asarray((out[[*program.checks("rest").values()]] > 0.5).any(axis=0))
 
 
 def unfinished(program: Program, evaluated: Evaluated) -> npt.NDArray[np.bool_]:

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import functools
 import math
-from numbers import Integral, Real
 
 import casadi as ca
 import numpy as np
@@ -17,7 +16,7 @@ from ...base.quantities import Output
 from ...base.tables import LARGEST as LARGEST_ALONG
 from ...errors import DeclarationError
 from ..program import Program
-from .cycle_table import LEAST, CycleTable, arranged, splines, weights
+from .cycle_table import LEAST, CycleTable, arranged, splines
 from .cycle_terms import FRACTIONS, Cycle, cycle_of
 
 FEWEST, MOST = 16, 16384
@@ -27,7 +26,8 @@ LARGEST = 256_000_000
 """Bytes of a table."""
 
 _EPSILON = 2.0**-52
-_HALFWAY = np.array([float(weight) for weight in weights(np.array(0.5))])
+_HALFWAY = np.array([1, 237, 1682, 1682, 237, 1]) / 32
+"""The weights, times 120, of the six coefficients around the middle between two nodes."""
 
 
 def tabulate(
@@ -58,9 +58,14 @@ def tabulate(
     ------
     DeclarationError
         For a scene whose cycle cannot be tabulated, a motion that is not finite, an accuracy that
-        is not reached, and another kind of table.
+        is not reached, and too many nodes.
     """
-    accuracy, nodes = _asked(table)
+    accuracy, nodes = (None, table) if isinstance(table, int) else (table, FEWEST)
+    if nodes > MOST:
+        raise DeclarationError(
+            f"table: expected a whole number of nodes from {LEAST} to {MOST}, or an accuracy"
+            f" between 0 and 1, got {table!r}"
+        )
     for output in program.outputs:
         if output.group in LARGEST_ALONG:
             raise DeclarationError(
@@ -176,15 +181,3 @@ def _reach(terms: Array, rate: float, acceleration: float) -> Array:
         + acceleration * np.abs(by_acceleration)
     )
     return found
-
-
-def _asked(table: int | float) -> tuple[float | None, int]:
-    """The accuracy, or None, and the nodes to begin with."""
-    if isinstance(table, Integral) and not isinstance(table, bool) and LEAST <= table <= MOST:
-        return None, int(table)
-    if isinstance(table, Real) and not isinstance(table, Integral) and 0.0 < float(table) < 1.0:
-        return float(table), FEWEST
-    raise DeclarationError(
-        f"table: expected a whole number of nodes from {LEAST} to {MOST}, or an accuracy between 0"
-        f" and 1, got {table!r}"
-    )
