@@ -247,18 +247,16 @@ static void search_measure(search_now* now, long long step) {
   }
 }
 
-/* Whether rounding decides, at both ends of a step, on which side of a number one of the watched is. */
-static int search_rounds(const search_now* now, const search_panel* panel, int watch, long long step) {
-  const search_real *row = search_watched(panel, watch) + step, noise = now->noise[watch];
-  if (now->step < 0 || !(noise > 0) || step < 0 || step > panel->n - 2) return 0;
-  return search_gap(now, watch, row[0]) <= noise && search_gap(now, watch, row[1]) <= noise;
-}
-
-/* Whether one of the watched hides nothing in a step, where rounding decides on which side it is there or in a step beside. */
+/* Whether one of the watched hides nothing in a step, where rounding decides, at both ends of it or of a step beside, on which side of a
+   number it is. */
 static int search_undecided(const search_now* now, const search_panel* panel, int watch, long long step) {
-  return step >= 0 && step < panel->n - 1 &&
-         (search_rounds(now, panel, watch, step) || search_rounds(now, panel, watch, step - 1) ||
-          search_rounds(now, panel, watch, step + 1));
+  const search_real *row = search_watched(panel, watch), noise = now->noise[watch];
+  long long i;
+  if (now->step < 0 || !(noise > 0) || step < 0 || step > panel->n - 2) return 0;
+  for (i = step > 0 ? step - 1 : 0; i < step + 2 && i < panel->n - 1; ++i) {
+    if (search_gap(now, watch, row[i]) <= noise && search_gap(now, watch, row[i + 1]) <= noise) return 1;
+  }
+  return 0;
 }
 
 /* Whether rounding switches a curve in a step, which is no kink of it. */

@@ -258,15 +258,6 @@ static int designs_refused(designs_now* now) {
   return SCENE_OK;
 }
 
-/* Whether equilibrium leaves open, at any instant, what a check is about. */
-static int designs_is_open(const designs_now* now, int check) {
-  const lanes_real *row = designs_row(now, DESIGNS_CHECKED + check), limit = designs_lane(now->matter + DESIGNS_LIMITS + check, 0);
-  casadi_int i;
-  int open = 0;
-  for (i = 0; i < now->n; ++i) open |= !(row[i] <= limit);
-  return open;
-}
-
 /* The mean of a row of which not all values count, or of its square: over the steps whose two ends are numbers, else over values. */
 static double designs_mean_of_counted(const designs_now* now, int k, int squared) {
   const lanes_real* row = designs_row(now, k);
@@ -310,9 +301,15 @@ static double designs_mean(const designs_now* now, int k, int squared) {
 static int designs_peaks(designs_now* now, double* value, double* t, double* xi) {
   lagrange_casadi_search_call search = *now->call->search;
   signed char open[DESIGNS_QUANTITIES], located[DESIGNS_QUANTITIES];
+  casadi_int i;
   int all = 1, k;
   memset(open, 0, sizeof open);
-  for (k = 0; k < DESIGNS_DOUBTS; ++k) open[designs_doubtful[k]] |= (signed char) designs_is_open(now, designs_doubted[k]);
+  /* What a check is about is open where equilibrium leaves it so at any instant. */
+  for (k = 0; k < DESIGNS_DOUBTS; ++k) {
+    const int check = designs_doubted[k];
+    const lanes_real *row = designs_row(now, DESIGNS_CHECKED + check), limit = designs_lane(now->matter + DESIGNS_LIMITS + check, 0);
+    for (i = 0; i < now->n; ++i) open[designs_doubtful[k]] |= (signed char) !(row[i] <= limit);
+  }
   memcpy(now->call->hiding, now->bent, (size_t) now->n);
   search.n = now->n;
   search.stride = now->stride;
@@ -323,8 +320,6 @@ static int designs_peaks(designs_now* now, double* value, double* t, double* xi)
   search.open = open;
   search.rests = now->rests;
   search.together = LANES;
-  search.way = now->call->way;
-  search.share = now->call->share;
   search.tops = now->tops;
   search.error = now->error;
   search.hiding = now->call->hiding;
@@ -419,7 +414,7 @@ static void designs_timed(designs_now* now, const double* t) {
    same. instants are room for those of one design at a time, its times and parameters too, all zero but the guess, from which
    iterated loops begin; two rows of times are followed by those for curves, their places, what is checked and what is watched. value,
    peak_t and xi become rows of quantities, mean and rms of efforts, all of them or none where value is NULL; these ask for instants in
-   equal steps. tops, unless it is NULL, becomes the local peaks of quantities that way and share ask of the search. Where error is not
+   equal steps. tops, unless it is NULL, becomes the local peaks of quantities that the search is asked for. Where error is not
    NULL, peaks are those at the instants, and error becomes how much larger each may be between them. history, unless it is NULL,
    becomes outputs by instants, iterated likewise iterated coordinates; near, unless it is NULL, says whether a mark of a motion or a
    constraint is near to where it may make a kink; a design without a result leaves its status, and NaN. hiding

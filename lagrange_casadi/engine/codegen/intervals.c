@@ -100,10 +100,6 @@ static search_real search_ratio(const search_now* now, int curve, const search_r
   return k >= 0 ? places[k*apart] : k == SEARCH_AT_BASE ? 0 : k == SEARCH_AT_TIP ? 1 : (search_real) NAN;
 }
 
-static search_real search_found_ratio(const search_now* now, int curve, int j) {
-  return search_ratio(now, curve, now->found + now->curves->curves*now->call->together + j, now->call->together);
-}
-
 static search_real search_ratio_in(const search_now* now, const search_panel* panel, int curve, long long i) {
   return search_ratio(now, curve, search_row(panel, now->curves->curves) + i, panel->stride);
 }
@@ -131,18 +127,12 @@ static search_real search_level(const search_now* now, const search_panel* panel
 /* Where friction at rest leaves a curve open at an instant, its row holds a zero with a minus sign, which no other value of it has. */
 static int search_nothing(search_real x) { return x == 0 && 1/x < 0; }
 
-/* Whether friction at rest leaves a curve open at an end of a step between instants. */
-static int search_rests(const search_now* now, int curve, long long i) {
-  const search_real* row = search_row(&now->all, curve) + i;
-  return search_nothing(row[0]) || search_nothing(row[1]);
-}
-
-/* Whether a curve is not sought at a time: in steps beside rest those that are open there are left out. */
+/* Whether a curve is not sought at a time: in steps beside rest those that are open at an end are left out. */
 static int search_lacks(const search_now* now, int curve, double t) {
   const double x = (t - now->t[0])/(2*now->half);
   long long i = x > 0 ? (long long) x : 0;
-  if (!now->call->rests || now->n < 2) return 0;
-  return search_rests(now, curve, i < now->n - 2 ? i : now->n - 2);
+  const search_real* row = search_row(&now->all, curve) + (i < now->n - 2 ? i : now->n - 2);
+  return now->call->rests && now->n > 1 && (search_nothing(row[0]) || search_nothing(row[1]));
 }
 
 /* List what a curve is at a time: the largest of what is less than a step apart, and the largest of these where there are many. */

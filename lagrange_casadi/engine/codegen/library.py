@@ -215,7 +215,7 @@ class Library:
             if (array := arrays.get(name)) is not None and array.dtype != dtype
         ]
         arrays |= {name: converted for name, _, converted in rounded}
-        search, within = many.search.call(many.tables, _CUT)
+        search, within = many.search.call(many.tables, _CUT, listed)
         call = CALL.made(
             search=ctypes.addressof(search),
             find=many.search.address,
@@ -223,8 +223,6 @@ class Library:
             instants=ctypes.addressof(instants),
             t_apart=n if len(t) > 1 else 0,
             bent_apart=stride if len(bent) > 1 else 0,
-            way=listed.sign if listed else 0,
-            share=listed.share if listed else 0.0,
             **{
                 name: None if array is None else array.ctypes.data for name, array in arrays.items()
             },

@@ -262,12 +262,14 @@ class Search:
         return ctypes.cast(self.entry, ctypes.c_void_p).value
 
     def call(
-        self, tables: Tables, together: int, **members: float | None
+        self, tables: Tables, together: int, listed: Listed | None, **members: float | None
     ) -> tuple[ctypes.Structure, npt.NDArray[np.int8]]:
         """A call for some curves, of which ``together`` times are evaluated at once, and its room;
         other members are left out.
         """
         made = CALL.type(curves=ctypes.addressof(tables.struct), together=together, **members)
+        if listed:
+            made.way, made.share = listed.sign, listed.share
         self.room(made)
         room = np.empty(made.size + 4 * _LINE, np.int8)
         made.room = room.ctypes.data + -room.ctypes.data % (4 * _LINE)
@@ -323,6 +325,7 @@ class Search:
         call, room = self.call(
             tables,
             _TOGETHER,
+            listed,
             n=n,
             stride=rows.shape[1],
             t=t.ctypes.data,
@@ -331,8 +334,6 @@ class Search:
             most=most.ctypes.data,
             scales=scales.ctypes.data,
             rests=int(np.isnan(values).any()),
-            way=listed.sign if listed else 0,
-            share=listed.share if listed else 0.0,
             tops=None if tops is None else tops.ctypes.data,
             hiding=hidden.ctypes.data,
             at=ctypes.cast(asked.entry, ctypes.c_void_p).value,

@@ -39,8 +39,6 @@ CALL = Call(
         "bent_apart": "long long",
         "search": "const lagrange_casadi_search_call*",
         "find": "lagrange_casadi_find*",
-        "way": "int",
-        "share": "double",
         "status": "signed char*",
         "value": "double*",
         "peak_t": "double*",

@@ -32,6 +32,7 @@ typedef struct {
 static void search_look(search_now* now, double step, const double* times, const int* curves, search_real* found, int many) {
   const double same = SEARCH_SAME_TIME*step;
   const int together = now->call->together, own = (int) (now->curves->curves + now->curves->places);
+  const search_real* places = now->found + now->curves->curves*together;
   double t[SEARCH_LOOKS];
   unsigned long long need;
   int lane[SEARCH_LOOKS], apart = 0, known, first, j, k;
@@ -54,7 +55,7 @@ static void search_look(search_now* now, double step, const double* times, const
       if (j < 0 || j >= together) continue;
       found[k] = search_found(now, curves[k], j);
       if (search_counts(now, now->quantity[curves[k]], t[lane[k]], now->found + own*together + j, together)) {
-        search_note(now, curves[k], found[k], t[lane[k]], search_found_ratio(now, curves[k], j));
+        search_note(now, curves[k], found[k], t[lane[k]], search_ratio(now, curves[k], places + j, together));
       } else {
         found[k] = (search_real) NAN;  /* which closes nothing */
       }
