@@ -316,18 +316,6 @@ def loaded(
             raise broken(compiler, error) from None
 
 
-def loaded_or_none(source: str, options: tuple[str, ...], instead: str) -> ctypes.CDLL | None:
-    """The shared library of a source in C, for which there is a replacement; None where there is no
-    compiler, and with a warning, which says what is done ``instead``, where it refuses the source.
-    """
-    try:
-        compiler = find_compiler()
-        return None if compiler is None else loaded(source, compiler, options)
-    except CompilerError as error:
-        warn(f"{error}; {instead}: same values")
-        return None
-
-
 def entry_of(library: ctypes.CDLL, name: str, compiler: Compiler) -> CFuncPtr:
     """A function of a library. Raises :class:`CompilerError` where it lacks it."""
     try:

@@ -122,12 +122,8 @@ class Course:
     def turns_of(self, angles: Array, wrapped: Array) -> Array:
         """Multiples of 2 pi that make angles continuous with those of the course, (m, n)."""
         rising = slice(None, None, 1 if self.angles[1] > self.angles[0] else -1)
-        found = np.zeros_like(wrapped)
-        for k, row in enumerate(self.wrapped):
-            found[k] = math.tau * np.rint(
-                (np.interp(angles, self.angles[rising], row[rising]) - wrapped[k]) / math.tau
-            )
-        return found
+        near = [np.interp(angles, self.angles[rising], row[rising]) for row in self.wrapped]
+        return math.tau * np.rint((np.reshape(near, wrapped.shape) - wrapped) / math.tau)
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,10 +180,8 @@ class Drive:
         values = np.empty((4, len(self.program.columns), angles.size))
         for start in range(0, angles.size, _BLOCK):
             cut = slice(start, start + _BLOCK)
-            for row, found in zip(
-                values, self.terms(angles[None, cut], places[:, cut], self.p), strict=True
-            ):
-                row[:, cut] = found.full()
+            found = self.terms(angles[None, cut], places[:, cut], self.p)
+            values[..., cut] = [part.full() for part in found]
         self._refuse(angles, values)
         return values
 
@@ -281,8 +275,11 @@ class Drive:
             bound = program.bounds[program.rules[broken[i] - 1][1] or 0]
             if bound.kind in ("closure", "branch", "gap"):
                 loop = f"the loop closed by {program.data.closing(str(bound.part))}"
-                gap = f"the solution of {loop} does not close it"
-                what = gap if bound.kind == "gap" else f"{loop} cannot be closed"
+                what = (
+                    f"the solution of {loop} does not close it"
+                    if bound.kind == "gap"
+                    else f"{loop} cannot be closed"
+                )
                 raise DeclarationError(f"table: {what}{self._not_round(angles[i])}")
         found = np.argwhere(~np.isfinite(values).all(axis=0))
         if found.size:

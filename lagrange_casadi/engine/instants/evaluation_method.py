@@ -103,7 +103,7 @@ class EvaluationMethod:
             words = shlex.split(self.flags)
             if "\0" in self.flags:
                 raise ValueError("they hold a null character")
-        except (ValueError, AttributeError) as error:
+        except ValueError as error:
             raise DeclarationError(
                 f"flags: expected options of a compiler, got {self.flags!r}: {error}"
             ) from None

@@ -87,18 +87,8 @@ def _serving(
     program: Program, p: Array, method: EvaluationMethod, rate: Array, acceleration: Array
 ) -> CycleTable:
     assert method.table is not None
-    cycle = cycle_table(program, tuple(p), method.table, (_above(rate), _above(acceleration)))
+    cycle = tabulate(program, tuple(p), method.table, (_above(rate), _above(acceleration)))
     return _single(cycle) if method.precision == "single" else cycle
-
-
-@functools.lru_cache(maxsize=32)
-def cycle_table(
-    program: Program, p: tuple[float, ...], table: float, rates: tuple[float, float]
-) -> CycleTable:
-    """The table of a scene for parameters ``p``, kept while the process lasts; see
-    :func:`.tabulate`.
-    """
-    return tabulate(program, np.array(p), table, rates)
 
 
 _single = functools.lru_cache(maxsize=32)(CycleTable.single)

@@ -21,10 +21,10 @@ import numpy.typing as npt
 from ...base.arrays import Array, during
 from ...base.space import cores, require
 from ...base.threads import in_threads
-from ...errors import DeclarationError
+from ...errors import CompilerError, DeclarationError, warn
 from ...model.limits import END
 from ..codegen.calls import Call
-from ..codegen.compiler import loaded_or_none, written
+from ..codegen.compiler import find_compiler, loaded, written
 from ..section_function import edge
 
 WORTH_COMPILING = 1 << 9
@@ -199,24 +199,23 @@ def largest(given: Sum, u: Array, slack: float = END["double"]) -> Array:
             _fill_in_blocks(design, basis[:, i], u, grid, slack)
             high, low = grid.max(axis=0), grid.min(axis=0)
             out[i] = np.where(high >= -low, high, low)
-        out[~finite] = np.nan
-        return out
-    ratios = np.ascontiguousarray(u, dtype=np.float64)
-    functions = np.ascontiguousarray(basis, dtype=np.float64).reshape(len(basis), -1)
-    beyond = edge(ratios, slack)
-    library.lagrange_casadi_largest(
-        LARGEST.made(
-            designs=n,
-            n=t,
-            k=u.size,
-            stride=functions.shape[1],
-            basis=functions.ctypes.data,
-            u=ratios.ctypes.data,
-            beyond=beyond.ctypes.data,
-            out=out.ctypes.data,
-            **columns.members,
+    else:
+        ratios = np.ascontiguousarray(u, dtype=np.float64)
+        functions = np.ascontiguousarray(basis, dtype=np.float64).reshape(len(basis), -1)
+        beyond = edge(ratios, slack)
+        library.lagrange_casadi_largest(
+            LARGEST.made(
+                designs=n,
+                n=t,
+                k=u.size,
+                stride=functions.shape[1],
+                basis=functions.ctypes.data,
+                u=ratios.ctypes.data,
+                beyond=beyond.ctypes.data,
+                out=out.ctypes.data,
+                **columns.members,
+            )
         )
-    )
     out[~finite] = np.nan
     return out
 
@@ -276,9 +275,13 @@ def _compiled() -> ctypes.CDLL | None:
     """The C functions, or None where there is no compiler that takes them."""
     macros = f"#define MOST {_MOST}\n#define LINE {_LINE}\n"
     source = macros + GRID.text() + LARGEST.text() + written("grids.c")
-    instead = "NumPy computes the section forces along links, more slowly"
-    library = loaded_or_none(source, _OPTIONS, instead)
-    if library is None:
+    try:
+        compiler = find_compiler()
+        if compiler is None:
+            return None
+        library = loaded(source, compiler, _OPTIONS)
+    except CompilerError as error:
+        warn(f"{error}; NumPy computes the section forces along links, more slowly: same values")
         return None
     some = (ctypes.c_longlong,) * 3
     GRID.declare(library.lagrange_casadi_grids, *some)

@@ -222,11 +222,10 @@ def _beyond(program: Program, p: Array, precision: Precision, at: str) -> str | 
     for name, body in program.data.at(p).bodies.items():
         length = body.length
         if length is not None and not low <= length <= high:
-            what = (
-                f"link '{name}' is {length:.3g} m long, but squares in {precision} precision need"
-                f" {low:.1g} to {high:.1g} m"
+            return (
+                f"the mechanism has no result {at}: link '{name}' is {length:.3g} m long, but"
+                f" squares in {precision} precision need {low:.1g} to {high:.1g} m"
             )
-            return f"the mechanism has no result {at}: {what}"
     return None
 
 

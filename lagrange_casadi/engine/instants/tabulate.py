@@ -30,10 +30,11 @@ _HALFWAY = np.array([1, 237, 1682, 1682, 237, 1]) / 32
 """The weights, times 120, of the six coefficients around the middle between two nodes."""
 
 
+@functools.lru_cache(maxsize=32)
 def tabulate(
-    program: Program, p: Array, table: int | float, rates: tuple[float, float]
+    program: Program, p: tuple[float, ...], table: float, rates: tuple[float, float]
 ) -> CycleTable:
-    """Tabulate a scene's cycle, for any motion of its one drive.
+    """Tabulate a scene's cycle, for any motion of its one drive; kept while the process lasts.
 
     Parameters
     ----------
@@ -76,7 +77,7 @@ def tabulate(
         raise DeclarationError(
             f"table: expected a finite rate and acceleration of the drive, got {rates!r}"
         )
-    cycle = cycle_of(program, p, rates)
+    cycle = cycle_of(program, np.array(p), rates)
     values, best = cycle.values(nodes), None
     while True:
         between = cycle.values(nodes, halfway=True)
@@ -113,26 +114,22 @@ def still(program: Program, p: tuple[float, ...]) -> dict[Output, float]:
 
     And where loads along links begin and end.
     """
-    places = {("station", "station"), ("spread", "width"), ("spread", "end")}
+    members = {("station", "station"), ("spread", "width"), ("spread", "end")}
     rows = {
         output: k
         for output, k in program.outputs.items()
-        if (output.group, output.member) in places
+        if (output.group, output.member) in members
     }
     if not rows:
         return {}
     t, *moving, parameters = program.instant.sx_in()
-    found = program.instant(t, *moving, parameters)[list(rows.values())]
-    depends = ca.jacobian_sparsity(found, ca.vertcat(t, *moving))
-    fixed = [k for k in range(len(rows)) if k not in depends.row()]
-    places = (
-        ca.Function(
-            "still", [parameters], [ca.substitute(found[fixed], ca.vertcat(t, *moving), 0)]
-        )(list(p))
-        .full()
-        .ravel()
-    )
-    return dict(zip((list(rows)[k] for k in fixed), places.tolist(), strict=True))
+    changing = ca.vertcat(t, *moving)
+    found = program.instant(t, *moving, parameters)[[*rows.values()]]
+    depends = ca.jacobian_sparsity(found, changing).row()
+    fixed = {output: k for k, output in enumerate(rows) if k not in depends}
+    places = ca.substitute(found[[*fixed.values()]], changing, 0)
+    values = ca.Function("still", [parameters], [places])(list(p)).full().ravel()
+    return dict(zip(fixed, values.tolist(), strict=True))
 
 
 def _table(
