@@ -16,7 +16,7 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import casadi as ca
@@ -47,7 +47,8 @@ class Stages(Graphs):
     ``drive(t, p) -> (counted, d_rate, d_acceleration)``; ``loops(z, counted, p) -> (correction,
     size)`` where loops are iterated; ``instant(counted, d_rate, d_acceleration, z, p) -> out``, and
     ``closing`` of the same, see :func:`.closing_of`, where it is asked for. The drive of single
-    precision takes t and p as pairs, all the rests after all the values.
+    precision takes t and p as pairs, all the rests after all the values. Where drives are given
+    (:func:`controlled`), ``law(t, p) -> (d, d_rate, d_acceleration)`` is what they would do.
     """
 
     drive: ca.Function
@@ -55,6 +56,7 @@ class Stages(Graphs):
     instant: ca.Function
     closing: ca.Function | None = None
     precision: Precision = "double"
+    law: Any = None
 
     def instructions(self, steps: int) -> int:
         """Number of instructions an instant, with ``steps`` Newton steps if loops are iterated."""
@@ -103,32 +105,17 @@ def compensated(program: Program, precision: Precision, *, closing: bool = False
     return Stages(drive, loops, instant, closed, precision)
 
 
-@dataclass(frozen=True, eq=False)
-class Controlled(Graphs):
-    """The functions of an instant whose drives are given, not prescribed: for code that a
-    controller calls.
-
-    ``law(t, p) -> (d, d_rate, d_acceleration)`` is the law of the drives; ``count(moment, p) ->
-    counted`` stands for the drive of :class:`Stages`, of which the other functions are. A
-    moment is the time and the driven coordinates; in single precision all of them once more follow,
-    what rounding them to single left. So do t and d; parameters do not.
-    """
-
-    law: ca.Function
-    count: ca.Function
-    loops: Any | None
-    instant: ca.Function
-    closing: ca.Function | None
-    precision: Precision
-
-
 @symbolic
 @functools.lru_cache(maxsize=32)
 def controlled(
     program: Program, precision: Precision, fixed: tuple[float, ...] | None = None
-) -> Controlled:
-    """The stages of a graph by its driven coordinates; in doubles the caller counts turns, in
-    singles pairs do.
+) -> Stages:
+    """The stages of a graph by its driven coordinates, for code that a controller calls; in doubles
+    the caller counts turns, in singles pairs do.
+
+    The drive is ``count(moment, p) -> counted``. A moment is the time and the driven coordinates;
+    in single precision all of them once more follow, what rounding them to single left. So do t and
+    d of the law; parameters do not.
 
     Where parameters are ``fixed``, pairs have all the digits of these numbers, as of other
     constants. Raises :class:`DeclarationError` for a graph that cannot be followed in pairs.
@@ -136,14 +123,8 @@ def controlled(
     if precision == "double":
         stages, p = plain(program, closing=True), program.instant.sx_in("p")
         moment = ca.SX.sym("moment", stages.instant.size1_in(0))
-        return Controlled(
-            program.laws.motion,
-            graph("count", {"moment": moment, "p": p}, counted=moment),
-            stages.loops,
-            stages.instant,
-            stages.closing,
-            stages.precision,
-        )
+        count = graph("count", {"moment": moment, "p": p}, counted=moment)
+        return replace(stages, drive=count, law=program.laws.motion)
     pairs, rows = Pairs(precision), 1 + len(program.driven)
     moment, p = ca.SX.sym("moment", rows, 2), program.instant.sx_in("p")
     t, *driven = (Pair(row[0], row[1]) for row in ca.vertsplit(moment))
@@ -151,7 +132,7 @@ def controlled(
     handed, loops, instant, closed = _counted(program, pairs, t, driven, known, closing=True)
     count = graph("count", {"moment": ca.vec(moment), "p": p}, counted=handed)
     law = _paired_law(program.laws.motion, pairs, p, known)
-    return Controlled(law, count, loops, instant, closed, precision)
+    return Stages(count, loops, instant, closed, precision, law)
 
 
 def _rest(pair: Pair) -> ca.SX:

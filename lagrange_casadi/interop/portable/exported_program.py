@@ -122,7 +122,7 @@ def exported(
     sound, positive = _sound(program, symbols, precision)
     functions = {
         "law": stages.law,
-        "count": stages.count,
+        "count": stages.drive,
         "constants_of": constants,
         "matter": _mass_properties(program, symbols, extent_first=gapped),
     }
