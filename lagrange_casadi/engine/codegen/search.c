@@ -306,7 +306,7 @@ static void search_largest(search_now* now) {
 static void search_errors(search_now* now) {
   const search_panel* all = &now->all;
   const long long n = now->n;
-  lanes_pack twice;
+  lanes_pack twice, other;
   search_real far, nothing, lane[LANES];
   long long i;
   int hides = n > 1, j, k, q;
@@ -319,13 +319,17 @@ static void search_errors(search_now* now) {
     search_peak* peak = now->peaks + q;
     nothing = SEARCH_NOTHING*now->scale[now->curves->unit[q]];
     far = peak->best;
-    twice = 2*far;
+    twice = other = 2*far;
     for (k = now->curves->first[q]; n > 1 && !hides && k < now->curves->first[q + 1]; ++k) {
       const search_real* row = search_row(all, k);
       if (!(peak->best < 3*now->call->most[k])) continue;
-      for (i = 0; i + LANES <= n; i += LANES) twice = search_larger(twice, search_reach(row + i));
+      for (i = 0; i + 2*LANES <= n; i += 2*LANES) {
+        twice = search_larger(twice, search_reach(row + i));
+        other = search_larger(other, search_reach(row + i + LANES));
+      }
       for (; i < n; ++i) far = search_upper(far, search_magnitude(4*row[i] - (row[i - 1] + row[i + 1]))/2);
     }
+    twice = search_larger(twice, other);
     memcpy(lane, &twice, sizeof lane);
     for (j = 0; j < LANES; ++j) far = search_upper(far, lane[j]/2);
     now->call->error[q] = hides ? (search_real) INFINITY : peak->best > nothing ? far - peak->best + peak->rounding : nothing;
