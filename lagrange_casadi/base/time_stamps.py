@@ -47,12 +47,14 @@ def stamp(cells: Sequence[str]) -> Decimal:
 
 class Clock(NamedTuple):
     """Conversion of stamps to times [s]: their ``unit``, the ``origin`` that is time zero, and its
-    cells as they stand in the file, where time zero is not the file's own.
+    cells as they stand in the file, where time zero is not the file's own, with ``words`` for what
+    they are.
     """
 
     unit: Unit
     origin: Decimal = Decimal(0)
     first: str = ""
+    words: str = ""
 
     @classmethod
     def of(cls, cells: Sequence[str], word: str) -> Clock:
@@ -61,11 +63,11 @@ class Clock(NamedTuple):
         """
         found, first = stamp(cells), " and ".join(cells)
         if len(cells) == 2 or _ISO.fullmatch(cells[0]):
-            return cls(Unit(), found, first)
+            return cls(Unit(), found, first, "s and ns" if len(cells) == 2 else "ISO 8601")
         powers = {word: _POWERS[word]} if word in _POWERS else {} if word else _POWERS
         for unit, power in powers.items():
             if _UNIX[0] <= found.scaleb(power) < _UNIX[1]:
-                return cls(Unit.of(unit), found, first)
+                return cls(Unit.of(unit), found, first, f"{unit} since 1970")
         return cls(Unit.of(word or "s"))
 
     def read(self, cells: Sequence[str]) -> float:

@@ -11,10 +11,11 @@ import numpy as np
 
 from ..base.quantities import Output
 from ..base.table_writers import aligned
+from ..model.scene import Scene, margins, strokes
 from ..results.histories import Peak
-from ..results.ordering import error_of, ordered
+from ..results.ordering import ON_PARTS, error_of, ordered
 from ..results.solution import Solution
-from ..results.statistics import Statistics
+from ..results.statistics import Extreme, Statistics
 
 _ROUNDING = 5e-7
 """Errors below this share of the largest value of their unit are rounding."""
@@ -52,16 +53,19 @@ class Row:
 @dataclass(frozen=True)
 class Rows:
     """The quantities of a solution, in order; ``switching`` names loads of which no peak was found
-    between the instants.
+    between the instants, ``margins`` those of contacts, and ``strokes`` shares that are out.
     """
 
     solution: Solution
     rows: tuple[Row, ...]
     switching: tuple[str, ...] = ()
+    margins: tuple[str, ...] = ()
+    strokes: tuple[str, ...] = ()
 
     @classmethod
     def of(
         cls,
+        scene: Scene,
         solution: Solution,
         refined: Sequence[Peak] = (),
         asked: Collection[str] = (),
@@ -81,9 +85,8 @@ class Rows:
         ]
         lost = [Output.of(peak.name) for peak in refined if peak.least is not None]
         loads = dict.fromkeys(output.part for output in lost if output.group == "load")
-        return cls(
-            solution, tuple(_row(solution, output, peaks) for output in outputs), tuple(loads)
-        )
+        rows = tuple(_row(solution, output, peaks) for output in outputs)
+        return cls(solution, rows, tuple(loads), tuple(margins(scene)), tuple(strokes(scene)))
 
     @classmethod
     def of_all(cls, solution: Solution) -> Rows:
@@ -91,7 +94,9 @@ class Rows:
         return cls(solution, tuple(_row(solution, one, {}) for one in solution.quantities()))
 
     def cards(self) -> Iterator[str]:
-        """Write the largest effort, reaction and section forces, each with its place and time."""
+        """Write the largest effort, reaction and section forces, each with its place and time, and
+        the least margin of contacts.
+        """
         best: dict[tuple[str, str], Row] = {}
         for row in self.rows:
             words = _CARDS.get((row.output.group, row.output.member))
@@ -109,6 +114,11 @@ class Rows:
         for words, unit in sorted(kinds, key=lambda kind: order.index(kind[0])):
             if peak := best[words, unit].peak:
                 yield card(words, peak_line(self.solution, peak, self._scales[unit], width))
+        if found := self._nearest:
+            least = _peak(self.solution, found, found.smallest)
+            yield card(
+                "least margin", peak_line(self.solution, least, self._scales[found.unit], width)
+            )
 
     def table(self, capacity: int | None = None) -> Iterator[str]:
         """Write a row for each quantity, or for the most important ones if ``capacity`` is for
@@ -148,6 +158,14 @@ class Rows:
             )
 
     @cached_property
+    def _nearest(self) -> Statistics | None:
+        """The margin of the contact that is nearest to sliding or pulling, if there are contacts
+        whose forces are determined.
+        """
+        found = [row.found for row in self.rows if row.found and row.found.name in self.margins]
+        return min(found, key=lambda one: one.smallest.value, default=None)
+
+    @cached_property
     def _scales(self) -> dict[str, float]:
         """The largest size of each unit."""
         scales: dict[str, float] = {}
@@ -160,12 +178,20 @@ class Rows:
         return readable(_size(row.peak), row.error, self._scales[row.unit]) == "0"
 
     def _first(self, count: int) -> tuple[Row, ...]:
-        """Choose the largest of each kind, then the second largest, and so on.
+        """Choose what single elements bear, the strokes and the least margin; beside these the
+        largest of each kind, then the second largest, and so on.
 
         Components of resultants come after that, and what is zero or indeterminate at the end.
         """
+        chosen = {
+            id(row)
+            for row in self.rows
+            if row.output.group in ON_PARTS
+            or str(row.output) in self.strokes
+            or (row.found and row.found is self._nearest)
+        }
         kinds: dict[tuple[bool, str, str], list[Row]] = {}
-        for row in self.rows:
+        for row in (row for row in self.rows if id(row) not in chosen):
             output = row.output
             kind = (self._component(output), output.group, output.member or output.part)
             kinds.setdefault(kind, []).append(row)
@@ -175,7 +201,7 @@ class Rows:
             for rank, row in enumerate(sorted(rows, key=lambda row: -_size(row.peak)))
         ]
         ranked.sort(key=lambda entry: (self._nothing(entry[3]), *entry[:3]))
-        chosen = {id(row) for *_, row in ranked[:count]}
+        chosen.update(id(row) for *_, row in ranked[: max(count - len(chosen), count // 2)])
         return tuple(row for row in self.rows if id(row) in chosen)
 
     def _component(self, output: Output) -> bool:
@@ -265,14 +291,15 @@ def _row(solution: Solution, output: Output, peaks: Mapping[str, Peak]) -> Row:
     if not solution.determined(output):
         return Row(output, solution.unit(output))
     found = solution.statistics(output)
-    largest, over = found.peak, solution.over
-    coordinate = (
-        None if over is None else float(over.values[int(np.argmax(solution.t == largest.t))])
-    )
-    peak = Peak(found.name, largest.value, found.unit, largest.t, largest.xi, over=coordinate)
-    return Row(
-        output, found.unit, found, peaks.get(found.name, peak), error_of(solution, found.name)
-    )
+    peak = peaks.get(found.name) or _peak(solution, found, found.peak)
+    return Row(output, found.unit, found, peak, error_of(solution, found.name))
+
+
+def _peak(solution: Solution, found: Statistics, at: Extreme) -> Peak:
+    """A value of a quantity as a peak, with the coordinate of the drive there."""
+    over = solution.over
+    coordinate = None if over is None else float(over.values[int(np.argmax(solution.t == at.t))])
+    return Peak(found.name, at.value, found.unit, at.t, at.xi, over=coordinate)
 
 
 def _size(peak: Peak | None) -> float:

@@ -146,7 +146,7 @@ def run(
         save(solution, out, dump_specs(loaded.figures), grids=_grids(solution, grids, wanted or ()))
     names = [*forces(solution), *resultants(solution)] if refine_peaks else ()
     refined = refine(scene, solution, names) if names else ()
-    rows = Rows.of(solution, refined, wanted or (), verbose)
+    rows = Rows.of(scene, solution, refined, wanted or (), verbose)
     strength = scene if refine_peaks else None
     head = [_head(solution, refine_peaks if rows.rows else None), *rows.cards()]
     shown, details = wanted or scene.wanted, list[str]()
@@ -228,7 +228,8 @@ def _head(solution: Solution, refined: bool | None) -> str:
 def _notes(scene: Scene, solution: Solution, timing: Timing) -> Iterator[str]:
     values = np.array([list(solution.description.values.values())])
     turning = revolutions.note(scene.prescribed, solution.description.kinds, timing, values)
-    yield from (f"note: {note}" for note in (*solution.notes, turning) if note)
+    stamps = dict.fromkeys(law.note for law in scene.laws.values())
+    yield from (f"note: {note}" for note in (*solution.notes, *stamps, turning) if note)
 
 
 def drive_lines(solution: Solution) -> Iterator[str]:

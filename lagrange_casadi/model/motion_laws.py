@@ -35,8 +35,8 @@ class Motion(Brief):
     ``span`` is the time the law covers, and ``knots`` are the times between which the second
     derivative of a spline is linear. Of a motion made of moves ``stretches`` are these, ``period``
     is their time where they go on over and over, and ``parameter_constraints`` are conditions on
-    the parameters. ``description`` describes a motion from a file; ``unit`` is rad or m if its
-    numbers were given as texts with units.
+    the parameters. ``description`` describes a motion from a file, and ``note`` says how its time
+    stamps were read; ``unit`` is rad or m if its numbers were given as texts with units.
     """
 
     graph: Callable[[Any], Any]
@@ -47,6 +47,7 @@ class Motion(Brief):
     parameter_constraints: tuple[Demand, ...] = ()
     description: str = ""
     unit: str = ""
+    note: str = ""
 
     @fitting
     def __call__(self, x: Expression) -> Expression:

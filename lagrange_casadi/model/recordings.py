@@ -13,6 +13,7 @@ import numpy as np
 from ..base.arguments import Measured, public
 from ..base.arrays import Array
 from ..base.csv_table import Table, count_sizes, encoding_of, for_each
+from ..base.time_stamps import Clock
 from ..base.units import count, differs, known, quantity
 from ..errors import DeclarationError, PathError, UnknownNameError, one_line
 from .curves import Curve, curve
@@ -42,8 +43,8 @@ _FOURTH = 70.0
 @dataclass(frozen=True, eq=False)
 class Recording:
     """Values over time as a file has them, times in s, values in their ``unit``, and how they are
-    called. ``size`` is the unit in rad or m, ``first`` the time stamp
-    that is time zero, if any.
+    called, in the ``file``. ``size`` is the unit in rad or m, ``clock`` that by which times were
+    read.
     """
 
     name: str
@@ -51,7 +52,8 @@ class Recording:
     t: Array
     values: Array
     size: float
-    first: str
+    clock: Clock
+    file: str
 
 
 @public
@@ -122,12 +124,11 @@ def read_samples(
         For unknown columns and units.
     """
     path = Path(path)
-    (recording,), second = _recordings(
+    (recording,) = _recordings(
         _table(path), {"value": value}, time, unit, time_unit, counts_per_turn
     )
     return _motion(
         replace(recording, name=path.name),
-        second,
         smoothing=smoothing,
         points=points,
         periodic=periodic,
@@ -207,7 +208,7 @@ def read_motion(
     named = dict(columns) if isinstance(columns, Mapping) else {name: name for name in columns}
     if not named:
         raise DeclarationError(f"{path.name}: columns= expected at least one coordinate")
-    recordings, second = _recordings(table, named, time, unit, time_unit, counts_per_turn)
+    recordings = _recordings(table, named, time, unit, time_unit, counts_per_turn)
     noises, advances, ratios, offsets = (
         for_each(path.name, named, f"coordinate of {word}=", value, usual)
         for word, value, usual in (
@@ -220,7 +221,6 @@ def read_motion(
     return {
         name: _motion(
             recording,
-            second,
             smoothing=noises[name],
             points=points,
             periodic=periodic,
@@ -250,8 +250,8 @@ def _recordings(
     unit: str | Mapping[str, str] | None,
     time_unit: str | None,
     counts_per_turn: float | Mapping[str, float] | None,
-) -> tuple[list[Recording], float]:
-    """Read columns by name, and the unit of the times in s."""
+) -> list[Recording]:
+    """Read columns by name."""
     path, at = table.path, table.times(time)
     places = {name: table.place(column) for name, column in named.items()}
     for name, k in places.items():
@@ -272,8 +272,8 @@ def _recordings(
     for (name, word), values in zip(units.items(), series, strict=True):
         size = turns.get(name) or _known(path, word)
         called = f"{path.name}, column {named[name]}"
-        found.append(Recording(called, word, t, values, size, clock.first))
-    return found, clock.unit.factor
+        found.append(Recording(called, word, t, values, size, clock, path.name))
+    return found
 
 
 def _known(path: Path, word: str) -> float:
@@ -286,7 +286,6 @@ def _known(path: Path, word: str) -> float:
 
 def _motion(
     recording: Recording,
-    second: float,
     *,
     smoothing: float | str,
     points: int | None,
@@ -296,13 +295,13 @@ def _motion(
     scales: tuple[Expression, Expression, Expression],
 ) -> Motion:
     """The motion through a recording, with options of :func:`read_samples`: ``scales`` are ratio,
-    offset and stretch; ``second`` is the unit of the file's time in s.
+    offset and stretch.
     """
     ratio, offset, stretch = scales
     name = recording.name
     advance = quantity(f"{name}: advance", advance, recording.unit)
     if period is not None:
-        each = 1.0 if isinstance(period, str) else second
+        each = 1.0 if isinstance(period, str) else recording.clock.unit.factor
         recording = _closed(recording, quantity(f"{name}: period", period, "s") * each, advance)
     elif advance and not periodic:
         raise DeclarationError(f"{name}: advance= needs periodic=True")
@@ -396,7 +395,8 @@ def _law(
 
     every = f", resampled at {points} equally spaced times" if points else ""
     smoothed = f", smoothed by {noise:.3g} {recording.unit}" if noise else ""
-    since = f" since {recording.first}" if recording.first else ""
+    clock = recording.clock
+    since = f" since {clock.first}" if clock.first else ""
     described = (
         f"{t.size} samples of {recording.name} from {t[0]:g} to {t[-1]:g}"
         f" s{since}{', repeated' if periodic else ''}"
@@ -405,6 +405,10 @@ def _law(
         graph,
         description=f"{described}{smoothed}{every}, at most {off:.3g} {recording.unit} from them",
         unit=unit_in,
+        note=f"times of {recording.file} are stamps in {clock.words}: its first row, {clock.first},"
+        " is t = 0"
+        if clock.first
+        else "",
     )
 
 

@@ -636,3 +636,8 @@ def _compliant(scene: Scene, elastic: Elastic) -> Scene:
 def margins(scene: Scene) -> list[str]:
     """Names of the margins of a scene's contacts, among its outputs."""
     return [f"output:{name}_margin" for name in scene.mechanism.contacts]
+
+
+def strokes(scene: Scene) -> list[str]:
+    """Names of the shares of strokes that are out, among a scene's outputs."""
+    return [f"output:{name}_stroke" for name in scene.mechanism.strokes]

@@ -49,6 +49,9 @@ def _order(outputs: tuple[Output, ...], parts: tuple[str, ...], space: bool) -> 
     return sorted(outputs, key=rank)
 
 
+ON_PARTS = ("load", "friction")
+"""The groups of what single elements bear: however many quantities there are, all are listed."""
+
 _GROUPS = ("effort", "reaction", "friction", "section", *LARGEST, "output")
 
 

@@ -151,6 +151,7 @@ def test_a_log_with_stamps_begins_at_its_first_row(here, log, encoding):
     law = read_motion(file, {"knee": column}, **options)["knee"]
     same(law, curve(np.arange(61) * 0.02, np.round(KNEE, 13)), AT)
     assert " since " in law.description
+    assert law.note.startswith("times of log.csv are stamps in ")
     if log == "two":
         assert list(read_motion(file)) == ["q"]
 

@@ -10,7 +10,7 @@ from html import escape
 from ...engine.model_data import template
 from ...errors import DeclarationError, LagrangeCasadiError
 from ...model.scene import Scene
-from ...results.ordering import ordered
+from ...results.ordering import ON_PARTS, ordered
 from ...results.pictures import View
 from ...results.solution import Solution
 from ..shapes.index import html_table
@@ -20,7 +20,7 @@ from .still import still
 from .words import what
 
 _ROWS = 12
-"""Peaks that are shown at most: the largest of each unit first."""
+"""Peaks that are shown beside those of loads and friction: the largest of each unit first."""
 
 
 def view(solution: Solution, height: int = 760) -> View:
@@ -83,8 +83,8 @@ def _side_by_side(drawing: str, text: str) -> str:
 
 
 def _table(solution: Solution) -> str:
-    """The peaks of efforts, resultants, section forces and own outputs; of many, the largest of
-    each unit.
+    """The peaks of efforts, resultants, section forces and own outputs; of many, those of loads
+    and friction, and the largest of each unit.
     """
     plain = [
         output
@@ -100,7 +100,7 @@ def _table(solution: Solution) -> str:
         plain, key=lambda output: -abs(peaks[output].value) / (largest[peaks[output].unit] or 1.0)
     )
     rows = []
-    for output in (output for output in plain if output in by_size[:_ROWS]):
+    for output in (one for one in plain if one.group in ON_PARTS or one in by_size[:_ROWS]):
         peak = peaks[output]
         where = f"{peak.t:.5g} s" + ("" if peak.xi is None else f", xi/l = {peak.xi:.3f}")
         value = f"{peak.value + 0.0:.5g}" + ("" if peak.unit == "1" else f" {peak.unit}")
