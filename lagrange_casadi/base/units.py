@@ -288,6 +288,19 @@ def differs(word: str, unit: str) -> str:
     return f"{here}; expected {wanted.kind if wanted else 'numbers'} [{unit}]"
 
 
+def unlike(word: str, unit: str) -> str:
+    """Say as :func:`differs`, and of another size by which factor, that a unit is another one than
+    ``unit``; nothing for a number without a unit, and for a word of the user's own.
+    """
+    given = known(word)
+    if given is None or word == "1":
+        return ""
+    if wrong := differs(word, unit):
+        return wrong
+    factor = given.times(Unit.of(unit), -1).factor
+    return "" if factor == 1.0 else f"{word}; expected {unit}: multiply it by {factor!r}"
+
+
 def in_unit(what: str, values: Iterable[float], given: str, unit: str) -> list[float]:
     """Numbers of texts, which were read in a unit of SI ``given``, in another ``unit``; as they are
     where no text was read.

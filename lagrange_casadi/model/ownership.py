@@ -11,6 +11,7 @@ from typing import get_args
 import casadi as ca
 
 from ..base.scalars import column
+from ..base.units import unlike
 from ..errors import DeclarationError
 from .constraints import Constraint, Row
 from .declaration import Declaration
@@ -148,7 +149,7 @@ class Ownership:
         """A finite float, or an SX scalar in parameters; if ``moving`` in time and state too; if
         ``found`` in results too.
 
-        A number in a ``unit`` may be a text, as ``"100 mm"``.
+        A number in a ``unit`` may be a text, as ``"100 mm"``; a parameter alone must be in it.
         """
         declared = self.declared
         symbols = [parameter.symbol for parameter in declared.parameters.values()]
@@ -160,7 +161,12 @@ class Ownership:
         )
         allowed = "parameter, time, coordinate or rate" if moving else "parameter"
         allowed = f"{allowed.replace(' or rate', ', rate')} or result" if found else allowed
-        return scalar(what, value, symbols, f"{allowed} of mechanism '{declared.name}'", unit)
+        read = scalar(what, value, symbols, f"{allowed} of mechanism '{declared.name}'", unit)
+        if unit != "1" and isinstance(read, ca.SX) and read.is_symbolic():
+            alone = declared.parameters.get(str(read))
+            if alone and ca.is_equal(read, alone.symbol) and (wrong := unlike(alone.unit, unit)):
+                raise DeclarationError(f"{what}: parameter '{alone.name}' is in {wrong}")
+        return read
 
     def vector(self, what: str, value: object, unit: str = "1") -> Vector:
         """As many expressions as there are axes, in a unit; in a plane the third is zero."""

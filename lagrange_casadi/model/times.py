@@ -23,7 +23,6 @@ from ..base.units import quantity
 from ..errors import DeclarationError, UnknownNameError, shown
 from .declared_parts import Expression
 from .even_points import EvenPoints, checked, points
-from .expressions import scalar
 from .limits import values_note
 from .mechanism import Mechanism
 from .motion_inverse import Missed, MotionInverse, Passage
@@ -312,9 +311,8 @@ def _read(
     if len(even) != 3:
         raise DeclarationError(f"{what}: expected (start, stop, count), got {shown(even)}")
     names = ("START", "STOP")
-    symbols = [parameter.symbol for parameter in mechanism.parameters.values()]
     each = [
-        scalar(f"{what}: {name}", bound, symbols, "parameter", unit)
+        mechanism.ownership.expression(f"{what}: {name}", bound, unit)
         for name, bound in zip(names, even[:2], strict=True)
     ]
     _, _, count = checked(what, (0.0, 1.0, even[2]))

@@ -427,6 +427,33 @@ def test_a_parameter_has_the_unit_of_its_text():
         m.parameter("reach", "5 mm", high="5 kN")
 
 
+@pytest.mark.parametrize(
+    ("unit", "says"),
+    [
+        ("mm", "parameter 'p' is in mm; expected m: multiply it by 0.001"),
+        ("kg", r"parameter 'p' is in kg, a mass; expected a length \[m\]"),
+        ("%", r"parameter 'p' is in %, a number without a unit; expected a length \[m\]"),
+    ],
+)
+def test_a_parameter_alone_is_in_the_unit_of_its_place(unit, says):
+    m = Mechanism("press")
+    p = m.parameter("p", 100, unit)
+    for declare in (
+        lambda: m.link("l", length=p, mass=1),
+        lambda: m.revolute("J", m.ground.at(0.1, p), m.point_mass("end", 1)),
+    ):
+        with pytest.raises(DeclarationError, match=says):
+            declare()
+
+
+@pytest.mark.parametrize("unit", ["m", "1", "", "feet"])
+def test_and_may_be_in_a_unit_of_the_users_own(unit):
+    m = Mechanism("press")
+    p = m.parameter("p", 1, unit)
+    assert m.link("l", length=p, mass=1).length is p
+    m.link("k", length=m.parameter("q", 100, "mm") / 1000, mass=1)
+
+
 def test_designs_of_texts_are_in_the_units_of_their_parameters(tmp_path):
     scene, listed = crank(), tmp_path / "listed.csv"
     swept = sweep(scene, {"p": ["350 kPa", 4.0, "0.5 MPa"]}, out=tmp_path / "x.h5")
