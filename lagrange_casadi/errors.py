@@ -109,7 +109,7 @@ class LagrangeCasadiError(Exception):
         return type(self), self.args, left
 
     def __str__(self) -> str:
-        return _line(super().__str__())
+        return _line(Exception.__str__(self))  # that of KeyError has quotation marks
 
     def _render_traceback_(self) -> list[str]:
         """Lines that a notebook shows: that of the cell which led here, and the message."""
@@ -125,7 +125,7 @@ class DeclarationError(LagrangeCasadiError):
     """A mechanism, a motion or a scene is declared in a way that has no meaning."""
 
 
-class UnknownNameError(DeclarationError):
+class UnknownNameError(DeclarationError, KeyError):
     """A name that nothing bears, or several; the message lists the names that exist, or the nearest
     of many and what lists all.
 

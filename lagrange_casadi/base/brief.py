@@ -31,6 +31,8 @@ def no_attribute(owner: object, name: str) -> NoReturn:
     """Raise :class:`.NoAttributeError`, which lists the attributes that an object has."""
     if name.startswith("_"):  # what Python, NumPy and notebooks look for
         raise AttributeError(f"'{type(owner).__name__}' object has no attribute '{name}'")
+    if hasattr(type(owner), name):  # its property has raised this, and says why
+        object.__getattribute__(owner, name)
     valid = [word for word in dir(owner) if not word.startswith("_")]
     raise NoAttributeError(f"attribute of {type(owner).__name__}", name, valid)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any, ClassVar, cast
 
 import casadi as ca
@@ -19,6 +20,7 @@ from .declared_parts import (
     Expression,
     Ground,
     Link,
+    Named,
     Outline,
     Parameter,
     Path,
@@ -54,15 +56,21 @@ class Declaration(Graphs):
     """True if it lies in space, not in a plane."""
 
     name: str
-    parameters: dict[str, Parameter] = field(default_factory=dict, init=False)
-    bodies: dict[str, Body] = field(default_factory=dict, init=False)
-    joints: dict[str, Joint] = field(default_factory=dict, init=False)
-    loads: dict[str, Load] = field(default_factory=dict, init=False)
-    drives: dict[str, Drive] = field(default_factory=dict, init=False)
-    constraints: dict[str, Constraint] = field(default_factory=dict, init=False)
-    rows: dict[str, Row] = field(default_factory=dict, init=False)
-    outputs: dict[str, UserOutput] = field(default_factory=dict, init=False)
-    paths: dict[str, Path] = field(default_factory=dict, init=False)
+    parameters: dict[str, Parameter] = field(
+        default_factory=partial(Named, "parameter"), init=False
+    )
+    bodies: dict[str, Body] = field(default_factory=partial(Named, "body"), init=False)
+    joints: dict[str, Joint] = field(default_factory=partial(Named, "joint"), init=False)
+    loads: dict[str, Load] = field(default_factory=partial(Named, "load"), init=False)
+    drives: dict[str, Drive] = field(default_factory=partial(Named, "drive"), init=False)
+    constraints: dict[str, Constraint] = field(
+        default_factory=partial(Named, "constraint"), init=False
+    )
+    rows: dict[str, Row] = field(
+        default_factory=partial(Named, "non-holonomic constraint"), init=False
+    )
+    outputs: dict[str, UserOutput] = field(default_factory=partial(Named, "output"), init=False)
+    paths: dict[str, Path] = field(default_factory=partial(Named, "path"), init=False)
     contacts: list[str] = field(default_factory=list, init=False)
     fitted: dict[str, Fittings] = field(default_factory=dict, init=False)
     turning: dict[str, str] = field(default_factory=dict, init=False)
@@ -98,16 +106,18 @@ class Declaration(Graphs):
     @property
     def links(self) -> dict[str, Link]:
         """The links by name."""
-        return {name: body for name, body in self.bodies.items() if isinstance(body, Link)}
+        links = {name: body for name, body in self.bodies.items() if isinstance(body, Link)}
+        return Named("link", links)
 
     @property
     def coordinates(self) -> dict[str, tuple[Joint, Axis]]:
         """The coordinates by name, as the joint and its axis: ``JOINT``, or ``JOINT:NAME`` where a
         joint has several.
         """
-        return {
+        each = {
             axis.coordinate: (joint, axis) for joint in self.joints.values() for axis in joint.axes
         }
+        return Named("coordinate", each)
 
     @property
     def symbols(self) -> Expression:

@@ -5,8 +5,9 @@ user's own.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar, Literal, TypeAlias
+from typing import ClassVar, Literal, NoReturn, TypeAlias, TypeVar
 
 import casadi as ca
 
@@ -17,14 +18,30 @@ from ..base.quantities import Output
 from ..base.units import Number, number
 from ..base.vectors import Expression as Expression
 from ..base.vectors import Vector as Vector
-from ..errors import NumberError, ParameterError
+from ..errors import NumberError, ParameterError, UnknownNameError
 from .beams.beam import Beam
 from .link_density import Density
+
+Value = TypeVar("Value")
 
 End = Literal["base", "tip"]
 
 Outline: TypeAlias = list[tuple[Expression, Expression]]
 """Corners of what a body is drawn as, in its own axes [m]."""
+
+
+class Named(dict[str, Value]):
+    """Parts of a ``kind`` by their names.
+
+    Raises :class:`.UnknownNameError`, a ``KeyError``, for a name that none of them has.
+    """
+
+    def __init__(self, kind: str, parts: Mapping[str, Value] = {}) -> None:
+        super().__init__(parts)
+        self.kind = kind
+
+    def __missing__(self, name: str) -> NoReturn:
+        raise UnknownNameError(self.kind, name, self)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

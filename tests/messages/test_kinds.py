@@ -35,6 +35,7 @@ from lagrange_casadi import (
 from lagrange_casadi.errors import (
     DeclarationError,
     LagrangeCasadiError,
+    NoComponentError,
     UnknownNameError,
 )
 
@@ -202,8 +203,11 @@ WRONG = {
 
 
 SLIPS = {
-    "link": (lambda m: m.links["a"].end, "unknown attribute of Link 'end'; valid: at, base, beam"),
+    "attribute": (lambda m: m.links["a"].end, "unknown attribute of Link 'end'; valid: at, base"),
     "mechanism": (lambda m: m.revolut, r"'revolut' \(did you mean 'revolute'\?\)"),
+    "key": (lambda m: m.joints["Q"], "^unknown joint 'Q'; valid: O$"),
+    "link": (lambda m: m.links["aa"], r"^unknown link 'aa' \(did you mean 'a'\?\); valid: a$"),
+    "load": (lambda m: m.loads["Q"], "^unknown load 'Q'; valid: none are declared$"),
     "joint": (lambda m: m.coordinate("O"), r"got 'O'; joints: O; m\.joints\['O'\] is the part"),
     "body": (lambda m: m.place("a"), r"got 'a'; m\.bodies\['a'\] is the part"),
     "point": (lambda m: m.place((0.1, 0.0)), r"as LINK\.at\(0\.1, 0\), got \(0\.1, 0\.0\)"),
@@ -225,6 +229,15 @@ def test_what_was_expected_is_said(scene, call, says):
         call(scene)
     assert says in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+def test_a_component_that_is_in_space_alone_is_told(scene):
+    moved = Scene(scene.mechanism, scene.motion, t=(0, 1, 5), wanted=["reaction"])
+    solution = evaluate(moved, backend="vm", certificate=False)
+    says = "^unknown component of a reaction in a plane '..'.*; valid: fx, fy, mz$"
+    for name in ("fz", "mx", "my"):
+        with pytest.raises(NoComponentError, match=says):
+            getattr(solution.reaction("O"), name)
 
 
 @pytest.mark.parametrize("name", [None, 3.0, ["O"], {}, np.zeros(2)], ids=str)
