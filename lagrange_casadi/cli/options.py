@@ -16,7 +16,7 @@ from ..base import vocabulary
 from ..base.files import check_writable
 from ..base.numerals import real, whole
 from ..base.space import MOST_THREADS
-from ..errors import DeclarationError
+from ..errors import DeclarationError, NumberError
 from .signatures import Parameter
 
 if TYPE_CHECKING:
@@ -84,6 +84,8 @@ def _reads(what: str) -> Callable[[Callable[[str], Value]], Callable[[str], Valu
         def reader(text: str) -> Value:
             try:
                 return read(text)
+            except NumberError as error:  # a number in another unit
+                raise click.BadParameter(str(error)) from None
             except ValueError:
                 raise click.BadParameter(f"expected {what}, got '{text}'") from None
 
@@ -300,9 +302,9 @@ _READERS: Mapping[str, Kind] = {
     "int": int,
     "Count": int,
     "Starts": int,
-    "float": float,
-    "Positive": float,
-    "NotNegative": float,
+    **dict.fromkeys(
+        ("float", "Positive", "NotNegative"), _in_unit("1", "a number, as in 0.05 or 5%")
+    ),
 }
 """Readers of values, by what stands for them in the help, else by their type."""
 

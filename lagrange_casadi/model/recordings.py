@@ -270,17 +270,19 @@ def _recordings(
         )
     found = []
     for (name, word), values in zip(units.items(), series, strict=True):
-        size = turns.get(name) or _known(path, word)
+        size = turns.get(name) or _known(path, named[name], word)
         called = f"{path.name}, column {named[name]}"
         found.append(Recording(called, word, t, values, size, clock, path.name))
     return found
 
 
-def _known(path: Path, word: str) -> float:
+def _known(path: Path, column: str | int, word: str) -> float:
     """The size of a unit of angles or lengths."""
     unit = known(word) if isinstance(word, str) else None
-    if unit is None or (differs(word, "rad") and differs(word, "m")):
+    if unit is None:
         raise UnknownNameError("unit", str(word), ("rad", "m", "counts"), place=path.name)
+    if differs(word, "m") and (wrong := differs(word, "rad")):
+        raise DeclarationError(f"{path.name}: column {column!r} is in {wrong} or a length [m]")
     return unit.factor
 
 

@@ -172,6 +172,10 @@ REFUSED = {
     ),
     "unit": ("t,q", RAMP_ROWS, {"unit": "grad"}, "unknown unit 'grad'.*; valid: rad, m, counts"),
     "unit of the file": ("t,q [yd]", RAMP_ROWS, {}, "unknown unit 'yd'; valid: .*counts"),
+    "kind of unit": (
+        "t,q [kN]", RAMP_ROWS, {},
+        r"column 2 is in kN, a force; expected an angle \[rad\] or a length \[m\]$",
+    ),
     "time unit": ("t,q", RAMP_ROWS, {"time_unit": "mm"}, "column 't' is in mm, a length"),
     "time of the file": ("t [N],q", RAMP_ROWS, {}, "is in N, a force; expected a time"),
     "end": (

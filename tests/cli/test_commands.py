@@ -88,7 +88,7 @@ SAME = (
     "export {FOUR|four_bar} --out c --want effort",
     "sweep crank.py --grid 'r={0.05:0.2|50 mm:200 mm}:3' --grid lean={0,0.25|0deg,0.25rad} --quiet",
     "optimise crank.py --minimise peak:effort:O --over 'r={0.05:0.2|5 cm:20 cm}' --set lean=0.5",
-    "drive crank.py --drive S --lead '{0.005|5 mm}'",
+    "drive crank.py --drive S --lead '{0.005|5 mm}' --efficiency {0.95|95%}",
     "tolerances crank.py --tolerance 'r={0.001|1 mm}' --samples 20 --csv x.csv",
     "run crank.py --out x.h5 --figures f --svg {|}",
     "plot sweep.h5 --out f --over r --at lean={0.5|28.64788975654116deg}",
