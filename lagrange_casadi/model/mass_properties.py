@@ -12,6 +12,7 @@ import casadi as ca
 from ..base.vectors import ZERO
 from ..errors import DeclarationError
 from .beams.beam import Beam
+from .beams.shape import UNITS
 from .declared_parts import Expression, Link, PointMass, RigidMass
 from .directions import Reference, rotated, tensor
 from .link_density import Density, Slices, uniform
@@ -90,7 +91,9 @@ def beam_of(own: Ownership, what: str, beam: Beam | None) -> Beam | None:
     if not isinstance(beam, Beam):
         raise DeclarationError(f"{what}: expected a beam of lagrange_casadi.beams, got {beam!r}")
     return beam.mapped(
-        lambda name, value: own.expression(f"{what}: {name} of its cross-section", value)
+        lambda name, value: own.expression(
+            f"{what}: {name} of its cross-section", value, UNITS.get(name, "m")
+        )
     )
 
 

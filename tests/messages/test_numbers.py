@@ -441,6 +441,7 @@ def test_a_parameter_alone_is_in_the_unit_of_its_place(unit, says):
     for declare in (
         lambda: m.link("l", length=p, mass=1),
         lambda: m.revolute("J", m.ground.at(0.1, p), m.point_mass("end", 1)),
+        lambda: m.link("k", length=1, beam=beams.Beam(beams.rectangle(p, 0.01), STEEL)),
     ):
         with pytest.raises(DeclarationError, match=says):
             declare()
@@ -452,6 +453,9 @@ def test_and_may_be_in_a_unit_of_the_users_own(unit):
     p = m.parameter("p", 1, unit)
     assert m.link("l", length=p, mass=1).length is p
     m.link("k", length=m.parameter("q", 100, "mm") / 1000, mass=1)
+    area, iz = m.parameter("area", 1e-4, "m^2"), m.parameter("iz", 1e-9, "m^4")
+    shape = beams.given(area=area, iz=iz, iy=iz, top=0.01, side=0.01)
+    m.link("j", length=1, beam=beams.Beam(shape, STEEL))
 
 
 def test_designs_of_texts_are_in_the_units_of_their_parameters(tmp_path):

@@ -38,7 +38,7 @@ class Shape:
         if self.kind not in _FORMS or (known is not None and tuple(self.dimensions) != known):
             raise DeclarationError(f"{self.kind!r} is no cross-section with these dimensions")
         read = {
-            name: quantity(f"{self.kind}: {name}", value, _GIVEN.get(name, "m"))
+            name: quantity(f"{self.kind}: {name}", value, UNITS.get(name, "m"))
             if isinstance(value, str)
             else value
             for name, value in self.dimensions.items()
@@ -565,7 +565,8 @@ def between(first: Shape, last: Shape, share: Operand) -> Shape:
     return Shape(first.kind, dimensions)
 
 
-_GIVEN = dict.fromkeys(("iz", "iy", "iyz", "torsion"), "m^4") | {
+UNITS = dict.fromkeys(("iz", "iy", "iyz", "torsion"), "m^4") | {
+    "area": "m^2",
     "torsion_modulus": "m^3",
     "shear_y": "m^2",
     "shear_z": "m^2",
