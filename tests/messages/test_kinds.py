@@ -2,6 +2,8 @@
 make, are told in one line that says what was expected, whatever function they are given to.
 """
 
+import pickle
+
 import numpy as np
 import pytest
 
@@ -268,7 +270,9 @@ UNKNOWN = {
 
 @pytest.mark.parametrize("says", UNKNOWN)
 def test_a_name_that_nothing_bears_is_told_those_there_are(says):
-    assert str(UnknownNameError("link", *UNKNOWN[says])) == says
+    error = UnknownNameError("link", *UNKNOWN[says])
+    assert str(error) == says
+    assert str(pickle.loads(pickle.dumps(error))) == says
 
 
 BEARERS = {

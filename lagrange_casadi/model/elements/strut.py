@@ -170,8 +170,6 @@ def gas_spring(
     if end is not None:
         over = checked(f"{what}: end", end, "m")
         fits.positive("end", over)
-        room = made.open - made.closed
-        fits.at_least("end must not be longer than the stroke [m]", room - over, 0.0, over)
         share = ca.fmin(ca.fmax((distance - made.open) / over + 1.0, 0.0), 1.0)
         slowed = slowed + held * share
     elif isinstance(held, ca.SX) or held:
