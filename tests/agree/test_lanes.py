@@ -33,6 +33,8 @@ static double either(double a, double b) { return a || b; }
 static double no(double a) { return !a; }
 static double minus(double a) { return -a; }
 static double inverse(double a) { return 1. / a; }
+static double lanes_choose(double a, double b) { return a != 0 ? b : 0; }
+static double lanes_sign(double x) { return x < 0 ? -1 : x > 0 ? 1 : x; }
 static lanes_pack less(lanes_pack a, lanes_pack b) { return a < b; }
 static lanes_pack most(lanes_pack a, lanes_pack b) { return a <= b; }
 static lanes_pack same(lanes_pack a, lanes_pack b) { return a == b; }

@@ -31,8 +31,8 @@ _NEWTON: dict[Precision, dict[str, float]] = {
     "double": {"done": 1e-9, "rate": 1e-2, "rounding": 1e-13},
     "single": {"done": 1e-4, "rate": 0.25, "rounding": 1e-5},
 }
-"""Of each precision, the correction after which the next one would be rounding (``done``), and the
-size that is ``rounding``; and the least ratio of one correction to the one before, the ``rate``,
+"""Corrections of each precision: that after which the next one would be rounding (``done``), and
+that which is ``rounding``; and the least ratio of one correction to the one before, the ``rate``,
 from which corrections shrink too slowly to be quadratic. At a dead centre it is 1/2; if corrections
 end early, as in single precision, their square is not far below them.
 """
