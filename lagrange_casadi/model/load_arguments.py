@@ -196,6 +196,8 @@ def drive(
         if value is not None
     }
     ratio = own.expression(f"{what}: ratio", ratio, "1" if angular else "rad/m")
+    if not isinstance(ratio, ca.SX) and ratio == 0.0:
+        raise DeclarationError(f"{what}: ratio must not be 0: the rotor would stand still")
     return Drive(name, joint, axis, ratio=ratio, **numbers)
 
 

@@ -25,6 +25,15 @@ _INSTEAD = {
     "'(SX|Link|Point|Ground|PointMass|Mechanism|Scene)' object is not callable": (
         r"'\1' is no function: leave out the ()"
     ),
+    r"'numpy\.(\w+)' on types that implement": (
+        r"NumPy's \1 takes no symbol: use functions of CasADi, as casadi.if_else, or a table"
+    ),
+    r"'SX' object has no attribute '(\w+)'": (
+        r"an expression has no \1: use functions of CasADi, as casadi.fmax(a, b)"
+    ),
+    "matrices are not iterable|out of bounds with supplied length of 1$": (
+        "an expression is one number and has no parts: m.place(point) and m.velocity(point) have"
+    ),
 }
 """Words on what can be done, by those of Python and CasADi about a symbol or a part."""
 

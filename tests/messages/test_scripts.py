@@ -22,6 +22,10 @@ def ended(script):
         ("max(length, 0.2)", "lagrange_casadi: a symbol has no truth value: use casadi.if_else"),
         ("int(length)", "lagrange_casadi: a symbol has no number while"),
         ("length - '5 mm'", "lagrange_casadi: a text with a unit goes into no formula"),
+        (
+            "import numpy; numpy.polyval([1, 2], length)",
+            "lagrange_casadi: NumPy's polyval takes no",
+        ),
         ("1 / 0", "ZeroDivisionError: division by zero"),
     ],
 )
