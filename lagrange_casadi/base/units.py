@@ -289,14 +289,13 @@ def differs(word: str, unit: str) -> str:
 
 
 def unlike(word: str, unit: str) -> str:
-    """Say as :func:`differs`, and of another size by which factor, that a unit is another one than
-    ``unit``; nothing for a number without a unit, and for a word of the user's own.
+    """Say by which factor a unit is of another size than ``unit``; nothing for a word of the user's
+    own, and for another kind: times a factor of one an expression is its symbol, as l kg/m of a
+    rod.
     """
     given = known(word)
-    if given is None or word == "1":
+    if given is None or differs(word, unit):
         return ""
-    if wrong := differs(word, unit):
-        return wrong
     factor = given.times(Unit.of(unit), -1).factor
     return "" if factor == 1.0 else f"{word}; expected {unit}: multiply it by {factor!r}"
 
