@@ -7,7 +7,6 @@ asked, 1 for a computation that failed.
 
 from __future__ import annotations
 
-import copyreg
 import difflib
 import errno
 import linecache
@@ -107,7 +106,7 @@ class LagrangeCasadiError(Exception):
     def __reduce__(self) -> tuple[object, ...]:
         """Sent to another process, it goes without its placement, whose mechanism lives here."""
         left = {name: value for name, value in vars(self).items() if name != "placement"}
-        return copyreg.__newobj__, (type(self), *self.args), left  # type: ignore[attr-defined]
+        return type(self).__new__, (type(self), *self.args), left
 
     def __str__(self) -> str:
         return _line(Exception.__str__(self))  # that of KeyError has quotation marks

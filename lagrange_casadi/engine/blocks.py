@@ -295,9 +295,10 @@ def row_units(multibody: Multibody, rows: Sequence[Equation]) -> Expression:
     """Factors by which equations are of one size, a column: a user's constraint is a number of any
     size; 1 for those of joints and transmissions, which are beside each other as they are.
     """
-    alike = {loop.name for loop in multibody.loop_equations if not loop.declared}
-    alike |= {one.name for one in multibody.mechanism.constraints.values() if one.transmission}
-    if len(rows) == 1 or alike.issuperset(equation.loop.name for equation in rows):
+    constraints, loops = multibody.mechanism.constraints, {equation.loop for equation in rows}
+    if len(rows) == 1 or all(
+        not loop.declared or constraints[loop.name].transmission for loop in loops
+    ):
         return 1
     return ca.DM([1.0 / equation.unit for equation in rows])
 

@@ -60,17 +60,21 @@ def answer_to(error: BaseException | None) -> str:
     return next((match.expand(instead) for match, instead in found if match), "")
 
 
-def _end(kind: type[BaseException], error: BaseException, at: TracebackType | None) -> None:
-    """Show an error that ends a script as before, and below it what can be done instead."""
-    _former(kind, error, at)
+def _answer(error: BaseException | None) -> None:
+    """Show what can be done instead, below an error."""
     if answer := answer_to(error):
         print(f"lagrange_casadi: {answer}", file=sys.stderr)
 
 
+def _end(kind: type[BaseException], error: BaseException, at: TracebackType | None) -> None:
+    """Show an error that ends a script as before, and below it what can be done instead."""
+    _former(kind, error, at)
+    _answer(error)
+
+
 def _end_cell(result: Any) -> None:
     """Show what can be done instead below the error of a notebook's cell."""
-    if answer := answer_to(result.error_in_exec):
-        print(f"lagrange_casadi: {answer}", file=sys.stderr)
+    _answer(result.error_in_exec)
 
 
 _former, sys.excepthook = sys.excepthook, _end
