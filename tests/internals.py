@@ -26,6 +26,7 @@ from lagrange_casadi.model.scene import Wanted
 from lagrange_casadi.model.stated import Stated
 from lagrange_casadi.results.elastic.compliance import Compliance, nodes
 from lagrange_casadi.results.elastic.deflection import deflection
+from lagrange_casadi.results.sensitivity.slopes import Slopes
 from lagrange_casadi.results.store import opening
 from lagrange_casadi.results.strength import fatigue
 from lagrange_casadi.results.strength.member import Member
@@ -33,5 +34,4 @@ from lagrange_casadi.results.verification.certificate import certify
 from lagrange_casadi.results.verification.reference import arithmetic, reference
 from lagrange_casadi.studies.designs.engine import DesignEngine
 from lagrange_casadi.studies.designs.outcome import Outcome
-from lagrange_casadi.studies.peaks_between import rates
 from lagrange_casadi.views.shapes.readable import scale_for

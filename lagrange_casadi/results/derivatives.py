@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -60,15 +60,6 @@ class Derivatives:
                         f"the derivative of {output} by {name} is not finite at {many} of {len(x)}"
                         " instants"
                     )
-
-    def of(self, outputs: Container[Output]) -> Derivatives:
-        """Derivatives of some outputs."""
-        return Derivatives(
-            {
-                name: {o: x for o, x in found.items() if o in outputs}
-                for name, found in self.by.items()
-            }
-        )
 
     def during(self, instants: Instants) -> Derivatives:
         """Derivatives at some of the instants."""

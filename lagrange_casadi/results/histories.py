@@ -455,8 +455,7 @@ class Histories:
 
     def _series(self, output: Output) -> list[Array]:
         """The series whose size a quantity is, or itself; none of a section force."""
-        components = output.components(self.table)
-        return [self.outputs[component] for component in components if component in self.outputs]
+        return [self.outputs[one] for one in self.made_of(output) if one in self.outputs]
 
     def _of_section(self, output: Output) -> Section:
         """The section that a section force is of."""

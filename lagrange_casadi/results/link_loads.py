@@ -13,7 +13,6 @@ from typing import TypeVar
 import numpy as np
 
 from ..base.arrays import Array, Instants, during
-from ..base.quantities import Output
 
 _AnyLoad = TypeVar("_AnyLoad", bound="_Load")
 
@@ -53,47 +52,6 @@ class DistributedLoad(_Load):
         """True if the load acts on some part of the link."""
         return bool(np.isfinite([self.width, self.end]).all() and (self.width > 0.0).all())
 
-    def of(self, link: str, outputs: Mapping[Output, Array]) -> DistributedLoad:
-        """Load of a link with other numbers, (..., t)."""
-
-        def value(member: str, power: int | None = None) -> Array:
-            return outputs[Output("spread", link, member, self.name, power)]
-
-        terms = {
-            member: tuple(value(member, j) for j in range(self.powers)) for member in self.terms
-        }
-        return DistributedLoad(self.name, value("width"), value("end"), terms)
-
-    def moved(
-        self, direction: str, change: DistributedLoad, u: Array, length: float, *, arm: bool
-    ) -> Array:
-        """Change of a force or moment at ratios ``u`` (t, n) with width and end, whose changes are
-        (..., t).
-        """
-        width, end = self.width[..., :1], self.end[..., :1]
-        # x, L and a of engine/section_function.py.
-        x = np.clip((end - u) / width, 0.0, 1.0)
-        reach = length * width
-        lever = length * np.maximum(end - width - u, 0.0)
-        within = (x > 0.0) & (x < 1.0)
-        by_end, by_width = np.zeros_like(x), np.zeros_like(x)
-        for j, values in enumerate(self.terms.get(direction, ())):
-            c, share = values[:, None], x ** (j + 1) / (j + 1)
-            if arm:
-                by_end += c * length * reach * share
-                by_width += (
-                    c
-                    * length
-                    * share
-                    * np.where(
-                        within, reach * x * (2 / (j + 2) - 1), lever + reach * (2 / (j + 2) - 1)
-                    )
-                )
-            else:
-                by_end += c * length * np.where(within, x**j, 0.0)
-                by_width += c * length * share * np.where(within, -j, 1.0)
-        return by_end * change.end[..., None] + by_width * change.width[..., None]
-
 
 def distributed_load(
     name: str, members: Mapping[str, Array], terms: Mapping[str, Mapping[int, Array]]
@@ -124,11 +82,3 @@ class PointLoad(_Load):
 
     station: Array
     acts: Mapping[str, Array]
-
-    def of(self, link: str, outputs: Mapping[Output, Array]) -> PointLoad:
-        """Load of a link with other numbers, (..., t)."""
-        station, *acts = (
-            outputs[Output("station", link, member, self.name)]
-            for member in ("station", *self.acts)
-        )
-        return PointLoad(self.name, station, dict(zip(self.acts, acts, strict=True)))

@@ -14,7 +14,7 @@ cell and 1 at its base's end: nothing cancels near the tip. Instants are the las
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -177,22 +177,15 @@ class Pieces:
 
     def at(self, u: Array, side: Side = "tip") -> Array:
         """Values at ratios (t, ...), on a side of load points."""
-        return size_of(self.each(u, side))
-
-    def each(self, u: Array, side: Side = "tip", *, slope: bool = False) -> Iterator[Array]:
-        """Values of each component at ratios (t, ...), or derivatives by the ratio."""
-        ratios = u.reshape(len(u), -1).T
+        ratios, found = u.reshape(len(u), -1).T, list[Array]()
         cell, tip, wide = self._cells(ratios, side)
         x, beyond = (tip - ratios)[None] / wide, edge(ratios, self.slack, side)
         for one in self.components:
-            if slope:
-                values = value(self._chosen(one.slope, cell), x)[0] / -wide
-            else:
-                values = value(self._chosen(one.ordinates, cell), x)[0] + one.tip
+            values = value(self._chosen(one.ordinates, cell), x)[0] + one.tip
             for station, constant, by in one.steps:
-                step = -by if slope else constant + by * (station - ratios)
-                values += np.where(beyond < station, step, 0.0)
-            yield values.T.reshape(u.shape)
+                values += np.where(beyond < station, constant + by * (station - ratios), 0.0)
+            found.append(values.T.reshape(u.shape))
+        return size_of(found)
 
     def _cells(self, ratios: Array, side: Side) -> tuple[npt.NDArray[np.intp], Array, Array]:
         """The cells in which ratios are; their ends towards the tip, and widths."""

@@ -8,7 +8,7 @@ the ends, load points and couples of slices change.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -18,7 +18,6 @@ from ..base.arrays import Array, Instants, Operand, during
 from ..base.bernstein import raised
 from ..base.brief import Brief
 from ..base.quantities import Output, parts_along
-from ..base.space import require
 from ..base.tables import PLANE, SPACE, Table
 from ..engine.instants import grids
 from ..engine.section_function import SIDES, Side, edge
@@ -26,7 +25,7 @@ from ..model.limits import END
 from ..model.link_density import NumericDensity
 from .link_loads import DistributedLoad, PointLoad, distributed_load
 from .pieces import Basis, Component, Pieces, Rows, basis_of
-from .vector_sizes import growth_of_size, size_of, slope_of_size
+from .vector_sizes import most
 
 _BLOCK = 1 << 15
 """Parts of links, at all instants, that are looked at together."""
@@ -74,21 +73,17 @@ class SectionLaw(Brief):
         """
         return self.functions.at(np.asarray(xi, dtype=float))
 
-    def on_grid(
-        self, force: str, xi: Array | Rows, out: Array | None = None, threads: int | None = None
-    ) -> Array:
-        """A force at every instant and every ratio ``xi``, of shape (t, xi), in ``out`` where
-        given; at a station, on its tip side.
+    def on_grid(self, force: str, xi: Array | Rows) -> Array:
+        """A force at every instant and every ratio ``xi``, of shape (t, xi); at a station, on its
+        tip side.
 
-        Where several forces are wanted, a :meth:`basis` of the ratios serves all. By default one
-        thread a core shares a grid that is worth it; the bits do not depend on it. Raises
-        :class:`SizeError` where there is less memory than that.
+        Where several forces are wanted, a :meth:`basis` of the ratios serves all. One thread a core
+        shares a grid that is worth it; the bits do not depend on it. Raises :class:`SizeError`
+        where there is less memory than that.
         """
         size = (self.coefficients["n0"].size, xi.u.size if isinstance(xi, Rows) else xi.size)
-        if out is None:
-            require(f"a grid of {force}", size)
-            out = grids.empty(f"a grid of {force}", size)
-        self.on_grids((force,), xi, out[None], threads)
+        out = grids.empty(f"a grid of {force}", size)
+        self.on_grids((force,), xi, out[None])
         return out
 
     def on_grids(
@@ -127,101 +122,32 @@ class SectionLaw(Brief):
         return self.pieces(force).at(np.asarray(xi, dtype=float), side)
 
     def of(self, link: str, outputs: Mapping[Output, Array]) -> SectionLaw:
-        """The law of the same link with other numbers in it, (..., t)."""
-        coefficients = {name: outputs[Output("law", link, name)] for name in self.coefficients}
-        return replace(
-            self,
-            coefficients=coefficients,
-            loads=tuple(load.of(link, outputs) for load in self.loads),
-            distributed_loads=tuple(load.of(link, outputs) for load in self.distributed_loads),
-        )
+        """The law of the same link by other numbers, among ``outputs``."""
+        return replace(law_of(link, outputs, self.length, self.density), slack=self.slack)
 
-    def changed(self, changes: SectionLaw, xi: Array) -> dict[str, tuple[Array, Array]]:
-        """Change of every force with its coefficients, loads and load points, and the sum of the
-        sizes of all its terms.
+    def changed(self, other: SectionLaw, xi: Array) -> Iterator[tuple[str, Array]]:
+        """Change of each force that is no resultant to that by other numbers of the law, (..., t, n
+        + load points): at ratios ``xi`` (n,) and at every load point, from both sides.
 
-        ``changes`` has the changes in the places of the numbers, each (..., t). They are looked at
-        at ratios ``xi`` (n,) and at every station, from both sides: (..., t, n + stations, sides).
-        The sizes are (t, n + stations, sides). A section sees what it saw before the change: that a
-        station moves is no change by itself.
+        A section sees what it saw before the change: that a load point moves is no change by
+        itself.
         """
+        now = self.coefficients["n0"]
         load_points = [np.clip(load.station, 0.0, 1.0) for load in self.loads]
-        u = np.stack(
-            [*(np.full_like(self.coefficients["n0"], ratio) for ratio in xi), *load_points], axis=-1
-        )
-        crossed = [
-            [edge(u, self.slack, side) < load.station[:, None] for side in SIDES]
-            for load in self.loads
-        ]
+        u = np.stack([*(np.full_like(now, ratio) for ratio in xi), *load_points], axis=-1)
         # Mostly no place moves, and one instant's functions serve all.
-        rows = self.basis(u[:1] if (u == u[:1]).all() else u)
-        found = dict[str, tuple[Array, Array]]()
+        at = u[0] if (u == u[0]).all() else u
+        rows, others = self.basis(at), other.basis(at)
+        beyond = np.stack([edge(u, self.slack, side) for side in SIDES])
         for force in self.table.sections:
-            terms = [*zip(self._terms(force), changes._terms(force), strict=True)]
-            gaps = np.asarray(sum(moved.column[..., None] * moved.of(rows) for _, moved in terms))
-            sizes = np.asarray(sum(abs(term.column[:, None] * term.of(rows)) for term, _ in terms))
-            members = self.table.sections[force]
-            for distributed, moving in zip(
-                self.distributed_loads, changes.distributed_loads, strict=True
-            ):
-                gaps = gaps + (members.arm or 1) * distributed.moved(
-                    members.distributed, moving, u, self.length, arm=bool(members.arm)
-                )
-                gaps = gaps + distributed.moved(members.couple, moving, u, self.length, arm=False)
-            gaps, sizes = (
-                np.repeat(values[..., None], len(SIDES) if self.loads else 1, axis=-1)
-                for values in (gaps, sizes)
-            )
-            for step, change, there in zip(
-                self._steps(force), changes._steps(force), crossed, strict=True
-            ):
-                load_point, constant, slope = (values[:, None] for values in step)
-                moved, more, steeper = (values[..., None] for values in change)
-                gap = more + steeper * (load_point + moved - u) + slope * moved
-                size = np.abs(constant) + np.abs(slope * (load_point - u))
-                for k, visible in enumerate(there):
-                    gaps[..., k] += np.where(visible, gap, 0.0)
-                    sizes[..., k] += np.where(visible, size, 0.0)
-            found[force] = gaps, sizes
-        for force in self.table.forces:
-            if len(parts := self._parts(force)) > 1:
-                values = [
-                    np.stack([self.at(part, u, side) for side in SIDES[: gaps.shape[-1]]], axis=-1)
-                    for part in parts
-                ]
-                gap = growth_of_size(values, [found[part][0] for part in parts])
-                found[force] = gap, size_of(found[part][1] for part in parts)
-        return found
-
-    def rate(self, force: str, rates: SectionLaw, xi: Array, side: Side = "tip") -> Array:
-        """The time derivative of a force at ratios of shape (t, ...) that stand still, or, at a
-        station, move with it.
-
-        ``rates`` has the time derivatives of coefficients, loads and stations in their places.
-        """
-        u = np.asarray(xi, dtype=float)
-        values, changes = [], list[Array]()
-        for part in self._parts(force):
-            pieces = self.pieces(part)
-            # A station that moves takes its force's arm with it.
-            steps = [
-                (station, more + slope * going, steeper)
-                for (station, _, slope), (going, more, steeper) in zip(
-                    self._steps(part), rates._steps(part), strict=True
-                )
-            ]
-            moving = replace(pieces, components=[self._component(part, rates, steps)])
-            (slopes,), going = pieces.each(u, side, slope=True), np.zeros(u.shape)
-            for (station, *_), (change, *_) in zip(
-                self._steps(part), rates._steps(part), strict=True
-            ):
-                station, change = (
-                    x.reshape((-1,) + (1,) * (u.ndim - 1)) for x in (station, change)
-                )
-                going = np.where(u == station, change, going)
-            values.append(pieces.at(u, side))
-            changes.append(moving.at(u, side) + going * slopes)
-        return changes[0] if len(changes) == 1 else slope_of_size(values, changes)
+            gap: Array = np.zeros(u.shape)
+            for before, after in zip(self._terms(force), other._terms(force), strict=True):
+                gap += after.column[:, None] * after.of(others)
+                gap -= before.column[:, None] * before.of(rows)
+            for step, moved in zip(self._steps(force), other._steps(force), strict=True):
+                (station, *_), (one, two) = step, (_carried(load, u) for load in (step, moved))
+                gap = gap + np.where(beyond < station[:, None], two - one, 0.0)
+            yield force, gap
 
     def bound(self, force: str, xi: Array) -> float:
         """The largest size that a force may have at ratios ``xi`` if coefficients and loads have
@@ -233,7 +159,7 @@ class SectionLaw(Brief):
             size = np.asarray(sum(abs(term.column)[:, None] * abs(term.of(rows)) for term in terms))
             for _, constant, slope in self._steps(part):
                 size = size + (np.abs(constant) + np.abs(slope))[:, None]
-            found.append(float(np.max(size, initial=0.0)))
+            found.append(most(size))
         return math.hypot(*found)
 
     def extreme(self, force: str) -> tuple[Array, Array]:
@@ -267,13 +193,13 @@ class SectionLaw(Brief):
 
     def pieces(self, force: str) -> Pieces:
         """A force as polynomials along the link."""
-        components = [self._component(part, self, self._steps(part)) for part in self._parts(force)]
+        components = [self._component(part) for part in self._parts(force)]
         return Pieces(self.functions.along(self.functions.breaks[None])[0], components, self.slack)
 
-    def _component(self, force: str, numbers: SectionLaw, steps: Sequence[grids.Load]) -> Component:
-        """A force that is no resultant, by the numbers of a law of this link."""
-        first, *others = numbers._terms(force)
-        basis = self.functions
+    def _component(self, force: str) -> Component:
+        """A force that is no resultant."""
+        first, *others = self._terms(force)
+        basis, steps = self.functions, self._steps(force)
         cells = basis.breaks.shape[1] - 1, *first.column.shape
         if not others:
             return Component(first.column, np.zeros((1, *cells)), np.zeros((1, *cells)), steps)
@@ -370,6 +296,12 @@ class Term:
         return found
 
 
+def _carried(load: grids.Load, u: Array) -> Array:
+    """Share of a force that sections at ratios (t, n) carry of a load point beyond them."""
+    station, constant, slope = (values[:, None] for values in load)
+    return constant + slope * (station - u)
+
+
 def law_of(
     link: str,
     outputs: Mapping[Output, Array],
@@ -384,9 +316,7 @@ def law_of(
     """
     found: dict[str, dict[str, dict[str, Array]]] = {"law": {}, "station": {}, "spread": {}}
     terms: dict[str, dict[str, dict[int, Array]]] = {}
-    for output, values in outputs.items():
-        if not output.along or output.part != link:
-            continue
+    for output, values in parts_along(outputs, link).items():
         if output.power is None:
             found[output.group].setdefault(output.load_point, {})[output.member] = values
         else:

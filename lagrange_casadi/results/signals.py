@@ -12,9 +12,8 @@ from typing import Protocol, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..base.arrays import Array, Flags, Operand
+from ..base.arrays import Array, Flags
 from ..base.quantities import Output
-from ..base.status import Status
 from ..engine.codegen.peak_search import Curves, Listed, Peaks, Samples
 from ..engine.instants.backends import Interpreter, peak_search
 from ..engine.sharpness import Sharpness, bent
@@ -124,12 +123,10 @@ class Signals:
         """The iterated coordinates at times next to instants (z, t), and where the loops do not
         close.
         """
-        z = np.zeros((self.z.shape[0], t.size))
-        status = np.zeros(t.size, np.int32)
-        for k in range(t.size if len(z) else 0):
-            some = slice(k, k + 1)
-            self.interpreter.follow(t[some], self.p, self.z[:, near[k]], z[:, some], status[some])
-        return z, status == Status.NOT_CONVERGED
+        z = self.z[:, near]
+        self.interpreter.close(t, self.p, z)
+        failed = np.asarray(np.isnan(z).any(axis=0))
+        return np.where(failed, self.z[:, near], z), failed
 
     def samples(self, t: Array, z: Array, near: npt.NDArray[np.intp]) -> Samples:
         """All curves at times next to instants, at which the iterated coordinates are known."""
@@ -139,16 +136,13 @@ class Signals:
 
     def _samples(self, t: Array, z: Array, near: npt.NDArray[np.intp]) -> Samples:
         columns = self.columns(t, z)
-        watched = self.sharpness.watched(*self.inputs(t, z)).full()
+        motion = self.interpreter.program.motion(t[None], self.p)
+        watched = self.sharpness.watched(t[None], *motion, z, self.p).full()
         with np.errstate(all="ignore"):
             places, values = (
                 np.concatenate(rows) for rows in zip(*self.curves(columns, near), strict=True)
             )
         return Samples(values, places, watched)
-
-    def inputs(self, t: Array, z: Array) -> tuple[Operand, ...]:
-        """Arguments of the graph's columns at times."""
-        return t[None], *self.interpreter.program.motion(t[None], self.p), z, self.p
 
     def columns(self, t: Array, z: Array) -> Array:
         """The graph's columns at times, (columns, t), with the iterated coordinates known."""

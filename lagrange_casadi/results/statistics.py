@@ -104,9 +104,7 @@ def shares(t: Array, counts: npt.NDArray[np.bool_] | None = None) -> Array:
     Where there is no such step, the instants that count have equal parts; NaN where none does.
     """
     weights, counts = np.zeros(t.size), np.ones(t.size, bool) if counts is None else counts
-    steps = t[1:] - t[:-1]
-    if not counts.all():
-        steps = np.where(counts[:-1] & counts[1:], steps, 0.0)
+    steps = np.where(counts[:-1] & counts[1:], np.diff(t), 0.0)
     weights[:-1] += steps
     weights[1:] += steps
     if weights.any():

@@ -13,7 +13,6 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-import casadi as ca
 import numpy as np
 
 from ..base.arguments import Count, public
@@ -26,9 +25,8 @@ from ..engine.codegen.peak_search import TOPS, Listed, Peaks
 from ..engine.codegen.stages import stages_for
 from ..engine.derive import compile_scene
 from ..engine.instants.backends import Interpreter
+from ..engine.instants.evaluation_method import EvaluationMethod
 from ..engine.program import Program
-from ..engine.reciprocals import differentiable
-from ..engine.section_function import Side
 from ..engine.sharpness import Sharpness
 from ..errors import DeclarationError
 from ..model.even_points import EvenPoints, are_even
@@ -36,10 +34,10 @@ from ..model.scene import Scene
 from ..model.times import Over, Times, span_of
 from ..results.histories import Peak
 from ..results.ordering import ordered
-from ..results.section_laws import SectionLaw
+from ..results.sensitivity.slopes import Loops, Slopes
 from ..results.signals import Quantity, SectionForce, Signals
 from ..results.solution import Solution
-from ..results.vector_sizes import most, size_of
+from ..results.vector_sizes import largest, most
 from ..results.verification.accuracy import by_unit
 from .evaluate import evaluate
 
@@ -54,7 +52,7 @@ _NEAR, _LESS = 1e-4, 1e-13
 relative amount by which rounding may lower it.
 """
 
-_TRIALS = 5
+_TRIALS = 3
 
 
 @public
@@ -220,31 +218,9 @@ def forces(solution: Solution) -> list[str]:
 
 @symbolic
 @functools.lru_cache(maxsize=32)
-def rates(program: Program) -> ca.Function:
-    """The columns of a graph and, where loops are closed, their time derivatives along the motion.
-
-    ``rates(tz, p) -> (out, out_rate)``, where ``tz`` is the time above the iterated coordinates.
-    """
-    instant, newton = differentiable(program.instant), program.newton
-    tz, p = ca.MX.sym("tz", 1 + instant.size1_in("z")), ca.MX.sym("p", instant.size1_in("p"))
-    t, z = tz[0], tz[1:]
-    still = ca.DM.zeros(p.numel())
-    d, d_rate, d_acceleration = program.motion(t, p)
-    d_jerk = program.laws.jerk()(t, p)
-    z_rate = ca.MX(0, 1)
-    if newton is not None:
-        # The correction is -Phi_z^-1 Phi, and where Phi = 0 its time derivative at fixed z is z'.
-        closed = (z, t, d, p)
-        z_rate = newton.step.forward(1)(
-            *closed, *newton.step(*closed), ca.DM.zeros(z.numel()), 1, d_rate, still
-        )[0]
-    place = (t, d, d_rate, d_acceleration, z, p)
-    out = instant(*place)
-    out_rate = instant.forward(1)(*place, out, 1, d_rate, d_acceleration, d_jerk, z_rate, still)
-    both = ca.Function(
-        "rates", [tz, p], [out, ca.densify(out_rate)], ["tz", "p"], ["out", "out_rate"]
-    )
-    return both.expand("rates", {"cse": True})
+def _slopes_of(program: Program, quantities: tuple[Output, ...]) -> Slopes:
+    """Derivatives of quantities of a graph, kept for its other solutions."""
+    return Slopes.of(program, quantities, None, EvaluationMethod("vm"))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -284,9 +260,7 @@ class ContinuousSolution(Brief):
         program = compile_scene(scene, wanted, parameters=values)
         p = np.array(list(values.values()))
         interpreter = Interpreter(program, stages_for(program, "double", solution.t, p))
-        guess = np.array(program.newton.guess if program.newton else ())
-        z, status = np.empty((guess.size, solution.t.size)), np.empty(solution.t.size, np.int32)
-        interpreter.follow(solution.t, p, guess, z, status)
+        z = Loops.of(program, EvaluationMethod("vm")).at(solution.t, p, solution.t).T
 
         def again(t: EvenPoints, names: Sequence[str]) -> ContinuousSolution:
             asked: dict[str, Any] = {"backend": "vm", "certificate": False, "elastic": False}
@@ -429,7 +403,7 @@ class ContinuousSolution(Brief):
         self, signals: Signals, names: Sequence[Output], peaks: Peaks
     ) -> tuple[Array, Array, Array]:
         """Values, times and ratios of peaks, the smooth ones at the times where their derivative is
-        zero, by the secant method.
+        zero, by Newton's method.
         """
         value, t, xi, instants = (
             peaks.value.copy(),
@@ -441,21 +415,16 @@ class ContinuousSolution(Brief):
         some = np.flatnonzero(np.isfinite(value) & ~np.isin(t, instants)).tolist()
         if not some:
             return value, t, xi
-        chosen, first = [names[k] for k in some], t[some]
-        before, now = first, np.clip(first + reach / 2, instants[0], instants[-1])
+        chosen, first = {k: names[k] for k in some}, t[some]
+        later = np.clip(first + reach / 2, instants[0], instants[-1])
         _, _, slope_first = self.slopes(signals, chosen, first)
-        slope_before = slope_first
-        for _ in range(_TRIALS):
-            _, _, slope = self.slopes(signals, chosen, now)
-            with np.errstate(all="ignore"):
-                ahead = now - slope * ((now - before) / (slope - slope_before))
-            going = np.abs(ahead - first) < reach
-            before, slope_before = (
-                np.where(going, now, before),
-                np.where(going, slope, slope_before),
-            )
-            now = np.where(going, ahead, now)
-        sizes, places, slope = self.slopes(signals, chosen, now)
+        now, slope = first, slope_first
+        with np.errstate(all="ignore"):
+            bend = (self.slopes(signals, chosen, later)[2] - slope_first) / (later - first)
+            for _ in range(_TRIALS):
+                ahead = now - slope / bend
+                now = np.where(np.abs(ahead - first) < reach, ahead, now)
+                sizes, places, slope = self.slopes(signals, chosen, now)
         better = (np.abs(sizes) >= np.abs(value[some]) * (1.0 - _LESS)) & (
             np.abs(slope) < np.abs(slope_first)
         )
@@ -464,48 +433,25 @@ class ContinuousSolution(Brief):
         return value, t, xi
 
     def slopes(
-        self, signals: Signals, names: Sequence[Output], t: Array
+        self, signals: Signals, names: Mapping[int, Output], t: Array
     ) -> tuple[Array, Array, Array]:
-        """Value, ratio, and time derivative of the size of each quantity, at a time of its own.
+        """Value, ratio, and time derivative of the size of each quantity, by its number among the
+        signals, at a time of its own.
 
         Where along a link a force is largest moves, but for the rate of its size only at a station
         does that count.
         """
         near = signals.near(t)
         z, _ = signals.closed(t, near)
-        out, out_rate = (x.full() for x in rates(self.program)(np.vstack([t, z]), self.p))
-        found = np.full((3, len(names)), np.nan)
-        for k, name in enumerate(names):
-            columns, changes = out[:, [k]], out_rate[:, [k]]
-            if name.group == "section":
-                force = name.member
-                law, law_rate = self.law(name.part, columns), self.law(name.part, changes)
-                place, value = law.extreme(force)
-                sides: tuple[Side, Side] = ("tip", "base")
-                sizes = [abs(law.at(force, place[:, None], side)[0, 0]) for side in sides]
-                rate = law.rate(force, law_rate, place[:, None], sides[int(np.argmax(sizes))])[0, 0]
-                found[:, k] = value[0], place[0], np.sign(value[0]) * rate
-            elif len(parts := self.solution.made_of(name)) > 1:
-                rows = [self.program.outputs[component] for component in parts]
-                value = size_of(columns[rows, 0])
-                found[:, k] = value, np.nan, columns[rows, 0] @ changes[rows, 0] / (value or 1.0)
-            else:
-                value = columns[self.program.outputs[name], 0]
-                if name in self.program.loop_angles:
-                    value += math.tau * np.round(
-                        (self.solution.outputs[name][near[k]] - value) / math.tau
-                    )
-                found[:, k] = value, np.nan, np.sign(value) * changes[self.program.outputs[name], 0]
-        return found[0], found[1], found[2]
-
-    def law(self, link: str, columns: Array) -> SectionLaw:
-        """A link's law with columns of the graph, or of their rates, for its coefficients, loads
-        and stations.
-        """
-        of_link = {
-            output: columns[k] for output, k in parts_along(self.program.outputs, link).items()
-        }
-        return self.solution.section(link).law.of(link, of_link)
+        curves, best = signals.curves(signals.columns(t, z), near), []
+        for k, number in enumerate(names):
+            places, values = (rows[:, k] for rows in curves[number])
+            highest = largest(values)
+            best.append((values[highest], places[highest]))
+        value, place = np.array(best).T
+        slopes = _slopes_of(self.program, tuple(names.values()))
+        found = slopes.at(t, z.T, self.p, np.arange(t.size, dtype=np.intc), place, value)
+        return value, place, np.sign(value) * found.rate
 
 
 def wanted_for(output: Output) -> str:

@@ -90,17 +90,14 @@ class PointFunction(Graphs):
         by_t += ca.dot(ca.vertcat(rate, acceleration, program.laws.jerk()(t, p)), by_drives)
         found = ca.vertcat(ca.dot(held, ca.vertcat(*rows)), by_t, adjoint[-1], by_p)
         found = ca.substitute(found, held, ca.vertcat(*weights))
+        driven = ca.vertcat(*(every.pop(name) for name in _DRIVEN))
+        found = ca.substitute(found, driven, ca.vertcat(*program.motion(t, p)))
         every |= {"xi": xi, "value": value, "moving": moving, "chosen": chosen}
-        at_drives = graph("at_drives", every, found=found)
-        given = inputs_of(at_drives)
-        moved = zip(_DRIVEN, program.motion(given["t"], given["p"]), strict=True)
-        made = at_drives(*(given | dict(moved)).values())
-        at_once = {name: symbols for name, symbols in given.items() if name not in _DRIVEN}
         return cls(
             program,
             tuple(quantities),
             tuple(watches[k] for k in sharp),
-            graph("at_once", at_once, found=made),
+            graph("at_once", every, found=found),
         )
 
     @symbolic

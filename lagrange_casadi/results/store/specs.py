@@ -10,7 +10,7 @@ import dataclasses
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, get_args
 
 from ...base.arguments import Finite, public
 from ...base.brief import Brief
@@ -213,20 +213,7 @@ Spec = (
     | UtilisationPlot
     | DeflectionPlot
 )
-KINDS: dict[str, type[Spec]] = {
-    spec.kind: spec
-    for spec in (
-        TimePlot,
-        SpanPlot,
-        SectionMaps,
-        SectionDiagrams,
-        PolarPlots,
-        MechanismDrawing,
-        StrengthPlot,
-        UtilisationPlot,
-        DeflectionPlot,
-    )
-}
+KINDS: dict[str, type[Spec]] = {spec.kind: spec for spec in get_args(Spec)}
 """Kinds of figures by their words in files."""
 
 

@@ -134,8 +134,8 @@ def plane_factor(plane: Plane, material: Material, share: NotNegative = DUCTILE)
     return endurance * (share + math.sqrt(1.0 + share**2)) / 2 / value if value else math.inf
 
 
-def plane_score(share: float = DUCTILE) -> Score:
-    """Return the score of the worst critical plane: its shear amplitude and ``share`` of its normal
+def plane_score() -> Score:
+    """Return the score of the worst critical plane: its shear amplitude and a share of its normal
     stress.
 
     No plane is above a bound from the largest shear and principal stresses.
@@ -145,12 +145,12 @@ def plane_score(share: float = DUCTILE) -> Score:
         normal, shears = stresses[0], stresses[1:]
         wide = np.ptp(normal, axis=-1) ** 2 + 4.0 * np.sum(np.ptp(shears, axis=-1) ** 2, axis=0)
         principal = normal / 2 + np.sqrt((normal / 2) ** 2 + np.sum(shears**2, axis=0))
-        return np.asarray(np.sqrt(wide) / 4 + share * np.maximum(principal.max(axis=-1), 0.0))
+        return np.asarray(np.sqrt(wide) / 4 + DUCTILE * np.maximum(principal.max(axis=-1), 0.0))
 
     def of(values: Array) -> float:
-        return critical_plane(values, share).value(share)
+        return critical_plane(values).value()
 
-    return Score(of, bound, lambda amplitude, mean: amplitude + share * mean)
+    return Score(of, bound, lambda amplitude, mean: amplitude + DUCTILE * mean)
 
 
 def _best(values: Array, share: float, tried: _Grid) -> Plane:

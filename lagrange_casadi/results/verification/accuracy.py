@@ -7,6 +7,7 @@ and so do loops that were left half closed.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 
@@ -103,15 +104,17 @@ def _worst(
         {output: rows[k] for output, k in program.outputs.items()} for rows in (changes, columns)
     )
     errors = {output: most(values) for output, values in change.items()}
+    rounded = {output: at[output] + values for output, values in change.items()}
     for link in histories.links_with_sections:
-        law = histories.section(link).law
-        for force, (residuals, sizes) in (
-            law.of(link, at).changed(law.of(link, change), ALONG).items()
-        ):
-            # A force is itself a sum that is rounded, in doubles always.
-            errors[Output("section", link, force)] = most(
-                np.abs(residuals) + 2.0 * ROUNDING["double"] * sizes
-            )
+        law = histories.section(link).law.of(link, at)
+        # A force is itself a sum that is rounded, in doubles always.
+        off = {
+            force: most(gap) + 2.0 * ROUNDING["double"] * law.bound(force, ALONG)
+            for force, gap in law.changed(law.of(link, rounded), ALONG)
+        }
+        for force in law.table.forces:
+            parts = law.table.parts("section", force)
+            errors[Output("section", link, force)] = math.hypot(*map(off.__getitem__, parts))
     if not histories.indeterminate:
         return errors
     return {output: error for output, error in errors.items() if histories.determined(output)}
