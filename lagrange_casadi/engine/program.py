@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -23,7 +22,7 @@ from ..model.corners import Corners
 from ..model.declared_parts import Parameter
 from ..model.description import DESCRIBED, Description
 from ..model.kinks import Smooth
-from ..model.limits import END, FITS
+from ..model.limits import FITS
 from ..model.sampled_laws import Laws
 from ..model.scene import Wanted
 from ..model.stated import Entry, Equation, LoadLaw, Stated, Touch
@@ -33,7 +32,7 @@ from .dead_centres import closing_of
 from .iteration import NewtonLoop
 from .least_energy import Completion
 from .model_data import ModelData
-from .section_function import SectionInputs, section
+from .section_function import SectionInputs
 from .verdicts import Bound, Broken, Tolerances, bounds_of, rules_of, status_of
 
 Turns: TypeAlias = tuple[tuple[int, int], ...]
@@ -194,25 +193,6 @@ class Program(Graphs):
             for link in self.wanted.sections
             if SectionInputs.of(self.outputs, link).among(self.outputs)
         )
-
-    @symbolic_property
-    def section(self) -> Mapping[str, ca.Function]:
-        """By the name of each of :attr:`links`, ``section(law, acting, p, xi) -> forces``: the
-        forces of the table [N, N m] at the ratio ``xi``, on the tip's side.
-
-        ``law`` and ``acting`` are those of the link, in the order of the outputs.
-        """
-        found, p = {}, self.data.symbols
-        for link in self.links:
-            inputs = SectionInputs.of(self.outputs, link)
-            length, density = self.data.mass_properties(link, p)
-            sizes = list(map(len, density.cells))
-            function = section(inputs.alike(), density.breaks, sizes, END["double"])
-            law, acting, _, xi = function.sx_in()
-            numbers = ca.vertcat(length, *itertools.chain.from_iterable(density.cells))
-            given = {"law": law, "acting": acting, "p": p, "xi": xi}
-            found[link] = graph("section", given, forces=function(law, acting, numbers, xi))
-        return found
 
     @cached_property
     def indeterminate(self) -> dict[Output, int]:

@@ -249,8 +249,7 @@ def section(
     breaks: Sequence[float],
     sizes: Sequence[int],
     slack: float,
-    side: Side = "tip",
-    name: str = "section",
+    name: str,
 ) -> ca.Function:
     """``section(law, acting, matter, xi) -> forces`` of a link, whose density has so many
     coefficients in each cell.
@@ -271,8 +270,6 @@ def section(
         per_length=False,
     )
     link = Section(inputs.law[0].part, inputs.table, columns, length, density)
-    forces = ca.vertcat(
-        *(link.at(force, Place(xi, side=side), slack) for force in inputs.table.forces)
-    )
+    forces = ca.vertcat(*(link.at(force, Place(xi), slack) for force in inputs.table.forces))
     given = {"law": law, "acting": acting, "matter": mass_properties, "xi": xi}
     return graph(name, given, forces=forces)

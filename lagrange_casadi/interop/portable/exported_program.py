@@ -232,7 +232,7 @@ def _sections(
         kind = inputs.alike(), density.breaks, tuple(map(len, density.cells))
         if kind not in named:
             named[kind] = f"section_of_{len(named)}"
-            functions[named[kind]] = section(*kind, END[precision], name=named[kind])
+            functions[named[kind]] = section(*kind, END[precision], named[kind])
         found[link] = named[kind], inputs
     return functions, found
 

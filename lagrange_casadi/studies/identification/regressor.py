@@ -18,7 +18,6 @@ import numpy as np
 from ...base.arrays import Array, Expression
 from ...base.brief import Brief
 from ...base.quantities import Column, Output
-from ...base.scalars import column
 from ...base.symbolic import Graphs, symbolic
 from ...base.tables import table_of
 from ...engine.derive import compile_scene
@@ -26,9 +25,10 @@ from ...engine.instants.backends import begun
 from ...engine.instants.evaluation_method import EvaluationMethod
 from ...engine.program import Program
 from ...engine.reciprocals import differentiable
-from ...engine.section_function import SectionInputs
+from ...engine.section_function import Place
 from ...engine.section_stress import CrossSections
 from ...errors import AssemblyError, DeclarationError, UnknownNameError
+from ...model.limits import END
 from ...model.scene import Scene
 from ...results.sensitivity.jacobian import total
 from ...results.sensitivity.slopes import Batch
@@ -278,12 +278,11 @@ def _quantity(
     if place is None:
         output = Output.of(name)
         return columns[output], output.unit(data.kinds)
-    names, inputs = table_of(data.space).forces, SectionInputs.of(program.outputs, place.link)
+    names = table_of(data.space).forces
     if place.kind == "section" and place.member not in names:
         raise UnknownNameError("section force", place.member, names, place=name)
-    law, acting = (column(columns[one] for one in some) for some in (inputs.law, inputs.acting))
-    values = program.section[place.link](law, acting, p, place.ratio)
-    section = dict(zip(names, ca.vertsplit(values), strict=True))
+    inside, here = data.section(place.link, columns, p), Place(ca.SX(place.ratio))
+    section = {force: inside.at(force, here, END["double"]) for force in names}
     if place.kind == "section":
         output = Output("section", place.link, place.member)
         return section[place.member], output.unit(data.kinds)
