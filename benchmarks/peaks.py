@@ -43,7 +43,7 @@ def report(rounds: int) -> str:
     each = 1e9 / (_DESIGNS * _INSTANTS)
     said = ", ".join(f"{what} {seconds * each:.1f} ns" for what, seconds in best.items())
     return (
-        f"{len(engine.outputs)} outputs, {len(engine.quantities)} peaks, {_DESIGNS} designs x"
+        f"{len(engine.columns)} outputs, {len(engine.quantities)} peaks, {_DESIGNS} designs x"
         f" {_INSTANTS} instants: {said}"
     )
 

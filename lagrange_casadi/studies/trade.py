@@ -18,8 +18,9 @@ from functools import partial
 from typing import TypeAlias, TypeVar
 
 import numpy as np
+import numpy.typing as npt
 
-from ..base.arrays import Array, Json
+from ..base.arrays import Array, Json, spread
 from ..base.status import Status
 from ..base.tables import ANGLE, LENGTH
 from ..base.vocabulary import PEAK_SEARCHES, PRECISIONS, PeakSearch
@@ -214,7 +215,7 @@ def trade(
     values = np.array(list(parameter_values.values()))
     times = instants_of(scene.prescribed, scene.timing(t, over), parameter_values).t
     program = compile_scene(scene, wanted, parameters=parameter_values)
-    compared = np.unique(np.linspace(0, times.size - 1, min(times.size, COMPARED)).astype(int))
+    compared = spread(times.size, COMPARED)
     truth = _Truth(program, times, compared, values)
     refused: dict[str, str] = {}
     works: dict[EvaluationMethod, _Work] = {}
@@ -270,7 +271,7 @@ def _peak_costs(scene: Scene, timing: Timing, p: Array) -> tuple[PeakCost, ...]:
         return ()
     seconds = {peaks: one / timing.count for peaks, one in _in_turns(works).items()}
     exact, sampled = (np.abs(found[peaks].value[0]) for peaks in PEAK_SEARCHES)
-    units = np.array(engines["exact"].units)
+    units = np.array(engines["exact"].kept.units)
     largest = np.array([np.nanmax(exact[units == unit], initial=0.0) for unit in units])
     there = np.isfinite(exact) & (exact > _NIL * largest)
     error, bound = (
@@ -286,7 +287,9 @@ def _peak_costs(scene: Scene, timing: Timing, p: Array) -> tuple[PeakCost, ...]:
 class _Truth:
     """The reference at some instants, and how far an evaluation is from it."""
 
-    def __init__(self, program: Program, t: Array, compared: Array, p: Array) -> None:
+    def __init__(
+        self, program: Program, t: Array, compared: npt.NDArray[np.intp], p: Array
+    ) -> None:
         evaluated, _ = run(program, t, p, EvaluationMethod("c" if find_compiler() else "vm"), 1)
         moves = ~resting(program, evaluated.out)  # at rest there is nothing to compare
         compared = compared[moves[compared]] if moves[compared].any() else compared

@@ -9,6 +9,7 @@ import subprocess
 import threading
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import mechanisms
 import numpy as np
@@ -49,9 +50,9 @@ class Formula:
         self.columns = ("effort:O", *(f"section:rod:law:{name}" for name in laws))
         self.count, self.pause, self.threads, self.calls = count, pause, [], []
 
-    def of(self, program, *_):
+    def of(self, program, timing, *_):
         """The engine of a program."""
-        self.program = program
+        self.program, self.times = program, SimpleNamespace(timing=timing)
         return self
 
     def failures(self, p, whole):

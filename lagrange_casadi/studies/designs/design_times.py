@@ -74,6 +74,10 @@ class DesignTimes:
         found[np.isnan(even[:, 0])] = np.nan
         return even, found
 
+    def even(self, p: Array) -> Array:
+        """The instants (t,) of a design (parameters,) in equal steps of time."""
+        return np.asarray(self.of(p[None], asked=False)[0][0])
+
     def _valid(self, start: Array, stop: Array) -> tuple[Array, Array]:
         """The first and last instants; NaN where they are none, or samples
         of a motion end before.

@@ -60,7 +60,7 @@ class DriveEnergy:
         nodes = self._nodes(p.tobytes())
         if nodes is None:
             return np.full(p.size, np.nan)
-        engine, t, instants = self.engine, nodes.t, self._instants(p)
+        engine, t, instants = self.engine, nodes.t, self.engine.times.even(p)
         first, last = Ends(engine.program.laws, engine.times.timing, instants, p).slopes
         share, span = ((t - t[0]) / (t[-1] - t[0]))[:, None], t[-1] - t[0]
         moved = (1.0 - share) * first + share * last
@@ -87,18 +87,13 @@ class DriveEnergy:
         found = ca.horzcat(accelerations[row], ca.jacobian(rates[row], values))
         return ca.Function("rate_slopes", [time, values], [ca.densify(found.T)])
 
-    def _instants(self, p: Array) -> Array:
-        """Instants of a design."""
-        instants: Array = self.engine.times.of(p[None], asked=False)[0][0]
-        return instants
-
     @cached_property
     def _nodes(self) -> Callable[[bytes], _Nodes | None]:
         """Samples of a design by its parameters (parameters,); None without a result."""
         return lru_cache(maxsize=1)(lambda p: self._nodes_of(np.frombuffer(p)))
 
     def _nodes_of(self, p: Array) -> _Nodes | None:
-        engine, instants = self.engine, self._instants(p)
+        engine, instants = self.engine, self.engine.times.even(p)
         path = instants if engine.program.newton is not None else instants[:0]
         t = np.linspace(instants[0], instants[-1], 4 * (-(-(instants.size - 1) // 4)) + 1)
         close, most = _CLOSE[engine.method.precision], _MORE * t.size

@@ -10,8 +10,8 @@ it.
 from __future__ import annotations
 
 import shlex
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -25,16 +25,16 @@ from ...base.symbolic import symbolic_property
 from ...base.vocabulary import COMPILED, PEAK_SEARCHES, PeakSearch
 from ...engine import codegen
 from ...engine.codegen.peak_search import TOPS, Listed
-from ...engine.codegen.stages import Stages
 from ...engine.derive import compile_scene
 from ...engine.instants.backends import begun, compiled, provenance
 from ...engine.instants.determinacy import undetermined
 from ...engine.instants.evaluation_method import EvaluationMethod, Provenance, seconds
 from ...engine.instants.grids import empty
-from ...engine.instants.phases import outputs_of, unwind
+from ...engine.instants.phases import unwind
 from ...engine.program import Program
 from ...engine.sharpness import bent, with_watched
 from ...errors import DeclarationError, UnknownNameError
+from ...model.beyond_ends import BEYOND
 from ...model.scene import Scene
 from ...model.times import Times, Timing, checked_span
 from ...results.sensitivity.ends import Ends
@@ -50,7 +50,6 @@ from .design_reduction import KeptOutputs, stages_of
 from .design_times import DesignTimes
 from .outcome import KEPT, History, Outcome, Results, outcome_of, refuse, rows_of
 from .spot_check import failures
-from .watch import Watch
 
 _PIECE = 1 << 22
 """Number of instants of designs with instants of their own that are kept at once."""
@@ -63,16 +62,15 @@ _SAMPLES = 32
 class DesignEngine:
     """A scene compiled for many designs.
 
-    ``parameters`` are the columns of what :meth:`evaluate` takes; ``quantities``, with ``units``,
-    and ``efforts`` those of what it gives; ``columns`` those of histories. What equilibrium leaves
-    open for a design is NaN there. ``sampled`` peaks are those of the instants, with an error.
+    ``parameters`` are the columns of what :meth:`evaluate` takes; ``quantities`` and
+    ``efforts`` those of what it gives; ``columns`` those of histories. What equilibrium leaves open
+    for a design is NaN there. ``sampled`` peaks are those of the instants, with an error.
     """
 
     method: EvaluationMethod
     times: DesignTimes
     kept: KeptOutputs
     program: Program
-    stages: Stages
     library: codegen.Library
     provenance: Provenance
     sampled: bool = False
@@ -134,7 +132,12 @@ class DesignEngine:
         if found is None:
             raise codegen.no_compiler("designs need a compiler")
         made = provenance(method, found)
-        return cls(method, times, kept, program, stages, found[1], made, sampled)
+        return cls(method, times, kept, program, found[1], made, sampled)
+
+    def __reduce__(self) -> tuple[Callable[..., DesignEngine], tuple[object, ...]]:
+        """Sent to another process, an engine is compiled there."""
+        peaks = PEAK_SEARCHES[self.sampled]
+        return DesignEngine.compiled, (self.program, self.times.timing, self.method, peaks)
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -146,11 +149,6 @@ class DesignEngine:
         """The names of the quantities that have peaks."""
         return tuple(map(str, self.kept.quantities))
 
-    @property
-    def units(self) -> tuple[str, ...]:
-        """Units of the quantities."""
-        return self.kept.units
-
     @cached_property
     def efforts(self) -> tuple[str, ...]:
         """The names of the efforts that have means."""
@@ -161,32 +159,22 @@ class DesignEngine:
         """The names of quantities, and outputs in histories, that equilibrium or friction at rest
         may leave open for designs.
         """
-        indeterminate_checks = {
-            quantity for _, quantity in self.kept.reduction.indeterminate_checks
-        }
-        quantities, outputs = (
-            tuple(self.kept.quantities[k] for k in sorted(indeterminate_checks)),
-            [*self.program.indeterminate],
-        )
         if self.program.checks("rest"):
-            quantities, outputs = self.kept.quantities, [*self.program.outputs]
-        return tuple(dict.fromkeys(map(str, [*quantities, *outputs])))
+            return tuple(dict.fromkeys([*self.quantities, *self.columns]))
+        doubted = sorted({k for _, k in self.kept.reduction.indeterminate_checks})
+        outputs = map(str, self.program.indeterminate)
+        return tuple(dict.fromkeys([*(self.quantities[k] for k in doubted), *outputs]))
 
     @property
     def columns(self) -> tuple[str, ...]:
         """The names of the outputs that histories have."""
-        return tuple(map(str, self.outputs))
+        return tuple(map(str, self.program.outputs))
 
     @cached_property
     def drives(self) -> tuple[Output, ...]:
         """The efforts of joints whose motion is given."""
         efforts = self.kept.efforts
         return tuple(o for o in efforts if o.group == "effort" and o.part in self.program.driven)
-
-    @cached_property
-    def outputs(self) -> tuple[Output, ...]:
-        """The outputs that histories have."""
-        return tuple(self.program.outputs)
 
     @property
     def count(self) -> int:
@@ -232,7 +220,7 @@ class DesignEngine:
             np.empty((n, self.count)) if histories and not self.times.timing.shared else None,
         )
         # What all have in common is not cut: it is made once.
-        many = len(self.program.columns) if self.watch.columns else 1
+        many = len(self.program.columns) if self.program.data.corners.constraints else 1
         size = n if self.times.common and many == 1 else max(1, _PIECE // (many * self.count))
         for start in range(0, n, max(size, 1)):
             some = slice(start, start + size)
@@ -242,18 +230,11 @@ class DesignEngine:
                 threads or cores(),
                 None if times is None else times[some],
             )
-        outcome = outcome_of(found, times=times)
-        if self.times.law is not None:
-            outcome = replace(outcome, over=self.times.at_drive(outcome.t, p))
-        if columns is None:
-            return outcome
-        for row, out in zip(p, columns, strict=True):
-            self._withhold(out, row)
-        with np.errstate(invalid="ignore"):
-            series = outputs_of(self.program, np.moveaxis(columns, 1, 0))
-        return replace(
-            outcome, series=np.stack([series[output] for output in self.outputs], axis=1)
-        )
+        if columns is not None:
+            self.finish(columns, p)
+        series = None if columns is None else columns[:, [*self.program.outputs.values()]]
+        over = None if self.times.law is None else self.times.at_drive(found["peak_t"], p)
+        return outcome_of(found, series, over, times)
 
     def history(self, p: Array, listed: Listed | None = None) -> History:
         """One design (parameters,) over the instants that are asked for, or, with local peaks, in
@@ -276,28 +257,16 @@ class DesignEngine:
         return History(outcome_of(found), t[0], columns[0], found["iterated"][0], tops[0])
 
     def finish(self, out: Array, p: Array) -> None:
-        """Put NaN into the columns (columns, t) of a design for what is open, and let angles go
-        on.
+        """Put NaN into the columns (n, columns, t) of designs (n, parameters) for what equilibrium
+        leaves open, and let angles go on.
         """
-        self._withhold(out, p)
-        unwind(self.program, out)
-
-    def _withhold(self, out: Array, p: Array) -> None:
-        """Take from the columns (columns, t) of a design what equilibrium leaves open."""
-        if not self.program.indeterminate:
-            return
+        program = self.program
         with np.errstate(invalid="ignore"):
-            out[
-                [
-                    self.program.outputs[output]
-                    for output in undetermined(self.program, out, p, self.method)
-                ]
-            ] = np.nan
-
-    @cached_property
-    def watch(self) -> Watch:
-        """Conditions on designs between their instants, if there are any."""
-        return Watch(self.program)
+            if program.indeterminate:
+                for rows, values in zip(out, p, strict=True):
+                    indeterminate = undetermined(program, rows, values, self.method)
+                    rows[[program.outputs[output] for output in indeterminate]] = np.nan
+            unwind(program, np.moveaxis(out, 1, 0))
 
     def _results(self, n: int, columns: Array | None) -> Results:
         """Arrays for what is kept of n designs, and the columns that histories are made of."""
@@ -355,9 +324,11 @@ class DesignEngine:
 
     def near(self, n: int) -> npt.NDArray[np.int8] | None:
         """Array for whether n designs are to be looked at for corners; None if no motion and no
-        constraint can have one.
+        constraint can have one, nor end.
         """
-        return np.zeros(n, np.int8) if self.watch else None
+        laws, corners = self.program.laws, self.program.data.corners
+        watched = laws.beyond is not None or corners.laws or corners.constraints
+        return np.zeros(n, np.int8) if watched else None
 
     def statuses(
         self,
@@ -367,14 +338,31 @@ class DesignEngine:
         near: npt.NDArray[np.int8],
         threads: int = 1,
     ) -> npt.NDArray[np.int8]:
-        """The statuses of designs as of :meth:`.Watch.statuses`."""
+        """The statuses of designs ``p`` (n, parameters) that had ``status``, at instants ``t`` (1
+        or n, t), by what is beyond a curve's ends, and by kinks.
 
-        def columns(p: Array, t: Array) -> Array:
+        Kinks are sought in those whose marks come ``near`` (n,).
+        """
+        found: npt.NDArray[np.int8] = status.copy()
+        ends, corners = self.program.laws.beyond, self.program.data.corners
+        if ends is not None:
+            for k, row in enumerate(p):
+                share = float(ends(t[min(k, len(t) - 1)][None], row).full().max(initial=0.0))
+                if not share <= BEYOND["double"] and np.isfinite(row).all():
+                    found[k] = Status.BEYOND_ENDS
+        some = np.flatnonzero((found == Status.OK) & ((near != 0) | corners.hidden))
+        if not some.size:
+            return found
+        p, t = p[some], t[some] if len(t) > 1 else t
+        broken = corners.broken_laws(t, p)
+        if corners.constraints:
             series = np.empty((len(p), len(self.program.columns), t.shape[1]))
             self._series(p, t, {"status": np.zeros(len(p), np.int8), "history": series}, threads)
-            return series
-
-        return self.watch.statuses(p, t, status, near != 0, columns)
+            broken |= corners.broken_constraints(
+                lambda name: series[:, self.program.seen_columns(name)], p
+            )
+        found[some[broken]] = Status.CORNER
+        return found
 
     @symbolic_property
     def slopes(self) -> Slopes:
@@ -385,8 +373,8 @@ class DesignEngine:
 
     def moving(self, p: Array) -> MovingPeaks:
         """Derivatives of peaks and means of a design (parameters,) by all parameters."""
-        instants = self.times.of(p[None], asked=False)[0][0]
-        return MovingPeaks(self.slopes, Ends(self.program.laws, self.times.timing, instants, p))
+        ends = Ends(self.program.laws, self.times.timing, self.times.even(p), p)
+        return MovingPeaks(self.slopes, ends)
 
     def gradient(self, p: Array, value: Array, t: Array, xi: Array) -> PeakSlopes:
         """Gradient by all parameters of the peaks (q,) of a design (parameters,), which are at
@@ -433,6 +421,5 @@ class DesignEngine:
         """
         series = self.evaluate(p[None], threads=1, histories=True).series
         assert series is not None
-        return failures(
-            whole, p, self.times.of(p[None])[1][0], self.method, self.outputs, series[0]
-        )
+        found = dict(zip(self.program.outputs, series[0], strict=True))
+        return failures(whole, p, self.times.of(p[None])[1][0], self.method, found)

@@ -71,8 +71,13 @@ def rows_of(found: Results, some: slice) -> Results:
     return {name: None if array is None else array[some] for name, array in found.items()}
 
 
-def outcome_of(found: Results, times: Array | None = None) -> Outcome:
-    """Make it from results, without histories."""
+def outcome_of(
+    found: Results,
+    series: Array | None = None,
+    over: Array | None = None,
+    times: Array | None = None,
+) -> Outcome:
+    """Make it from results."""
     value, t, xi, mean, rms = (found[name] for name in KEPT)
     error = found.get("error")
-    return Outcome(found["status"], value, t, xi, mean, rms, None, times=times, error=error)
+    return Outcome(found["status"], value, t, xi, mean, rms, series, over, times, error)

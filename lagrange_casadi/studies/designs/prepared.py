@@ -160,7 +160,7 @@ class _Answers(threading.local):
         )
         self.history = np.empty((1, len(program.columns), engine.count))
         self.rows = {
-            str(output): self.history[0, program.outputs[output]] for output in engine.outputs
+            str(output): self.history[0, program.outputs[output]] for output in program.outputs
         }
         self.places = {
             name: np.empty((1, quantities if k < 3 else efforts)) for k, name in enumerate(KEPT)
@@ -222,7 +222,7 @@ class Prepared:
     @property
     def units(self) -> tuple[str, ...]:
         """Units of the quantities."""
-        return self._engine.units
+        return self._engine.kept.units
 
     @property
     def efforts(self) -> tuple[str, ...]:
@@ -255,7 +255,7 @@ class Prepared:
         p, answers, program = self._set(values, named), self._answers, self._engine.program
         self._evaluate(0)
         if program.loop_angles or program.indeterminate:
-            self._engine.finish(answers.history[0], p[0])
+            self._engine.finish(answers.history, p)
         return answers.rows
 
     def peaks(self, /, *values: _Values, **named: Number) -> Peaks:
@@ -318,10 +318,6 @@ class Prepared:
         """
         p, value, t, xi = self._kept_peaks(values, named)
         found = self._engine.gradient(p, value, t, xi)
-        sample, add_up = (
-            partial(self._engine.tied, p, value, found),
-            partial(self._engine.mean_slopes, p),
-        )
         return Gradient(
             self.quantities,
             self.parameters,
@@ -331,8 +327,8 @@ class Prepared:
             found.slopes,
             found.kinds,
             self.efforts,
-            sample,
-            add_up,
+            partial(self._engine.tied, p, value, found),
+            partial(self._engine.mean_slopes, p),
         )
 
     def curvature(self, /, *values: _Values, **named: Number) -> Curvature:

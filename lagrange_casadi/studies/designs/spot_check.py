@@ -9,12 +9,12 @@ compiled code has made of the same design must agree with it.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 import numpy as np
 
-from ...base.arrays import Array
+from ...base.arrays import Array, spread
 from ...base.compensated import ROUNDING
 from ...base.quantities import Output
 from ...engine.instants.backends import run
@@ -39,9 +39,8 @@ graph agree; in single precision more.
 """
 
 
-def wanted_whole(names: Iterable[str]) -> list[str]:
-    """Return what is to be wanted for a graph of all outputs, those of ``names`` among them."""
-    outputs = map(Output.of, names)
+def wanted_whole(outputs: Iterable[Output]) -> list[str]:
+    """Return what is to be wanted for a graph of all outputs, these among them."""
     return [
         "all",
         *dict.fromkeys(f"{_WANTED[o.group]}:{o.part}" for o in outputs if o.group in _WANTED),
@@ -53,16 +52,15 @@ def failures(
     p: Array,
     t: Array,
     method: EvaluationMethod,
-    outputs: Sequence[Output],
-    out: Array,
+    found: Mapping[Output, Array],
 ) -> dict[str, float]:
     """Failures of a design, and their size: residuals of its certificate, and under ``agreement``
-    the distance of ``out``.
+    the distance of what was ``found``.
 
-    ``out`` (outputs, t) are the outputs that were made of it, over its instants ``t``; ``graph``
-    has all outputs.
+    That are the outputs that were made of it, over its instants ``t``; the ``program`` has all
+    outputs.
     """
-    some = np.unique(np.linspace(0, t.size - 1, min(t.size, INSTANTS)).astype(int))
+    some = spread(t.size, INSTANTS)
     # Iterated loops are followed from instant to instant.
     t, kept = (t, some) if program.newton is not None else (t[some], np.arange(some.size))
     table, provenance = run(program, t, p, EvaluationMethod("vm", newton=method.newton))
@@ -74,7 +72,7 @@ def failures(
     residuals = residuals_of(whole, program, rows, p, within).items()
     failed = {name: gap for name, gaps in residuals if not (gap := float(np.max(gaps))) <= limit}
     allowed = max(_AGREES, limit) if method.precision == "double" else COARSE
-    compiled = dict(zip(outputs, out[:, some], strict=True))
+    compiled = {output: values[some] for output, values in found.items()}
     agreement = _agreement(whole, compiled, {})
     if not agreement <= allowed:
         # What is nothing but rounding has no size of its own to be compared with.

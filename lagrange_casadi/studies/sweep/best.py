@@ -6,10 +6,9 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -23,15 +22,18 @@ from .meanings import ERROR, STATUS
 from .reading import Sweep, Values, names_in
 from .selection import absent, near
 
-_RELATIONS: dict[str, Callable[[Any, Any, Any], Any]] = {
-    "<=": lambda values, number, same: (values < number) | same,
-    ">=": lambda values, number, same: (values > number) | same,
-    "!=": lambda values, number, same: ~same,
-    "==": lambda values, number, same: same,
-    "<": lambda values, number, same: (values < number) & ~same,
-    ">": lambda values, number, same: (values > number) & ~same,
-    "=": lambda values, number, same: same,
+_RELATIONS = {
+    "<=": (True, True, False),
+    ">=": (False, True, True),
+    "!=": (True, False, True),
+    "==": (False, True, False),
+    "<": (True, False, False),
+    ">": (False, False, True),
+    "=": (False, True, False),
 }
+"""Whether what is below a number, equal to the number, or above the number, has a relation to it.
+"""
+
 _CONDITION = re.compile(r"\s*([^<>=!]+?)\s*(<=|>=|!=|==|<|>|=)\s*([^<>=!]+?)\s*")
 
 
@@ -69,10 +71,9 @@ class Condition:
 
     def holds(self, values: Array) -> npt.NDArray[np.bool_]:
         """Return where the condition holds; never where there is no number."""
-        sized = size(self.name, values)
-        return np.asarray(
-            _RELATIONS[self.relation](sized, self.value, near(sized, self.value)) & ~np.isnan(sized)
-        )
+        sized, (below, equal, above) = size(self.name, values), _RELATIONS[self.relation]
+        apart = np.where(sized < self.value, below, above)
+        return np.where(near(sized, self.value), equal, apart) & ~np.isnan(sized)
 
 
 @dataclass(frozen=True)

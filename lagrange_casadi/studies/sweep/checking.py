@@ -121,9 +121,8 @@ def _check_asked(file: h5py.File, sweep: Sweep) -> Iterator[str]:
     """
     identity: Mapping[str, Any] = sweep.identity
     description = sweep.description
-    parameter_values = description.values
     if (
-        parsed(file.attrs["parameters"], Mapping[str, float], "parameters") != parameter_values
+        parsed(file.attrs["parameters"], Mapping[str, float], "parameters") != description.values
         or sweep.case != description.name
     ):
         yield "case or parameters: differ from those of the mechanism"

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import struct
 import zlib
-from collections.abc import Iterator
 from itertools import groupby
 from typing import Any
 
@@ -23,9 +22,8 @@ FILTERS = {"shuffle": True, "compression": "gzip", "compression_opts": 1, "fletc
 """Options of HDF5 for such chunks."""
 
 _NEIGHBOURS, _SAMPLE = 1 << 9, 1 << 8
-_ROW, _ROWS = 1 << 8, 1 << 15
+_ROW = 1 << 8
 _REPEATS, _OFTEN = 0.1, 4.0
-_STORED = 0xFFFF
 _HEAD, _LAST = b"\x78\x01", b"\x03\x00"
 
 
@@ -45,13 +43,10 @@ def deflated(planes: npt.NDArray[np.uint8]) -> bytes:
         count = len(list(rows))
         content = planes[first : first + count].reshape(-1).data
         first += count
-        if shrinks:
-            compressor = zlib.compressobj(1, zlib.DEFLATED, -zlib.MAX_WBITS)
-            # It ends on a whole byte; what follows is another compressor's, which looks back to
-            # nothing.
-            pieces += [compressor.compress(content), compressor.flush(zlib.Z_SYNC_FLUSH)]
-        else:
-            pieces += _stored(content)
+        compressor = zlib.compressobj(int(shrinks), zlib.DEFLATED, -zlib.MAX_WBITS)
+        # It ends on a whole byte; what follows is another compressor's, which looks back to
+        # nothing.
+        pieces += [compressor.compress(content), compressor.flush(zlib.Z_SYNC_FLUSH)]
     return b"".join([*pieces, _LAST, struct.pack(">I", zlib.adler32(planes.data))])
 
 
@@ -62,14 +57,9 @@ def fletcher32(content: bytes) -> int:
     A sum that is not zero is one of 1 to 65535, as repeated folding leaves it.
     """
     words = np.frombuffer(content + b"\0" * (-len(content) % (2 * _ROW)), "<u2").reshape(-1, _ROW)
-    total, before = 0, 0
-    for first in range(0, len(words), _ROWS):
-        some = words[first : first + _ROWS]
-        rows, places = (some.sum(axis=axis, dtype=np.uint32).astype(np.int64) for axis in (1, 0))
-        total += int(rows.sum())
-        before += _ROW * int(np.arange(first, first + rows.size) @ rows) + int(
-            np.arange(_ROW) @ places
-        )
+    rows, places = (words.sum(axis=axis, dtype=np.uint64) for axis in (1, 0))
+    numbers, total = np.arange(len(words), dtype=np.uint64), int(rows.sum())
+    before = _ROW * int(numbers @ (rows % 0xFFFF)) + int(np.arange(_ROW, dtype=np.uint64) @ places)
     running = -(-len(content) // 2) * total - before
     # Modulo 65535 the bytes of a word change places when it is multiplied by 256.
     return _folded(256 * running) << 16 | _folded(256 * total)
@@ -96,10 +86,3 @@ def _shrink(planes: npt.NDArray[np.uint8]) -> list[bool]:
         (repeats > _REPEATS * _NEIGHBOURS) | (often > _OFTEN * (1.0 + size / 256))
     ).tolist()
     return worth
-
-
-def _stored(content: memoryview) -> Iterator[bytes | memoryview]:
-    for start in range(0, len(content), _STORED):
-        piece = content[start : start + _STORED]
-        yield struct.pack("<BHH", 0, len(piece), len(piece) ^ 0xFFFF)
-        yield piece

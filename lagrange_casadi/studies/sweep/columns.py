@@ -23,9 +23,8 @@ from ...base.quantities import Output, parts_along
 from ...base.scalars import column
 from ...base.status import Status
 from ...base.tables import table_of
-from ...base.vocabulary import Keep, PeakSearch
+from ...base.vocabulary import Keep
 from ...engine.identity import sources
-from ...engine.instants.evaluation_method import EvaluationMethod
 from ...engine.model_data import ModelData
 from ...engine.program import Program
 from ...errors import DeclarationError
@@ -60,59 +59,38 @@ _SLOPES_COST = 3e-4
 """Seconds of the derivatives of a design's peaks."""
 
 
-@dataclass(frozen=True)
-class Task:
-    """Evaluation of a scene's designs, as it is sent to a worker: nothing in it depends on the
-    designs themselves.
+@dataclass(frozen=True, eq=False)
+class Harvest:
+    """What is kept of an ``engine``'s outcomes, whatever the designs are; it is made anew where a
+    worker is sent its fields.
 
+    By the ``whole`` graph designs are looked at closely. Section forces are kept at ``ratios``.
     ``safety`` and ``life`` are the links of which these are kept, ``by`` the parameters by which
     derivatives are, and with ``fluctuation`` that of the energy of drives is.
     """
 
-    timing: Timing
-    xi: EvenPoints | None
+    engine: DesignEngine
+    whole: Program
+    ratios: EvenPoints | None
     keep: Keep
-    method: EvaluationMethod
-    safety: tuple[str, ...] = ()
-    life: tuple[str, ...] = ()
-    by: tuple[str, ...] = ()
-    peaks: PeakSearch = "exact"
-    fluctuation: bool = False
+    safety: tuple[str, ...]
+    life: tuple[str, ...]
+    by: tuple[str, ...]
+    fluctuation: bool
 
     def __post_init__(self) -> None:
-        if self.peaks != "exact" and (self.safety or self.life or self.by):
+        if self.engine.sampled and (self.safety or self.life or self.by):
             raise DeclarationError(
                 "peaks: safety, life and sensitivity need exact ones; leave them out of wanted="
             )
-
-    def harvest(self, program: Program, whole: Program | None = None) -> Harvest:
-        """Compile the graph of what is wanted, for what is kept of its outcomes; ``whole`` has all
-        outputs.
-        """
-        engine = DesignEngine.compiled(program, self.timing, self.method, self.peaks)
-        return Harvest(self, engine, whole or program)
-
-
-@dataclass(frozen=True, eq=False)
-class Harvest:
-    """A task, compiled: its engine, and what is kept of the engine's outcomes.
-
-    By the ``whole`` graph designs are looked at closely.
-    """
-
-    task: Task
-    engine: DesignEngine
-    whole: Program
-
-    def __post_init__(self) -> None:
-        if self.task.fluctuation and not self.engine.drives:
+        if self.fluctuation and not self.engine.drives:
             raise DeclarationError(
                 "fluctuation: only efforts of joints whose motion is given have a fluctuation of"
                 " energy, and none is in wanted=; add effort"
             )
         if self.xi.size and not self._links:
             raise DeclarationError("xi: ratios apply to section forces, and none is in wanted=")
-        if self.task.keep == "laws" and not self._links:
+        if self.keep == "laws" and not self._links:
             raise DeclarationError(
                 "keep laws: laws describe section forces, and none is in wanted="
             )
@@ -122,20 +100,25 @@ class Harvest:
         """Data of the mechanism."""
         return self.engine.program.data
 
+    @property
+    def timing(self) -> Timing:
+        """Timing of the instants."""
+        return self.engine.times.timing
+
     @cached_property
     def axis(self) -> InstantAxis:
         """Axis of the instants."""
-        return InstantAxis.of(self.data, self.task.timing)
+        return InstantAxis.of(self.data, self.timing)
 
     @cached_property
     def xi(self) -> Array:
         """Ratios at which section forces are kept, none where empty."""
-        return np.zeros(0) if self.task.xi is None else points(self.task.xi)
+        return np.zeros(0) if self.ratios is None else points(self.ratios)
 
     @cached_property
     def signature(self) -> dict[str, Json]:
         """Inputs of a design's numbers beside its parameters, wherever it is evaluated."""
-        program, task, made = self.engine.program, self.task, self.engine.provenance
+        program, made = self.engine.program, self.engine.provenance
         words = {
             "versions": {**made.versions, "zlib": zlib.ZLIB_RUNTIME_VERSION},
             "sources": sources(),
@@ -143,13 +126,13 @@ class Harvest:
             "precision": made.precision,
             "compiler": made.compiler,
             "flags": made.flags,
-            "rung": made.method + (", sampled peaks" if task.peaks == "sampled" else ""),
+            "rung": made.method + (", sampled peaks" if self.engine.sampled else ""),
             "wanted": asdict(program.wanted)
-            | ({SENSITIVITY: task.by} if task.by else {})
-            | ({FLUCTUATION: True} if task.fluctuation else {}),
-            "t": task.timing.words(program.data.symbols),
-            "xi": task.xi,
-            "keep": task.keep,
+            | ({SENSITIVITY: self.by} if self.by else {})
+            | ({FLUCTUATION: True} if self.fluctuation else {}),
+            "t": self.timing.words(program.data.symbols),
+            "xi": self.ratios,
+            "keep": self.keep,
             "scene": program.identity or "cannot be identified",
         }
         content: dict[str, Json] = json.loads(json.dumps(words))
@@ -171,13 +154,13 @@ class Harvest:
     @cached_property
     def _kept(self) -> dict[str, tuple[tuple[str, ...], str, tuple[int, ...]]]:
         """The axes of each column, and its place in a :class:`_Batch`: table and numbers."""
-        engine, over, keep = self.engine, self.axis.name, self.task.keep
+        engine, over, keep = self.engine, self.axis.name, self.keep
         found: dict[str, tuple[tuple[str, ...], str, tuple[int, ...]]] = {
-            STATUS: ((), "states", ())
+            STATUS: ((), "status", ())
         }
         for k, quantity in enumerate(map(Output.of, engine.quantities)):
             along = quantity.group == "section"
-            there = {"peak_over": self.task.timing.joint, "peak_xi": along, ERROR: engine.sampled}
+            there = {"peak_over": self.timing.joint, "peak_xi": along, ERROR: engine.sampled}
             for kind, field in _PEAKS.items():
                 if there.get(kind, True):
                     found[f"{kind}:{quantity}"] = (), field, (k,)
@@ -185,7 +168,7 @@ class Harvest:
             found |= {f"{kind}:{name}": ((), kind, (k,)) for kind in _MEANS}
         for k, drive in enumerate(self._drives):
             found[f"{FLUCTUATION}:{drive}"] = (), "fluctuations", (k,)
-        for parameter in self.task.by:
+        for parameter in self.by:
             p, begin = list(self.data.parameters).index(parameter), f"{SENSITIVITY}:{parameter}"
             for k, name in enumerate(engine.quantities):
                 found[f"{begin}:peak:{name}"] = (), "slopes", (p, k)
@@ -211,7 +194,7 @@ class Harvest:
     @property
     def meanings(self) -> Meanings:
         """Meanings of columns and axes."""
-        return Meanings(self.data.content, self.task.timing.joint, self.task.timing.shared)
+        return Meanings(self.data.content, self.timing.joint, self.timing.shared)
 
     @property
     def block(self) -> int:
@@ -219,7 +202,7 @@ class Harvest:
         reader's chunk.
         """
         grids = len(self._forces) * len(self._links) * self.axis.values.size * self.xi.size
-        seconds = self.engine.cost + grids * _GRID_COST + (_SLOPES_COST if self.task.by else 0.0)
+        seconds = self.engine.cost + grids * _GRID_COST + (_SLOPES_COST if self.by else 0.0)
         seconds += _FLUCTUATION_COST * len(self._drives)
         return max(
             1,
@@ -271,12 +254,12 @@ class Harvest:
     @cached_property
     def strength(self) -> Kept:
         """Strength results of links that are kept."""
-        return Kept(self.engine, self.task.safety, self.task.life)
+        return Kept(self.engine, self.safety, self.life)
 
     @property
     def _histories(self) -> bool:
         """True if whole histories must be evaluated."""
-        return self.task.keep != "peaks" or bool(self.xi.size) or self.strength.histories
+        return self.keep != "peaks" or bool(self.xi.size) or self.strength.histories
 
     @property
     def _piece(self) -> int:
@@ -295,7 +278,7 @@ class Harvest:
     @property
     def _drives(self) -> tuple[Output, ...]:
         """The efforts of which the fluctuation of energy is kept."""
-        return self.engine.drives if self.task.fluctuation else ()
+        return self.engine.drives if self.fluctuation else ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -310,16 +293,13 @@ class _Batch:
 
     def column(self, table: str, numbers: tuple[int, ...]) -> Operand:
         """The column of some numbers in a table: of the outcome, or of what is made of that."""
-        made = hasattr(type(self), table)
-        found: Any = getattr(self, table) if made else getattr(self.outcome, table).swapaxes(0, 1)
+        if not hasattr(type(self), table):
+            place = slice(None), *numbers
+            return np.asarray(getattr(self.outcome, table)[place])
+        found: Any = getattr(self, table)
         for number in numbers:
             found = found[number]
         return np.asarray(found)
-
-    @property
-    def states(self) -> Operand:
-        """Status of each design, as the file has it."""
-        return self.outcome.status.astype(np.int8, copy=False)
 
     @property
     def instants(self) -> Array:
@@ -366,8 +346,7 @@ class _Batch:
     @cached_property
     def strength(self) -> list[Array]:
         """Columns on the strength of links."""
-        found = self.outcome
-        return self.harvest.strength.evaluate(found.status, found.value, found.series, self.p)
+        return self.harvest.strength.evaluate(self.outcome, self.p)
 
     @cached_property
     def along_links(self) -> tuple[list[Array], list[Array]]:
@@ -388,7 +367,7 @@ class _Batch:
                 basis = laws.basis(xi)
                 found = (laws.largest(force, basis) for force in forces)
                 largest += [np.where(self._valid[:, None], one, np.nan) for one in found]
-            if harvest.task.keep == "histories":
+            if harvest.keep == "histories":
                 grids = np.full((len(forces), len(p), harvest.axis.values.size, xi.size), np.nan)
                 for i in np.flatnonzero(self._valid):
                     alone = law({output: series[i, k] for output, k in rows.items()}, p[i])

@@ -8,12 +8,11 @@ import math
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-Slab = tuple[int, int, tuple[Any, ...]]
-"""Designs from and to before, and the selection of the designs' axes that is them."""
+Slab = tuple[int, int, tuple[slice, ...]]
+"""Designs from and to before, and the places along the designs' axes that are them."""
 
 _NAME = re.compile(r"(\d{12})-(\d{12})")
 
@@ -35,7 +34,7 @@ def slabs(dims: Sequence[int], chunk: Sequence[int]) -> Iterator[Slab]:
     """The runs of design numbers that chunks hold, in order."""
     cut = next((axis for axis, length in enumerate(chunk) if length != 1), len(dims) - 1)
     inner = math.prod(dims[cut + 1 :])
-    whole = (slice(None),) * (len(dims) - cut - 1)
+    whole = [slice(0, length) for length in dims[cut + 1 :]]
     for count, outer in enumerate(np.ndindex(*dims[:cut])):
         for start in range(0, dims[cut], chunk[cut]):
             stop = min(start + chunk[cut], dims[cut])
@@ -43,7 +42,7 @@ def slabs(dims: Sequence[int], chunk: Sequence[int]) -> Iterator[Slab]:
             yield (
                 (before + start) * inner,
                 (before + stop) * inner,
-                (*outer, slice(start, stop), *whole),
+                (*(slice(k, k + 1) for k in outer), slice(start, stop), *whole),
             )
 
 

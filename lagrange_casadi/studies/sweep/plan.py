@@ -23,14 +23,14 @@ from ...errors import (
     SizeError,
     UnknownNameError,
 )
-from ...model.description import Description
 from ...model.even_points import checked_ratios
 from ...model.scene import STRENGTH, Scene
 from ...model.wanted_names import SENSITIVITY, among, by_parameters, without_fitted
+from ..designs.engine import DesignEngine
 from ..designs.spot_check import wanted_whole
 from ..request import Request
 from .axes import Designs, check_designs, counted, filled
-from .columns import Harvest, Task
+from .columns import Harvest
 from .design_blocks import Slab, chunk_of, slabs
 
 _Bound = float | str
@@ -79,11 +79,9 @@ class Plan:
     """A sweep before it runs; ``values`` are those of all parameters, the swept ones at their
     defaults.
 
-    ``description`` describes the mechanism with these values. ``case_file`` is the file of the case
-    that is swept, as written in the sweep's file.
+    ``case_file`` is the file of the case that is swept, as written in the sweep's file.
     """
 
-    description: Description
     designs: Designs
     values: Mapping[str, float]
     harvest: Harvest
@@ -126,21 +124,12 @@ class Plan:
         content, named = program.data.content, [name for name in names if name != "all"]
         without_fitted(content.fitted, names, "sweeps")
         safety, life = (tuple(among(kind, content.beams, named)) for kind in ("safety", "life"))
-        task = Task(
-            timing,
-            ratios,
-            keep,
-            method,
-            safety,
-            life,
-            by_parameters(program.data.parameters, names),
-            peaks,
-            fluctuation,
-        )
+        by = by_parameters(program.data.parameters, names)
         method.check(program)
         scene.checked(scene.values())
-        whole = compile_scene(scene, wanted_whole(map(str, program.outputs)), parameters=assembly)
-        harvest = task.harvest(program, whole)
+        whole = compile_scene(scene, wanted_whole(program.outputs), parameters=assembly)
+        engine = DesignEngine.compiled(program, timing, method, peaks)
+        harvest = Harvest(engine, whole, ratios, keep, safety, life, by, fluctuation)
         largest = max(harvest.columns, key=lambda column: column.width)
         if largest.width > _LARGEST:
             size = f"{largest.width / 2**30:.3g} GiB"
@@ -152,7 +141,7 @@ class Plan:
             "a design and what it is made from",
             (_TIMES, sum(column.width for column in harvest.columns) // 8),
         )
-        return cls(program.data.at(list(values.values())), designs, values, harvest)
+        return cls(designs, values, harvest)
 
     @property
     def size(self) -> int:
@@ -164,19 +153,16 @@ class Plan:
         """Bytes of the values along the designs' axes."""
         return 8 * sum(self.designs.dimensions.values())
 
-    @property
-    def most(self) -> int:
-        """Bytes of the file, at most; columns are smaller where they deflate."""
-        return self.axes_size + self.size * sum(column.width for column in self.harvest.columns)
-
     def takes(self, done: int) -> str:
         """Remaining work after so many designs, in words; empty if it is little."""
         time = (self.size - done) * self.harvest.engine.cost
-        if time < _LONG and self.most < _LARGE:
+        # Columns are smaller where they deflate.
+        most = self.axes_size + self.size * sum(column.width for column in self.harvest.columns)
+        if time < _LONG and most < _LARGE:
             return ""
         return (
             f"{counted(self.size - done)} take about {in_words(time)} of a core and a file of up to"
-            f" {self.most / 1e9:.3g} GB"
+            f" {most / 1e9:.3g} GB"
         )
 
     @property
@@ -213,7 +199,7 @@ class Plan:
         words = {
             "case": self.harvest.data.name,
             **self.harvest.signature,
-            "mechanism": self.description.plain(),
+            "mechanism": self.harvest.data.at(list(self.values.values())).plain(),
             "grid": self.designs.describe(),
         }
         content: Identity = json.loads(json.dumps(words))
@@ -232,14 +218,8 @@ def _assembly(
         derived(scene, wanted, None)
     except (AssemblyError, MobilityError):
         for number in spread(designs.size, _TRIED):
-            row = dict(
-                zip(
-                    designs.names,
-                    designs.block(int(number), int(number) + 1)[0].tolist(),
-                    strict=True,
-                )
-            )
-            tried = {**values, **row}
+            row = designs.block(int(number), int(number) + 1)[0].tolist()
+            tried = {**values, **dict(zip(designs.names, row, strict=True))}
             try:
                 derived(scene, wanted, scene.values(tried))
             except (AssemblyError, DeclarationError, ParameterError):

@@ -530,14 +530,10 @@ class Sweep:
             lengths = {axis: file[axis].size for axis in along}
             rows = math.prod(lengths.values())
             for start, stop, where in slabs(dims, chunk_of(dims, _BLOCK // rows)):
-                places = {
-                    axis: place if isinstance(place, slice) else slice(place, place + 1)
-                    for axis, place in zip(self.dimensions, where, strict=True)
-                }
+                places = dict(zip(self.dimensions, where, strict=True))
                 numbers = np.arange(start, stop)
                 left = self._left(numbers)
-                shape = {a: len(range(n)[places[a]]) for a, n in self.dimensions.items()}
-                shape |= lengths
+                shape = {axis: place.stop - place.start for axis, place in places.items()} | lengths
                 found = {}
                 for name in names:
                     values, axes = self._read(file, name, places), self._axes(name)

@@ -24,6 +24,7 @@ from ...results.strength.fatigue import Score, damage_score, lacking, use_score
 from ...results.strength.fibres import maxima
 from ...results.strength.member import Member
 from ..designs.engine import DesignEngine
+from ..designs.outcome import Outcome
 from .meanings import LEAST, LIFE, MASS, WAYS
 
 _ENDLESS = 0.999
@@ -77,31 +78,25 @@ class Kept:
         found |= {f"{LIFE}:{link}": link in indeterminate for link in self._lives}
         return found | {f"{MASS}:{part}": False for part in (*self.links, ALL) if self.links}
 
-    def evaluate(
-        self,
-        status: npt.NDArray[np.int8],
-        value: Array,
-        series: Array | None,
-        p: Array,
-    ) -> list[Array]:
-        """The columns of designs ``p``: ``value`` (n, quantities) are peaks, ``series`` (n,
-        outputs, t).
-        """
-        there = np.flatnonzero(status == 0)
+    def evaluate(self, outcome: Outcome, p: Array) -> list[Array]:
+        """The columns of designs ``p`` (n, parameters) by their outcome."""
+        there = np.flatnonzero(outcome.status == 0)
         tired = {
-            link: self._tired(link, there, series, p) for link in self.links if self._tires(link)
+            link: self._tired(link, there, outcome.series, p)
+            for link in self.links
+            if self._tires(link)
         }
         found: list[Array] = []
         for link in self._rated:
             kept = [f"utilisation:{link}:{mode}" for mode in self._ways(link) if mode != "fatigue"]
-            shares = [np.abs(value[:, self.engine.quantities.index(name)]) for name in kept]
+            shares = [np.abs(outcome.value[:, self.engine.quantities.index(name)]) for name in kept]
             shares += [tired[link][0]] if link in tired else []
             with np.errstate(divide="ignore"):
                 found.append(1.0 / np.max(shares, axis=0))
                 found += [1.0 / share for share in shares]
         found += [tired[link][1] for link in self._lives]
         masses = np.atleast_2d(self._masses(p.T).full())
-        return found + [np.where(status == 0, row, np.nan) for row in masses]
+        return found + [np.where(outcome.status == 0, row, np.nan) for row in masses]
 
     def _ways(self, link: str) -> list[str]:
         known = [

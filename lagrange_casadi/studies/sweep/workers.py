@@ -11,7 +11,7 @@ import pickle
 import threading
 from collections.abc import Callable, Generator, Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from itertools import islice
 from typing import Any, Protocol, runtime_checkable
 
@@ -19,6 +19,7 @@ from ...base.arrays import Array, Json
 from ...base.space import cores, memory
 from ...errors import ClusterError, LagrangeCasadiError, one_line
 from ..checkpoint import difference
+from .columns import Harvest
 from .design_blocks import Queue
 from .plan import Plan
 
@@ -89,7 +90,7 @@ def by_executor(executor: Executor, count: int | None, plan: Plan, queue: Queue)
     """Evaluate a queue by the workers of an executor, which has ``count`` blocks at a time."""
     harvest = plan.harvest
     made = pickle.dumps(
-        functools.partial(harvest.task.harvest, harvest.engine.program, harvest.whole)
+        functools.partial(Harvest, *(getattr(harvest, one.name) for one in fields(harvest)))
     )
 
     def asked(start: int, stop: int) -> Asked:
@@ -190,7 +191,6 @@ def made(call: bytes) -> Any:
 def _evaluate(call: bytes, asked: Mapping[str, Json], p: Array, capacity: int) -> list[bytes]:
     """Evaluate the columns of a block of designs on a worker."""
     with making:
-        harvest = made(call)
+        harvest: Harvest = made(call)
     check_same(asked, harvest.signature)
-    chunks: list[bytes] = harvest.chunks(p, capacity)
-    return chunks
+    return harvest.chunks(p, capacity)
