@@ -10,13 +10,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ...base.arrays import spread
 from ...errors import AssemblyError
 from .conditions import DOWN
 from .nonlinear_program import Found, Held
 from .sampled_design import KEEP, EvaluatedDesign, Point
 from .search_run import CONVERGED, HOLDS, STOPPED, SearchRun, rounded
 from .solver import SearchTask, Solver
-from .terms import tired_link
+from .terms import Constraint, tired_link
 
 _ROUNDS, _HALVINGS = 40, 12
 """Programs that are solved at most; and how often a step is halved that leads to where loops do not
@@ -75,16 +76,16 @@ class Descent:
         """Go from the start, which has a result, to the best near it; after an interrupt, as far as
         it went.
         """
-        evaluator, stopped = self.solver.evaluator, False
-        first = evaluator.evaluate(np.array(self.task.start))
-        before = evaluator.evaluations
+        first, stopped = self.solver.evaluate(np.array(self.task.start)), False
+        before = self.solver.evaluations
+        self.iterates.append(_Iterate(first, None, "start"))
         try:
             self._descend(first)
         except KeyboardInterrupt:
             stopped = True
         except AssemblyError as error:
             self.iterates.append(_Iterate(first, None, str(error)))
-        best = self._best() if self.iterates else _Iterate(first, None, "")
+        best = self._best()
         found = best.by
         return SearchRun(
             start=tuple(first.p.tolist()),
@@ -98,7 +99,7 @@ class Descent:
             bounds=tuple(found.bounds.tolist()) if found else (),
             residual=found.conditions.residual if found else math.nan,
             curvature=found.conditions.curvature if found else math.nan,
-            evaluations=evaluator.evaluations - before,
+            evaluations=self.solver.evaluations - before,
         )
 
     def _best(self) -> _Iterate:
@@ -146,31 +147,25 @@ class Descent:
     def _better(self, evaluated: EvaluatedDesign, by: Found | None, ending: str) -> None:
         """Keep a design that is no worse than those before."""
         converged = by is not None and ending == CONVERGED
-        if (
-            not self.iterates
-            or converged
-            or self.task.problem.merit(evaluated)
-            <= self.task.problem.merit(self.iterates[-1].evaluated)
+        if converged or self.task.problem.merit(evaluated) <= self.task.problem.merit(
+            self.iterates[-1].evaluated
         ):
             self.iterates.append(_Iterate(evaluated, by, ending))
 
     def _descend(self, first: EvaluatedDesign) -> None:
         self._note(first)
-        self._better(first, None, "start")
         sampled, box, problem = first.sampled, self.solver.question.box, self.task.problem
         program = self.solver.program(problem)
         assert sampled is not None
-        held = [Held(problem.objective, 0.0, self.task.scales[0])]
-        for constraint, scale in zip(problem.constraints, self.task.scales[1:], strict=True):
-            held.append(Held(constraint.term, constraint.limit, scale, constraint.least))
-        numbers = np.unique(np.linspace(0, sampled.t.size - 1, _CLOSED).astype(int)).tolist()
-        closures = [sampled.instant(k) for k in numbers]
+        every = Constraint(problem.objective, 0.0), *problem.constraints
+        held = [Held(one, scale) for one, scale in zip(every, self.task.scales, strict=True)]
+        closures = [sampled.instant(k) for k in spread(sampled.t.size, _CLOSED).tolist()]
         self._learn(held, closures, first, everything=True)
         current, tried = first, 0
         for _ in range(_ROUNDS):
             there = current.sampled if program.averaged else None
-            every = [] if there is None else [there.instant(k) for k in range(there.t.size)]
-            found = program.solve(box.share(current.p), held, closures, every)
+            instants = [] if there is None else [there.instant(k) for k in range(there.t.size)]
+            found = program.solve(box.share(current.p), held, closures, instants)
             x = found.x
             if not np.isfinite(x).all():
                 self._better(
@@ -179,7 +174,7 @@ class Descent:
                     "the program has no solution: a derivative is missing at an evaluated point",
                 )
                 return
-            following = self.solver.evaluator.evaluate(box.all(x))
+            following = self.solver.evaluate(box.all(x))
             self._note(following)
             back = 0
             while following.sampled is None and back < _HALVINGS:
@@ -187,7 +182,7 @@ class Descent:
                 # is one, and look there from then on.
                 back += 1
                 x = (x + box.share(current.p)) / 2
-                following = self.solver.evaluator.evaluate(box.all(x))
+                following = self.solver.evaluate(box.all(x))
             if following.sampled is None:
                 why = following.status.meaning if following.status else "loops do not close"
                 self._better(current, None, f"a design beside it fails: {why}")
@@ -222,7 +217,7 @@ class Descent:
         direction = found.conditions.direction / (np.abs(found.conditions.direction).max() or 1.0)
         excess, objective = self._merit(evaluated)
         for step in (share * sign for share in _STEPS for sign in (1.0, -1.0)):
-            tried = self.solver.evaluator.evaluate(
+            tried = self.solver.evaluate(
                 self.solver.question.box.all(np.clip(found.x + step * direction, 0.0, 1.0))
             )
             if self._merit(tried) < (excess, objective):
@@ -253,40 +248,38 @@ class Descent:
         added, sampled = False, evaluated.sampled
         assert sampled is not None
         near = _SAME * sampled.step
-        for k, term in enumerate(held):
-            points = evaluated.points[term.term]
+        for k, one in enumerate(held):
+            term, points = one.constraint.term, evaluated.points[one.constraint.term]
             if not points:
                 continue
             largest = points[0][1] * points[0][0].value
             least = KEEP * largest if largest > 0.0 else largest / KEEP
             if not everything:
                 # Only what may exceed what the program found.
-                level = largest if k == 0 else term.bound
-                least = max(least, level - _NEAR * term.scale)
+                level = largest if k == 0 else one.bound
+                least = max(least, level - _NEAR * one.scale)
             high = [(point, sign) for point, sign in points if sign * point.value >= least]
-            found = self.solver.evaluator.following(term.term, high or points[:1], sampled)
+            found = self.solver.following(term, high or points[:1], sampled)
             first, sign = found[0]
             if (
-                term.term.kind == "peak"
-                and not tired_link(term.term.output)
+                term.kind == "peak"
+                and not tired_link(term.output)
                 and not any(first.turn)
                 and 0.0 < first.share < 1.0
             ):
                 # Where it is, a kink has no derivative; along its way it has one.
                 found[0] = (
-                    self.solver.evaluator.drifting(
-                        term.term, first, evaluated.p, self.solver.question.box
-                    ),
+                    self.solver.drifting(term, first, evaluated.p),
                     sign,
                 )
             for point, sign in found if high else ():
-                added |= term.add(point, sign, near)
-            if not term.points:
-                added |= term.add(*found[0], near)
+                added |= one.add(point, sign, near)
+            if not one.points:
+                added |= one.add(*found[0], near)
         for row in sampled.closures():
             k = int(np.argmin(row))
             point = sampled.instant(k)
-            if row[k] < 4 * self.solver.evaluator.least_closure and all(
+            if row[k] < 4 * self.solver.question.transmission**2 and all(
                 abs(point.share - other.share) > near for other in closures
             ):
                 closures.append(point)

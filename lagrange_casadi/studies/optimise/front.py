@@ -245,8 +245,7 @@ class FrontSearch:
                     np.abs(box.share(one.p) - box.share(other.p)).max() > 1e-3 for other in starts
                 ):
                     starts = [*starts, one]
-        optimum = self.search.solve(problem, starts)
-        evaluated = self.search.solver.evaluator.evaluate(np.array([*optimum.parameters.values()]))
+        optimum, evaluated = self.search.solve(problem, starts)
         return _Found(optimum, evaluated, np.array([evaluated.values[term] for term in self.terms]))
 
     def _front_point(self, one: _Found) -> FrontPoint:
@@ -263,8 +262,6 @@ def _efficient(found: Sequence[_Found]) -> list[_Found]:
     """Points than which no other one is better in all objectives, from the least of the first one
     on; of equal ones the first.
     """
-    if not found:
-        return []
     values = np.array([one.values for one in found])
     size = np.ptp(values, axis=0)
     little = _BETTER * np.where(size > 0.0, size, 1.0)

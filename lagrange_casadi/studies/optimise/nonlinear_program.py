@@ -24,7 +24,7 @@ from ..designs.engine import DesignEngine
 from .conditions import Conditions, conditions
 from .problem import Box, Problem
 from .sampled_design import Point
-from .terms import Term
+from .terms import Constraint, Term
 from .values import PointValues
 
 _NUMBERS = 8
@@ -38,22 +38,19 @@ derivatives are not formed.
 
 @dataclass(frozen=True, eq=False)
 class Held:
-    """A term that is held at points: not more than ``limit``, or less where ``least``; that of the
-    objective does not count.
+    """A ``constraint`` that is held at points; the limit of the objective does not count.
 
-    ``scale`` is about how large it is. ``points`` are those that are known.
+    ``scale`` is about how large its term is. ``points`` are those that are known.
     """
 
-    term: Term
-    limit: float
+    constraint: Constraint
     scale: float
-    least: bool = False
     points: list[tuple[Point, float]] = field(default_factory=list)
 
     @property
     def bound(self) -> float:
         """Upper bound of the term, times -1 if the limit is the least."""
-        return -self.limit if self.least else self.limit
+        return -self.constraint.limit if self.constraint.least else self.constraint.limit
 
     def add(self, point: Point, sign: float, near: float) -> bool:
         """Hold the term at one point more, times ``sign``, unless it is as ``near`` one; whether it
@@ -180,18 +177,18 @@ class NonlinearProgram:
 
         ``averages`` are all instants, for means.
         """
-        many, capacity = max([len(term.points) for term in held] + [len(closures), 1]), _FEW
+        many, capacity = max([len(one.points) for one in held] + [len(closures), 1]), _FEW
         while capacity < many:
             capacity *= 2
         if capacity not in self.built:
             self.built[capacity] = self._build(held, capacity)
         built = self.built[capacity]
         given = np.concatenate(
-            [np.array([(term.bound / term.scale, 1.0 / term.scale) for term in held]).ravel()]
+            [np.array([(one.bound / one.scale, 1.0 / one.scale) for one in held]).ravel()]
             + [
-                self._packed(term.points, capacity, self.values.of(output).size)
-                for term in held
-                if term.points and (output := term.term.output)
+                self._packed(one.points, capacity, self.values.of(output).size)
+                for one in held
+                if one.points and (output := one.constraint.term.output)
             ]
             + [self._packed([(point, 1.0) for point in closures], capacity, 1)]
             * (self.closures is not None)
@@ -207,8 +204,8 @@ class NonlinearProgram:
         at, by_g, by_x = (found[name].full().ravel() for name in ("x", "lam_g", "lam_x"))
         scale = held[0].scale
         multipliers = tuple(
-            float(np.sum(by_g[rows])) * scale / term.scale
-            for rows, term in zip(built.rows[1:], held[1:], strict=True)
+            float(np.sum(by_g[rows])) * scale / one.scale
+            for rows, one in zip(built.rows[1:], held[1:], strict=True)
         )
         shares = np.clip(at[:n], 0.0, 1.0)
         found_conditions = conditions(
@@ -276,21 +273,21 @@ class NonlinearProgram:
 
         guesses = ca.MX.sym("guesses", nz, self.instants)
         best: Any = level
-        for number, term in enumerate(held):
-            output, (limit, over) = term.term.output, (limits[0, number], limits[1, number])
-            if not term.term.pointed:
-                if term.term in self.energies:
-                    value = self.energies[term.term](p)
-                elif term.term.averaged:
-                    value = self._average(term.term, p, guesses)
+        for number, one in enumerate(held):
+            term, (limit, over) = one.constraint.term, (limits[0, number], limits[1, number])
+            if not term.pointed:
+                if term in self.energies:
+                    value = self.energies[term](p)
+                elif term.averaged:
+                    value = self._average(term, p, guesses)
                 else:
-                    value = term.term.of_parameters(self.values.program.data)(p)
-                row = (-value if term.least else value) * over - limit
+                    value = term.of_parameters(self.values.program.data)(p)
+                row = (-value if one.constraint.least else value) * over - limit
                 best = value * over if number == 0 else best
                 held_rows = ca.MX(0, 1) if number == 0 else row
             else:
-                assert output is not None
-                followed = self.values.of(output)
+                assert term.output is not None
+                followed = self.values.of(term.output)
                 value, sign = points(followed.moved, followed.size, moved=True)
                 held_rows = ca.vec(sign * value * over - (level if number == 0 else limit))
             begin = places[-1].stop if places else 0

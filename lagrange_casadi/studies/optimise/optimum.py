@@ -111,15 +111,13 @@ def optimum_of(
     solver: Solver,
     problem: Problem,
     runs: Sequence[SearchRun],
-    evaluated: EvaluatedDesign,
     evaluations: int,
     *,
     stopped: bool,
-) -> Optimum:
-    """Result of runs from starts; ``evaluated`` is the end of the best
-    of them, evaluated closely.
-    """
+) -> tuple[Optimum, EvaluatedDesign]:
+    """Result of runs from starts, and the end of the best of them, evaluated closely."""
     best = min(runs, key=lambda run: run.merit)
+    evaluated = solver.evaluate(np.array(best.end))
     box, engine = solver.question.box, solver.engine
     limits = []
     multipliers = best.multipliers or (math.nan,) * len(problem.constraints)
@@ -136,7 +134,7 @@ def optimum_of(
         bounds = dict(zip(box.names, by_unit.tolist(), strict=True))
     everything = dict(zip(engine.parameters, evaluated.p.tolist(), strict=True))
     excess = problem.excess(evaluated)
-    return Optimum(
+    optimum = Optimum(
         case=solver.engine.program.data.name,
         minimised=problem.objective,
         unit=problem.objective.unit(solver.engine.program.data),
@@ -160,6 +158,7 @@ def optimum_of(
         evaluations=evaluations,
         notes=tuple(_notes(solver, [problem.objective, *active], evaluated)),
     )
+    return optimum, evaluated
 
 
 def _start(solver: Solver, run: SearchRun) -> Start:
@@ -200,7 +199,7 @@ def _notes(solver: Solver, terms: Sequence[Term], evaluated: EvaluatedDesign) ->
         if not points or term.output is None or tired_link(term.output):
             continue
         point, _ = points[0]
-        followed = solver.evaluator.values.of(term.output)
+        followed = solver.values.of(term.output)
         place = point.where(followed.size)
         rate = float(
             followed.slopes(point.share, list(point.guess), evaluated.p, point.xi, place)[0]

@@ -201,13 +201,13 @@ def optimise(
     }
     parts = None if target is None else Checkpoint.of(target, "search")
     identity = {**question.words(solver.engine), **options}
-    runs = one_by_one if executor is None else by_executor(executor)
+    runs = one_by_one if executor is None else partial(by_executor, executor)
     with parts.opened(identity, resume=resume, force=force) if parts else nullcontext():
         search = Search(solver, parts, runs, progress or (lambda *_: None), starts, screen)
         found: Optimum | Front
         if isinstance(minimise, str):
             problem = Problem(question.objectives[0], question.constraints)
-            found = search.solve(problem, search.begin(problem))
+            found, _ = search.solve(problem, search.begin(problem))
         else:
             found = FrontSearch(search, points).front()
         if parts is not None:

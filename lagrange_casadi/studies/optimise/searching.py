@@ -9,21 +9,17 @@ from dataclasses import asdict, dataclass, field
 from functools import partial
 from typing import TypeAlias, TypeVar
 
-import numpy as np
-
 from ...base.arrays import Json
 from ...base.files import digest
 from ...base.interrupts import uninterrupted
-from ...engine.program import Program
 from ...errors import ClusterError, NoDesignError
 from ...results.store.untrusted import parsed
 from ..checkpoint import Checkpoint
-from ..designs.engine import DesignEngine
 from ..sweep.design_blocks import Queue
 from ..sweep.workers import Asked, Executor, by_workers, check_same, made, making
 from .descent import Descent
 from .optimum import Optimum, optimum_of
-from .problem import Problem, Question
+from .problem import Problem
 from .sampled_design import EvaluatedDesign
 from .search_run import STOPPED, SearchRun
 from .solver import SearchTask, Solver
@@ -53,30 +49,23 @@ def one_by_one(
         yield number, Descent(solver, task, partial(progress, number)).go()
 
 
-def by_executor(executor: Executor) -> Runs:
-    """Runs of tasks by the workers of an executor; those that an interrupt stopped are left out."""
+def by_executor(
+    executor: Executor, solver: Solver, tasks: Sequence[SearchTask], progress: Progress
+) -> Iterator[tuple[int, SearchRun]]:
+    """The runs of tasks, by the workers of an executor; those that an interrupt stopped are left
+    out.
+    """
+    call = pickle.dumps(partial(Solver.of, solver.question, solver.engine))
+    words = solver.question.words(solver.engine)
 
-    def runs(
-        solver: Solver, tasks: Sequence[SearchTask], progress: Progress
-    ) -> Iterator[tuple[int, SearchRun]]:
-        question = solver.question
-        call = pickle.dumps(partial(_solver, solver.engine.program, question))
-        words = question.words(solver.engine)
+    def asked(start: int, _stop: int) -> Asked:
+        return Asked(_descend, (call, words, tasks[start]))
 
-        def asked(start: int, _stop: int) -> Asked:
-            return Asked(_descend, (call, words, tasks[start]))
-
-        for done in by_workers(executor, asked, Queue((k, k + 1) for k in range(len(tasks)))):
-            if done is not None:
-                number, _, run = done
-                progress(number, run.objective, run.excess)
-                yield number, run
-
-    return runs
-
-
-def _solver(program: Program, question: Question) -> Solver:
-    return Solver.of(question, DesignEngine.compiled(program, question.timing, question.method))
+    for done in by_workers(executor, asked, Queue((k, k + 1) for k in range(len(tasks)))):
+        if done is not None:
+            number, _, run = done
+            progress(number, run.objective, run.excess)
+            yield number, run
 
 
 def _descend(call: bytes, words: Mapping[str, Json], task: SearchTask) -> SearchRun:
@@ -111,7 +100,7 @@ class Search:
         """The designs to start from: those that are named, or the best of many; ``count`` of them,
         or as many as were asked for.
         """
-        before = self.solver.evaluator.evaluations
+        before = self.solver.evaluations
         if not isinstance(self.starts, int):
             found = named(self.solver, self.starts)
         else:
@@ -119,11 +108,13 @@ class Search:
             found = chosen(
                 self.solver, problem, self.screened, self.starts if count is None else count
             )
-        self.evaluations += self.solver.evaluator.evaluations - before
+        self.evaluations += self.solver.evaluations - before
         return found
 
-    def solve(self, problem: Problem, starts: Sequence[EvaluatedDesign]) -> Optimum:
-        """The best that ways from some starts lead to.
+    def solve(
+        self, problem: Problem, starts: Sequence[EvaluatedDesign]
+    ) -> tuple[Optimum, EvaluatedDesign]:
+        """The best that ways from some starts lead to, and its design.
 
         Raises :class:`NoDesignError` where an interrupt came before the first.
         """
@@ -131,17 +122,8 @@ class Search:
         if not runs:
             raise NoDesignError("optimise: stopped before a design was evaluated")
         self.evaluations += sum(run.evaluations + 1 for run in runs)
-        best = min(runs, key=lambda run: run.merit)
-        stopped = self.stopped
         return self.whole(
-            lambda: optimum_of(
-                self.solver,
-                problem,
-                runs,
-                self.solver.evaluator.evaluate(np.array(best.end)),
-                self.evaluations,
-                stopped=stopped,
-            )
+            partial(optimum_of, self.solver, problem, runs, self.evaluations, stopped=self.stopped)
         )
 
     def whole(self, action: Callable[[], _T]) -> _T:

@@ -41,7 +41,7 @@ def named(solver: Solver, starts: Sequence[Mapping[str, float]]) -> list[Evaluat
                 raise DeclarationError(f"starts: {name} = {value!r} is not within its bounds")
             p[box.places[k]] = value
         rows.append(box.all(np.clip(box.share(p), 0.0, 1.0)))
-    return _with_results(solver, found := [solver.evaluator.evaluate(p) for p in rows], found)
+    return _with_results(solver, found := [solver.evaluate(p) for p in rows], found)
 
 
 def screen(solver: Solver, count: int) -> list[EvaluatedDesign]:
@@ -54,7 +54,7 @@ def screen(solver: Solver, count: int) -> list[EvaluatedDesign]:
     box = solver.question.box
     points = qmc.Sobol(len(box.names), scramble=False, bits=32).fast_forward(1).random(count)
     shares = np.vstack([np.clip(box.share(box.p), 0.0, 1.0)[None], points])
-    return solver.evaluator.screen(np.array([box.all(x) for x in shares]))
+    return solver.screen(np.array([box.all(x) for x in shares]))
 
 
 def chosen(
@@ -71,7 +71,7 @@ def chosen(
         if len(found) == count:
             break
         if all(np.abs(share - box.share(other.p)).max() >= _APART for other in found):
-            closely = solver.evaluator.evaluate(one.p)
+            closely = solver.evaluate(one.p)
             if closely.has_result:
                 found.append(closely)
     return _with_results(solver, found, screened)
