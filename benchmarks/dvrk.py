@@ -23,7 +23,7 @@ from lagrange_casadi import Measurements, Scene, SpatialMechanism, identify
 from lagrange_casadi.base.arrays import Array
 from lagrange_casadi.motion import polynomial
 from lagrange_casadi.studies.identification import Comparison
-from lagrange_casadi.studies.identification.measurements import Filter
+from lagrange_casadi.studies.identification.measurements import filtered as low_passed
 
 RATE = 200.0
 """Rows a second."""
@@ -163,13 +163,13 @@ def smoothed(table: Array) -> Measurements:
     return Measurements(np.arange(len(table)) / RATE, columns, noise)
 
 
-def row(title: str, compared: Comparison, low_pass: Filter | None) -> str:
+def row(title: str, compared: Comparison, cutoff: float | None) -> str:
     """Return differences over measured torques, of root mean squares [%], by motor."""
     found = []
     for name in compared.measured:
         both = np.column_stack([compared.measured[name], compared.model[name]])
         known = np.asarray(np.isfinite(both).all(axis=1))
-        both = both if low_pass is None else low_pass(both, known)
+        both = both if cutoff is None else low_passed(compared.t, cutoff, both, known)
         shown = known & (compared.t >= TRIM) & (compared.t < TRIM + SHOWN)
         measured, model = both[shown].T
         found.append(100.0 * float(np.linalg.norm(measured - model) / np.linalg.norm(measured)))
@@ -188,9 +188,8 @@ def report(clone: Path) -> str:
     ):
         first, second = map(prepared, tables)
         found = identify(scene, first, cutoff=cutoff, trim=TRIM, consistent=consistent)
-        low_pass = None if cutoff is None else Filter(first.t, cutoff)
-        rows.append(row(f"fitted, {words}", found.comparison, low_pass))
-        rows.append(row(f"other, {words}", found.validate(second, TRIM), low_pass))
+        rows.append(row(f"fitted, {words}", found.comparison, cutoff))
+        rows.append(row(f"other, {words}", found.validate(second, TRIM), cutoff))
     for name, numbers in PUBLISHED.items():
         rows.append(f"| {name}, published | {' | '.join(map(str, numbers))} |")
     return "\n".join([f"{len(found.base)} of {len(found.values)} parameters", "", *rows])

@@ -15,10 +15,11 @@ import numpy.typing as npt
 
 from ...base.arrays import Array
 from ...base.brief import Brief
+from ...base.units import differs
 from ...errors import AccuracyError, DeclarationError, UnknownNameError
 from .base import Base, Ranking, base_of, triangle
 from .consistency import Consistency
-from .measurements import Filter, Measurements, check_units
+from .measurements import Measurements, filtered
 from .regressor import DrivenMotion, Regressor
 
 _HUBER = 1.345
@@ -92,7 +93,7 @@ class Data:
 
     ``defaults`` are values of all parameters. ``noise`` are standard deviations of the quantities,
     NaN if they are to be estimated, and ``prior`` those of first values, by the place of a
-    parameter among the unknown ones.
+    parameter among the unknown ones. At ``cutoff`` [Hz] a filter halves the power, if there is one.
     """
 
     regressor: Regressor
@@ -101,7 +102,7 @@ class Data:
     defaults: Array
     noise: tuple[float, ...]
     prior: Mapping[int, float]
-    low_pass: Filter | None
+    cutoff: float | None
 
     @classmethod
     def of(
@@ -114,7 +115,9 @@ class Data:
         cutoff: float | None = None,
     ) -> Data:
         """Take the motion and the quantities of measurements, whose units are checked."""
-        check_units(measurements, regressor.expected)
+        for name, unit in regressor.expected.items():
+            if wrong := differs(measurements.units.get(name, unit), unit):
+                raise DeclarationError(f"{measurements.name}: column '{name}' is in {wrong}")
         columns, names = measurements.columns, regressor.quantities
         if lost := [name for name in names if name not in columns]:
             raise UnknownNameError("column", lost, columns, place=measurements.name)
@@ -125,7 +128,7 @@ class Data:
             defaults,
             tuple(measurements.noise.get(name, math.nan) for name in names),
             {regressor.unknown.index(name): spread for name, spread in (prior or {}).items()},
-            None if cutoff is None else Filter(measurements.t, cutoff),
+            cutoff,
         )
 
     @cached_property
@@ -159,8 +162,8 @@ class Data:
         raw = self.measured - model
         known = np.isfinite(raw) & np.isfinite(slopes).all(axis=2)
         both = np.concatenate([raw[..., None], slopes], axis=2)
-        if self.low_pass is not None:
-            both = self.low_pass(both, known)
+        if self.cutoff is not None:
+            both = filtered(self.motion.t, self.cutoff, both, known)
         quantity, instant = np.nonzero(known.T)
         prior, numbers = list(self.prior), np.arange(len(self.prior))
         away = (self.theta - theta)[prior]
@@ -174,7 +177,7 @@ class Data:
 
     def filtered(self, rows: Rows) -> Array:
         """Filter the derivatives of rows once more."""
-        if self.low_pass is None:
+        if self.cutoff is None:
             return rows.columns
         found: Array = rows.columns.copy()
         some = rows.quantity < self.measured.shape[1]
@@ -182,7 +185,7 @@ class Data:
         whole: Array = np.zeros((*known.shape, found.shape[1]))
         at = rows.instant[some], rows.quantity[some]
         known[at], whole[at] = True, found[some]
-        found[some] = self.low_pass(whole, known)[at]
+        found[some] = filtered(self.motion.t, self.cutoff, whole, known)[at]
         return found
 
 
@@ -197,7 +200,7 @@ def nonlinear(data: Data, z: Array) -> dict[str, tuple[str, ...]]:
     known = np.flatnonzero(np.isfinite(data.motion.acceleration).all(axis=1))
     few = np.sort(generator.permutation(known)[:_LOOKED])
     motion, z = DrivenMotion(*(part[few] for part in data.motion)), z[few]
-    some = replace(data, motion=motion, measured=data.measured[few], low_pass=None)
+    some = replace(data, motion=motion, measured=data.measured[few], cutoff=None)
     theta, names, scales = data.theta, data.regressor.unknown, data.ranking.scales
     before = _slopes(some, theta, z)
     changes = np.zeros((theta.size, theta.size), bool)
@@ -390,7 +393,7 @@ def _covariance(data: Data, rows: Rows, noise: Array, system: System, robust: bo
     """
     chosen, root = list(system.sure.chosen), 1.0 / noise[rows.quantity]
     part = system.inverse @ system.inverse.T
-    if data.low_pass is not None:
+    if data.cutoff is not None:
         again = triangle(data.filtered(rows)[:, chosen] * root[:, None])
         part = part @ (again.T @ again) @ part
     if robust:

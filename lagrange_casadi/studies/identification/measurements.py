@@ -224,15 +224,6 @@ class Measurements(Brief):
         return derivatives(found, self.t)
 
 
-def check_units(measurements: Measurements, expected: Mapping[str, str]) -> None:
-    """Raise :class:`.DeclarationError` for a column in a unit of another quantity than that of its
-    ``expected`` SI unit.
-    """
-    for name, unit in expected.items():
-        if wrong := differs(measurements.units.get(name, unit), unit):
-            raise DeclarationError(f"{measurements.name}: column '{name}' is in {wrong}")
-
-
 @public
 def read_measurements(
     path: str | Path,
@@ -328,29 +319,24 @@ def _going_on(angle: Array) -> Array:
     return angle
 
 
-@dataclass(frozen=True, eq=False)
-class Filter:
-    """A low-pass filter without delay: means of neighbours, weighed by a Gaussian of their time.
+def filtered(t: Array, cutoff: float, columns: Array, known: npt.NDArray[np.bool_]) -> Array:
+    """Filter columns (n, ..., k) over times ``t`` (n,), of which only those count that are
+    ``known`` (n, ...), by a low-pass filter without delay: means of neighbours, weighed by a
+    Gaussian of their time.
 
     At ``cutoff`` [Hz] it halves the power. It is linear, so what holds between columns holds
     between filtered columns. Times need not be even.
     """
-
-    t: Array
-    cutoff: float
-
-    def __call__(self, columns: Array, known: npt.NDArray[np.bool_]) -> Array:
-        """Filter columns (n, ..., k), of which only those count that are ``known`` (n, ...)."""
-        width = _DECAY / self.cutoff
-        values = np.where(known[..., None], columns, 0.0)
-        total, weights = np.zeros_like(values), np.zeros(known.shape)
-        for shift in range(self.t.size):
-            apart = self.t[shift:] - self.t[: self.t.size - shift]
-            if apart.min() > _REACH * width:
-                break
-            weight = np.exp(-0.5 * (apart / width) ** 2)
-            before, after = slice(0, self.t.size - shift), slice(shift, None)
-            for here, there in [(before, after), (after, before)][: 1 + (shift > 0)]:
-                total[here] += (weight * values[there].T).T
-                weights[here] += (weight * known[there].T).T
-        return total / np.where(weights > 0.0, weights, 1.0)[..., None]
+    width = _DECAY / cutoff
+    values = np.where(known[..., None], columns, 0.0)
+    total, weights = np.zeros_like(values), np.zeros(known.shape)
+    for shift in range(t.size):
+        apart = t[shift:] - t[: t.size - shift]
+        if apart.min() > _REACH * width:
+            break
+        weight = np.exp(-0.5 * (apart / width) ** 2)
+        before, after = slice(0, t.size - shift), slice(shift, None)
+        for here, there in [(before, after), (after, before)][: 1 + (shift > 0)]:
+            total[here] += (weight * values[there].T).T
+            weights[here] += (weight * known[there].T).T
+    return total / np.where(weights > 0.0, weights, 1.0)[..., None]
