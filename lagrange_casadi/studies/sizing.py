@@ -5,9 +5,8 @@ own mass brings.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 
 import casadi as ca
 
@@ -186,7 +185,7 @@ class _Search:
     ``criteria``, and so is a ``deflection`` over a link's length.
     """
 
-    evaluated: Callable[..., Solution]
+    scene: Scene
     request: Request
     template: Template[Description]
     slots: dict[str, _Slot]
@@ -194,7 +193,6 @@ class _Search:
     criteria: Mapping[str, str]
     deflection: float | None
     left: Mapping[str, str]
-    outputs: Sequence[str]
     sections: Sequence[str]
     evaluations: int = 0
 
@@ -245,9 +243,8 @@ class _Search:
                         " each its own"
                     )
         sections = [f"section:{name}" for name in having]
-        evaluated, enough = partial(solve, scene), (factor, criteria, deflection)
-        left = (remaining, scene.wanted, sections)
-        return cls(evaluated, request, described, slots, *enough, *left)
+        enough = factor, criteria, deflection
+        return cls(scene, request, described, slots, *enough, remaining, sections)
 
     @property
     def fixed(self) -> Mapping[str, float]:
@@ -258,7 +255,7 @@ class _Search:
         """The loads with profiles by their numbers."""
         self.evaluations += 1
         asked = replace(self.request, parameters=self.values(choice), wanted=self.sections)
-        return self.evaluated(asked, certificate=False)
+        return solve(self.scene, asked, certificate=False)
 
     def values(self, choice: Mapping[str, int]) -> dict[str, float]:
         found = dict(self.fixed)
@@ -343,9 +340,9 @@ class _Search:
 
     def result(self, choice: Mapping[str, int]) -> Sizing:
         """Result of a choice, evaluated anew with its certificate."""
-        wanted = [*self.outputs, *self.sections]
+        wanted = [*self.scene.wanted, *self.sections]
         asked = replace(self.request, parameters=self.values(choice), wanted=wanted)
-        solution = self.evaluated(asked)
+        solution = solve(self.scene, asked)
         links = []
         for name, k in choice.items():
             slot, mass = self.slots[name], solution.description.bodies[name].mass

@@ -75,26 +75,21 @@ def read_tolerance(
     """
     if name not in parameters:
         raise UnknownNameError("parameter", name, parameters)
-    unit = parameters[name].unit
+    unit, text = parameters[name].unit, value.strip() if isinstance(value, str) else ""
     try:
-        found = _number(value, unit, nominal)
+        if text.endswith("%"):
+            found = real(text[:-1]) / 100.0 * abs(nominal)
+        elif text and not typed(text)[1]:
+            found = real(text)
+        else:
+            found = number(value, unit)
+        if not 0.0 < found < np.inf:
+            raise ValueError
     except ValueError:
         raise DeclarationError(
             f"tolerance of '{name}': expected a number above 0 in {unit or '1'}, or a text such as"
             f" '0.1mm', '0.5deg', '2g' or '1%', got {value!r}"
         ) from None
-    return found
-
-
-def _number(value: float | str, unit: str, nominal: float) -> float:
-    if isinstance(value, str) and value.strip().endswith("%"):
-        found = real(value.strip()[:-1]) / 100.0 * abs(nominal)
-    elif isinstance(value, str) and not typed(value)[1]:
-        found = real(value)
-    else:
-        found = number(value, unit)
-    if not 0.0 < found < np.inf:
-        raise ValueError
     return found
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from functools import partial
 
 import numpy as np
 
@@ -97,19 +97,11 @@ def tool_deflection(
     if not links:
         raise DeclarationError("tool_deflection: no link has a beam=, so all are rigid")
 
-    asked: dict[str, Any] = {
-        "t": t,
-        "over": over,
-        "wanted": [f"section:{link}" for link in links],
-        "elastic": links,
-    }
-
-    def sections(forces: Mapping[str, float]) -> Solution:
-        return evaluate(
-            pushed, parameters={**(parameters or {}), **forces}, certificate=False, **asked
-        )
-
-    plain = sections({})
+    wanted = [f"section:{link}" for link in links]
+    solved = partial(
+        evaluate, pushed, t=t, over=over, wanted=wanted, certificate=False, elastic=links
+    )
+    plain = solved(parameters=parameters)
     # A force elsewhere pulls a bar, and bends none.
     members = {link: Member.of(plain, link, spun=link != body) for link in links}
     beams = {
@@ -119,7 +111,7 @@ def tool_deflection(
     push = _size(plain, links)
     by_link = {link: np.zeros((plain.t.size, len(pushes))) for link in links}
     for k, name in enumerate(pushes):
-        unit = sections({name: push})
+        unit = solved(parameters={**(parameters or {}), name: push})
         for link, beam in beams.items():
             u, weights = nodes(beam.member)
             section = beam.member.at(u)
