@@ -5,8 +5,9 @@ own mass brings.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import casadi as ca
 
@@ -185,7 +186,7 @@ class _Search:
     ``criteria``, and so is a ``deflection`` over a link's length.
     """
 
-    scene: Scene
+    evaluated: Callable[..., Solution]
     request: Request
     template: Template[Description]
     slots: dict[str, _Slot]
@@ -193,6 +194,7 @@ class _Search:
     criteria: Mapping[str, str]
     deflection: float | None
     left: Mapping[str, str]
+    outputs: Sequence[str]
     sections: Sequence[str]
     evaluations: int = 0
 
@@ -243,8 +245,9 @@ class _Search:
                         " each its own"
                     )
         sections = [f"section:{name}" for name in having]
-        enough = factor, criteria, deflection
-        return cls(scene, request, described, slots, *enough, remaining, sections)
+        evaluated, enough = partial(solve, scene), (factor, criteria, deflection)
+        left = (remaining, scene.wanted, sections)
+        return cls(evaluated, request, described, slots, *enough, *left)
 
     @property
     def fixed(self) -> Mapping[str, float]:
@@ -255,7 +258,7 @@ class _Search:
         """The loads with profiles by their numbers."""
         self.evaluations += 1
         asked = replace(self.request, parameters=self.values(choice), wanted=self.sections)
-        return solve(self.scene, asked, certificate=False)
+        return self.evaluated(asked, certificate=False)
 
     def values(self, choice: Mapping[str, int]) -> dict[str, float]:
         found = dict(self.fixed)
@@ -340,9 +343,9 @@ class _Search:
 
     def result(self, choice: Mapping[str, int]) -> Sizing:
         """Result of a choice, evaluated anew with its certificate."""
-        wanted = [*self.scene.wanted, *self.sections]
+        wanted = [*self.outputs, *self.sections]
         asked = replace(self.request, parameters=self.values(choice), wanted=wanted)
-        solution = solve(self.scene, asked)
+        solution = self.evaluated(asked)
         links = []
         for name, k in choice.items():
             slot, mass = self.slots[name], solution.description.bodies[name].mass

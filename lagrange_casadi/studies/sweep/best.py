@@ -31,8 +31,7 @@ _RELATIONS = {
     ">": (False, False, True),
     "=": (False, True, False),
 }
-"""Whether what is below a number, equal to the number, or above the number, has a relation to it.
-"""
+"""Truth of relations to a number for what is below the number, equal to it, and above it."""
 
 _CONDITION = re.compile(r"\s*([^<>=!]+?)\s*(<=|>=|!=|==|<|>|=)\s*([^<>=!]+?)\s*")
 

@@ -61,8 +61,8 @@ _SLOPES_COST = 3e-4
 
 @dataclass(frozen=True, eq=False)
 class Harvest:
-    """What is kept of an ``engine``'s outcomes, whatever the designs are; it is made anew where a
-    worker is sent its fields.
+    """Columns that are kept of an ``engine``'s outcomes, whatever the designs are. A worker that is
+    sent the fields makes another one.
 
     By the ``whole`` graph designs are looked at closely. Section forces are kept at ``ratios``.
     ``safety`` and ``life`` are the links of which these are kept, ``by`` the parameters by which
