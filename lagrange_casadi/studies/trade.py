@@ -57,9 +57,10 @@ _NIL, _TICK = 1e-9, 1e-9
 _ALIKE = 1.2
 """Ratio of times that are held to be equal: other work of the machine changes them by so much."""
 
-COMPILED = (
+METHODS = (
     *(
-        EvaluationMethod(backend, precision)
+        EvaluationMethod(backend, precision, newton)
+        for newton in (None, 1)
         for precision in PRECISIONS
         for backend in ("lanes", "c")
     ),
@@ -68,16 +69,11 @@ COMPILED = (
         for flags in ("-O1", "-march=native -ffp-contract=fast", "-ffast-math")
     ),
     EvaluationMethod("lanes", flags="-ffast-math"),
-    *(
-        EvaluationMethod(backend, precision, newton=1)
-        for precision in PRECISIONS
-        for backend in ("lanes", "c")
-    ),
     *(EvaluationMethod(backend, newton=2) for backend in ("lanes", "c")),
     *(EvaluationMethod("c", table=accuracy) for accuracy in (1e-3, 1e-6, 1e-9, 1e-12)),
     *(EvaluationMethod("c", "single", table=accuracy) for accuracy in (1e-3, 1e-5)),
+    EvaluationMethod("vm"),
 )
-METHODS = (*COMPILED, EvaluationMethod("vm"))
 
 
 @dataclass(frozen=True)

@@ -64,7 +64,7 @@ class Consistency(Graphs):
             matrix = mass if body.centre is None else _pseudo_inertia(body, space, theta, first)
             if _depends(matrix, theta):
                 found[name] = ca.densify(matrix)
-        parameters = [list(program.data.parameters.values())[k] for k in numbers]
+        parameters = [program.data.parameters[name] for name in regressor.unknown]
         return cls(
             ca.Function("matrices", [theta], list(found.values())),
             tuple(found),

@@ -26,7 +26,7 @@ from ..designs.engine import DesignEngine
 from ..peaks_between import wanted_for
 from ..sweep.meanings import WAYS
 from .sampled_design import EvaluatedDesign
-from .search_run import HOLDS
+from .search_run import merit
 from .terms import Constraint, Term, tired_link
 
 
@@ -120,10 +120,7 @@ class Problem:
 
     def merit(self, evaluated: EvaluatedDesign) -> tuple[float, float]:
         """Key by which designs are compared: the better one has less."""
-        if not evaluated.has_result:
-            return math.inf, math.inf
-        excess = self.excess(evaluated)
-        return (excess if excess > HOLDS else 0.0), evaluated.values[self.objective]
+        return merit(self.excess(evaluated), evaluated.values[self.objective])
 
     def scales(self, evaluated: EvaluatedDesign) -> tuple[float, ...]:
         """Scales of the terms, objective first."""

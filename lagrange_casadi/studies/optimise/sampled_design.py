@@ -14,6 +14,7 @@ from ...base.arrays import Array
 from ...base.quantities import Output
 from ...base.status import Status
 from ...engine.codegen.peak_search import Listed
+from ...engine.mobility import load_points_of
 from ..designs.engine import DesignEngine
 from ..designs.outcome import History
 from .terms import Term
@@ -142,12 +143,7 @@ class SampledDesign:
         """Place of :meth:`.PointValues.of` for a curve of :meth:`.SectionLaw.curves`: after the
         ends come the load points.
         """
-        outputs = self.engine.program.outputs
-        load_points = sum(
-            1
-            for o in outputs
-            if o.group == "station" and o.part == output.part and o.member == "station"
-        )
+        load_points = len(load_points_of(self.engine.program.outputs, output.part))
         return curve - 1 if output.group == "section" and 2 <= curve < 2 + 2 * load_points else 0
 
 

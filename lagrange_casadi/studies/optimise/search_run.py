@@ -39,9 +39,16 @@ class SearchRun:
     @property
     def merit(self) -> tuple[float, float]:
         """Key by which runs are compared: the better one has less."""
-        if math.isnan(self.excess):
-            return math.inf, math.inf
-        return (self.excess if self.excess > HOLDS else 0.0), rounded(self.objective, self.scale)
+        return merit(self.excess, rounded(self.objective, self.scale))
+
+
+def merit(excess: float, objective: float) -> tuple[float, float]:
+    """Key by which designs are compared: the better one has less. Without a result the excess is
+    NaN.
+    """
+    if math.isnan(excess):
+        return math.inf, math.inf
+    return (excess if excess > HOLDS else 0.0), objective
 
 
 def rounded(objective: float, scale: float) -> float:
