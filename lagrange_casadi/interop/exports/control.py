@@ -102,9 +102,7 @@ def _to_inputs(source: Source) -> Iterator[str]:
     """Yield statements that give the inputs of an instant."""
     c = source.contract
     for value, name in (*([("time", "time")] if c.timed else []), *_moved(c)):
-        # Rates and accelerations have no rest.
-        for member, part in zip(c.parts_of(name), c.split(value), strict=False):
-            yield f"    inputs.{member} = {part};"
+        yield from c.given("    inputs.", name, value)
 
 
 def _from_inputs(source: Source) -> Iterator[str]:

@@ -29,12 +29,19 @@ from .fmu_wrapper import wrapper
 _HEADERS = ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h")
 
 
-def check_tools() -> None:
-    """Raise :class:`LagrangeCasadiError` where FMPy is missing, :class:`CompilerError` where a C
+def tools() -> tuple[Any, Compiler]:
+    """Return FMPy and the C compiler.
+
+    Raises :class:`LagrangeCasadiError` where FMPy is missing, :class:`CompilerError` where a C
     compiler is.
     """
-    _fmpy()
-    _compiler()
+    check_installed("FMPy", "an FMU", "fmu")
+    import fmpy
+    import fmpy.validation
+
+    if (compiler := find_compiler()) is None:
+        raise no_compiler("an FMU needs a C compiler", "c")
+    return fmpy, compiler
 
 
 def fmu(source: Source, by: str = "") -> dict[str, bytes]:
@@ -45,7 +52,7 @@ def fmu(source: Source, by: str = "") -> dict[str, bytes]:
     :class:`CompilerError` for what it refuses, :class:`StoreError` for what FMPy finds wrong, and
     :class:`.DeclarationError` for a coordinate that goes back and forth.
     """
-    fmpy, prefix = _fmpy(), source.contract.prefix
+    (fmpy, compiler), prefix = tools(), source.contract.prefix
     if by not in ("", "time"):
         _check_way(source, by)
     description = Description(source, (f"{prefix}.c", f"{prefix}_fmi2.c"), by)
@@ -56,7 +63,7 @@ def fmu(source: Source, by: str = "") -> dict[str, bytes]:
         f"{prefix}.c": source.code,
         f"{prefix}_fmi2.c": wrapper(description),
     }
-    library, compiler = f"{prefix}{fmpy.sharedLibraryExtension}", _compiler()
+    library = f"{prefix}{fmpy.sharedLibraryExtension}"
     flags = compiler.flags("".join(sources.values()))
     command = [*compiler.command, *flags, *description.sources, "-o", library, "-lm"]
     files = {f"sources/{file}": text.encode() for file, text in sources.items()}
@@ -94,20 +101,6 @@ def _check_way(source: Source, by: str) -> None:
             f"an FMU by '{by}': this coordinate stops or reverses, so it does not determine the"
             " time; use 'time'"
         )
-
-
-def _fmpy() -> Any:
-    check_installed("FMPy", "an FMU", "fmu")
-    import fmpy
-    import fmpy.validation
-
-    return fmpy
-
-
-def _compiler() -> Compiler:
-    if (found := find_compiler()) is None:
-        raise no_compiler("an FMU needs a C compiler", "c")
-    return found
 
 
 def _check_loads(library: Path, compiler: Compiler) -> None:

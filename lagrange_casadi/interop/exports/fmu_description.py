@@ -21,7 +21,7 @@ from ...base.quantities import Output, motion_names
 from ...base.units import known
 from ...engine.program import Program
 from ...version import __version__
-from ..portable.contract import Contract, Member, Setting
+from ..portable.contract import Contract, Member
 from ..portable.golden import motions_at
 from ..portable.source import Source
 from ..portable.text import template
@@ -214,7 +214,7 @@ def _table(title: str, members: Sequence[Member]) -> str:
         return ""
     rows = "".join(
         f"<tr><td><code>{escape(m.path)}</code></td><td>{escape(m.unit)}</td><td>{escape(m.meaning)}</td>"
-        f"<td>{escape(m.range if isinstance(m, Setting) else m.sign)}</td></tr>\n"
+        f"<td>{escape(m.sign or m.range)}</td></tr>\n"
         for m in members
     )
     return (
@@ -241,8 +241,7 @@ def _unit(name: str) -> str:
 def _variable(place: int, one: Variable) -> str:
     """Return the element of a variable."""
     m = one.member
-    low, high = (m.low, m.high) if isinstance(m, Setting) else (None, None)
-    numbers = {"min": low, "max": high, "start": one.start}
+    numbers = {"min": m.low, "max": m.high, "start": one.start}
     finite = {key: x for key, x in numbers.items() if x is not None and math.isfinite(x)}
     variable = _tag(
         "ScalarVariable",

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
-
 import numpy as np
 
 from ...base.table_writers import csv_text
@@ -24,10 +22,9 @@ def golden_vectors(description: Description) -> str:
     """
     source, inputs = description.source, description.members("input")
     golden, program = source.golden, source.exported.program
-    times = [golden.times[:1]]
-    for start, stop in itertools.pairwise(golden.times):
-        times.append(np.linspace(start, stop, golden.steps + 1)[1:])
-    instants = np.concatenate(times)
+    last = len(golden.times) - 1
+    places = np.arange(last * golden.steps + 1) / golden.steps
+    instants = np.interp(places, np.arange(last + 1), golden.times)
     moved = motions_at(program, instants, source.p)
     given = [moved[m.source].tolist() for m in inputs]
     heads = [m.path for m in (*inputs, *description.contract.outputs)]

@@ -7,7 +7,6 @@ from collections.abc import Iterable
 
 from ...base.quantities import motion_names
 from ...engine.codegen.printer import literal
-from ..portable.contract import Contract
 from ..portable.text import indented, template
 from .fmu_description import Description
 
@@ -16,10 +15,6 @@ def wrapper(description: Description) -> str:
     """The C that makes a unit of the exported functions."""
     source, c = description.source, description.contract
     wide = literal("double")
-    carried = (
-        ["memcpy(model.loops, state->model.loops, sizeof model.loops);"] if source.iterated else []
-    )
-    carried += ["model.closed = state->model.closed;"] if source.exported.newton is not None else []
     values = [(v.member.path, v.start) for v in description.variables if v.start is not None]
     return template(
         "fmu.c",
@@ -39,7 +34,11 @@ def wrapper(description: Description) -> str:
             for k, m in enumerate(c.settings)
         ),
         prepared="&model, &parameters" if c.settings else "&model",
-        carried="".join(f"  if (state->begun) {line}\n" for line in carried),
+        carried="".join(
+            f"  if (state->begun) memcpy(&model.{m}, &state->model.{m}, sizeof model.{m});\n"
+            for m, *_ in source.model
+            if m in ("loops", "closed")
+        ),
         reached=_reached(description),
         **_between(description),
         give=indented(_given(description)),
@@ -97,14 +96,8 @@ def _given(description: Description) -> Iterable[str]:
     values["time"] = "state->time"
     for m in c.inputs:
         if not m.rest_of:
-            yield from _put(c, m.source, values[m.source])
+            yield from c.given("inputs->", m.source, values[m.source])
     yield f"return {c.words['P']}_OK;"
-
-
-def _put(c: Contract, name: str, value: str) -> Iterable[str]:
-    """Statements that give an input a double; in single precision also what that leaves of it."""
-    for member, part in zip(c.parts_of(name), c.split(value), strict=False):  # rates have no rest
-        yield f"inputs->{member} = {part};"
 
 
 def _reached(description: Description) -> str:
@@ -124,7 +117,7 @@ def _reached(description: Description) -> str:
         **source.words,
         coordinate=description.by.replace("*/", ""),
         value=" + ".join(f"(double) inputs->{member}" for member in c.parts_of(name)),
-        put=indented(_put(c, name, "place")),
+        put=indented(c.given("inputs->", name, "place")),
         sign="" if rising else "-",
         start=wide(data.span[0]),
         stop=wide(data.span[1]),

@@ -18,7 +18,7 @@ from ...engine.instants.evaluation_method import EvaluationMethod
 from ...errors import PathError
 from ...model.scene import Scene
 from ...version import __version__
-from ..portable.contract import Contract, Member, Setting
+from ..portable.contract import Contract, Member
 from ..portable.data import LARGEST
 from ..portable.header import header
 from ..portable.source import Source
@@ -27,8 +27,8 @@ from ..portable.wasm import check_zig
 from ..portable.wasm import wasm as for_pages
 from .companions import companions
 from .control import control as for_control
-from .fmu import check_tools
 from .fmu import fmu as archive
+from .fmu import tools
 from .structured_text import structured_text as blocks
 
 MANIFEST = Manifest(
@@ -122,7 +122,7 @@ def export(
     method = EvaluationMethod("auto", precision, newton, table)
     check_writable(folder, folder=True)
     if fmu:
-        check_tools()
+        tools()
     if wasm:
         check_zig("WebAssembly")
     source = sourced(
@@ -164,7 +164,7 @@ def _manifest(source: Source) -> dict[str, Json]:
     """Contents of the folder, for programs: names, units and places of all members."""
     agreed = source.contract
 
-    def rows(members: Sequence[Member | Setting]) -> list[dict[str, str]]:
+    def rows(members: Sequence[Member]) -> list[dict[str, str]]:
         return [
             {"name": m.name, "path": m.path, "unit": m.unit, "meaning": m.meaning} for m in members
         ]

@@ -7,7 +7,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 
 import casadi as ca
 import numpy as np
@@ -24,16 +23,16 @@ from ..portable.naming import distinct
 from ..portable.source import Source
 from ..portable.text import indented, template
 
+_WRITTEN_HERE = "FLOOR CEIL ATAN2 FMOD REMAINDER COPYSIGN"
 _LIBRARY = {
     **codes("SQRT SIN COS TAN ASIN ACOS ATAN EXP"),
+    **{code: f"LC_{name}" for code, name in codes(_WRITTEN_HERE).items()},
     **dict.fromkeys((ca.OP_POW, ca.OP_CONSTPOW), "EXPT"),
     ca.OP_FABS: "ABS",
     ca.OP_LOG: "LN",
     ca.OP_FMIN: "MIN",
     ca.OP_FMAX: "MAX",
 }
-_WRITTEN_HERE = codes("FLOOR CEIL ATAN2 FMOD REMAINDER COPYSIGN")
-_LIBRARY |= {code: f"LC_{name}" for code, name in _WRITTEN_HERE.items()}
 _WRITTEN = {
     **INFIX,
     ca.OP_INV: "1.0 / {0}",
@@ -66,7 +65,7 @@ def structured_text(source: Source) -> dict[str, str]:
         raise DeclarationError("structured text: expected double precision and no table")
     given = _identifiers("in", (m.name for m in c.inputs))
     taken = _identifiers("out", (m.name for m in c.outputs))
-    instant, motion = _Block.of(source, given), _Block.of(source, given)
+    instant, motion = _Block(source, given), _Block(source, given)
     body, moved = list(instant.instant()), list(motion.call("law"))
     between = list(instant.between())
     moved += [f"{given[c.moment[0]]} := t;"] if c.timed else []
@@ -93,30 +92,26 @@ def structured_text(source: Source) -> dict[str, str]:
     return {f"{c.prefix}.st": template("structured.st", **words)}
 
 
-@dataclass(eq=False)
 class _Block:
     """A function block under way: the elements of vectors that functions take and fill, its arrays
-    by their sizes, and the names of its tables.
+    by their sizes, and the names of its tables. Its inputs are named as they are ``given``, and
+    parameters are numbers.
     """
 
-    source: Source
-    vectors: dict[str, list[str]]
-    arrays: dict[str, int] = field(default_factory=dict)
-    tables: dict[tuple[float, ...], str] = field(default_factory=dict)
-
-    @classmethod
-    def of(cls, source: Source, given: Mapping[str, str]) -> _Block:
-        """Begin a block; its inputs are named as they are ``given``, and parameters are numbers."""
-        c, exported = source.contract, source.exported
-        vectors = {"at": ["t"], "moment": [given.get(member, "0.0") for member in c.moment]}
+    def __init__(self, source: Source, given: Mapping[str, str]) -> None:
+        c, exported, self.source = source.contract, source.exported, source
+        self.arrays: dict[str, int] = {}
+        self.tables: dict[tuple[float, ...], str] = {}
+        self.vectors = {name: [name] for name in ("size", "iterated", "rule")} | {"at": ["t"]}
+        self.vectors["moment"] = [given.get(member, "0.0") for member in c.moment]
         for name, members in zip(("d", "rate", "acceleration"), c.motion, strict=True):
-            vectors[name] = [given[member] for member in members]
-        vectors["parameters"] = [_number(value) for value in source.p]
+            self.vectors[name] = [given[member] for member in members]
+        self.vectors["parameters"] = [_number(value) for value in source.p]
         for name in exported.called(PREPARE):
             found = np.ravel(exported.functions[name](source.p).full())
-            vectors[CALLS[name].fills[0]] = [_number(value) for value in found]
-        vectors["y"] = vectors["evaluated"] = [f"y[{k}]" for k in range(len(exported.columns))]
-        return cls(source, vectors | {name: [name] for name in ("size", "iterated", "rule")})
+            self.vectors[CALLS[name].fills[0]] = [_number(value) for value in found]
+        y = [f"y[{k}]" for k in range(len(exported.columns))]
+        self.vectors |= {"y": y, "evaluated": y}
 
     def declared(self) -> Iterator[str]:
         """Yield declarations of variables."""

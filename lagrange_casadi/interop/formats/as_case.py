@@ -142,7 +142,6 @@ class CaseText:
             self.lines.append(f"{name} = m.point_mass({json.dumps(body.name)}, {mass})")
             return
         base, tip = self.places.between[body.name]
-        assert body.inertia is not None
         axes, centre = body.frame.axes, self.places.place(body.frame.at(body.centre))
         own = Frame(np.array(base), self.places.link_axes(body.name))
         arguments: list[object] = [json.dumps(body.name)]
@@ -218,8 +217,7 @@ class CaseText:
 
     def directions(self, *axes: Array) -> list[object]:
         """Return the arguments for one direction or two."""
-        names = ("axis", "second")[: len(axes)]
-        return [direction(*one) for one in zip(axes, names, strict=True)]
+        return [direction(*one) for one in zip(axes, ("axis", "second"), strict=False)]
 
     def coupling(self, one: Coupling) -> None:
         """Declare a coupling as a pair of gears."""
@@ -252,15 +250,7 @@ class CaseText:
             lift = (body.weight - 1.0) * self.model.gravity
             if body.mass and np.any(lift):
                 point = self.places.point(body.name, body.frame.at(body.centre))
-                mass = self.places.mass(body)
-                force = [
-                    f"{key}={text_of(one)} * {mass}"
-                    for key, one in zip("xyz", lift.tolist(), strict=True)
-                    if one
-                ]
-                self.call(
-                    "m.force", json.dumps(self.places.own(f"{body.name}_lift")), point, *force
-                )
+                self.force(f"{body.name}_lift", point, lift, self.places.mass(body))
 
     def drives(self) -> None:
         """Declare what is known of drives, and name frames without mass."""
@@ -283,11 +273,14 @@ class CaseText:
         for body, sign in ((joint.child, ""), (joint.parent, "-")):
             if body != GROUND:
                 along = short(self.places.link_axes(body).T @ near.axes[:, 2], 1.0)
-                parts = zip("xyz", along.tolist(), strict=True)
-                force = [f"{axis}={text_of(part)} * {sign}{pull}" for axis, part in parts if part]
-                name = json.dumps(self.places.own(f"{one.joint}_spring_{body}"))
-                point = self.places.point(body, near.place)
-                self.call("m.force", name, point, *force, "turning=True")
+                point, name = self.places.point(body, near.place), f"{one.joint}_spring_{body}"
+                self.force(name, point, along, f"{sign}{pull}", "turning=True")
+
+    def force(self, name: str, point: Call, along: Array, size: str, *more: str) -> None:
+        """Declare a force at a point, along a vector times a size."""
+        parts = zip("xyz", along.tolist(), strict=True)
+        given = [f"{axis}={text_of(part)} * {size}" for axis, part in parts if part]
+        self.call("m.force", json.dumps(self.places.own(name)), point, *given, *more)
 
     def end(self) -> None:
         """End with the motion of each drive."""

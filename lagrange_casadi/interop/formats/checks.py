@@ -79,7 +79,7 @@ def _body(model: Model, body: Body, welded: set[str], wrong: dict[str, str]) -> 
     what = f"body '{body.name}'"
     if body.mass < 0.0:
         raise model.refuse(body.where, f"{what}: a mass of {body.mass:g} kg is impossible")
-    inertia = np.zeros((3, 3)) if body.inertia is None else (body.inertia + body.inertia.T) / 2.0
+    inertia = (body.inertia + body.inertia.T) / 2.0
     if not np.any(inertia) and body.mass > 0.0 and not body.point:
         if body.name not in welded:
             words = f"{what} has a mass of {body.mass:g} kg and no inertia"
@@ -198,7 +198,7 @@ def spinning(model: Model) -> list[str]:
             continue
         places = [one.on_parent if one.parent == body.name else one.on_child for one in mine]
         first, second = (frame.place for frame in places)
-        if not (length := float(np.linalg.norm(second - first))) or body.inertia is None:
+        if not (length := float(np.linalg.norm(second - first))):
             continue
         along, beside = (second - first) / length, body.centre - first
         off = float(np.linalg.norm(beside - (beside @ along) * along))

@@ -15,7 +15,7 @@ from ...base.arrays import Array
 from ...errors import shown
 from .file_elements import Element
 from .file_frames import Frame
-from .record import GROUND, MOVES, Body, Coupling, Joint, Law, Model
+from .record import GROUND, MOVES, Body, Coupling, Joint, Law, Model, slender
 
 SCHEMA, VERSION = "lagrange_casadi.model", 1
 """Name of the format in a file."""
@@ -191,13 +191,13 @@ def _body(one: _Object) -> None:
     name, mass, given = one.word("name"), one.amount("mass"), one.given.get("inertia")
     if name == GROUND:
         raise one.refuse("body 'ground': the name is taken")
-    centre, frame, inertia, rod = one.numbers("centre", (0.0, 0.0, 0.0)), one.frame(), None, None
+    centre, inertia, rod = one.numbers("centre", (0.0, 0.0, 0.0)), np.zeros((3, 3)), None
     places = one.table("places")
     named = {place: places.numbers(place, what="place") for place in places.given}
     if "rod" in one.given:
         start, end = one.rows("rod", 2, "two places")
-        body = Body.slender(name, mass, (start, end))
-        centre, inertia, rod = body.centre, body.inertia, body.rod
+        centre, inertia = slender(mass, start, end)
+        rod = start, end
     elif isinstance(given, list) and all(isinstance(row, list) for row in given):
         expected = "three moments or three rows, symmetric"
         inertia = one.rows("inertia", 3, expected)
@@ -207,7 +207,7 @@ def _body(one: _Object) -> None:
         inertia = np.diag(one.numbers("inertia"))
     if not isinstance(point := one.given.get("point", False), bool):
         raise one.model.refuse(one.at("point"), f"expected true or false, got {shown(point)}")
-    one.model.add(Body, name, one.where, mass, centre, inertia, frame, named, rod, point)
+    one.model.add(Body, name, one.where, mass, centre, inertia, one.frame(), named, rod, point)
 
 
 def _joint(one: _Object) -> None:

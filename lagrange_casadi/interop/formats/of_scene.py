@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 
 import casadi as ca
@@ -20,7 +21,7 @@ from ...results.solution import Solution
 from ...studies.evaluate import evaluate
 from .file_frames import Frame, turned
 from .motion_texts import ONE_NUMBER, LawError, parsed
-from .record import Body, Joint, Law, Model
+from .record import Body, Joint, Law, Model, slender
 
 SAMPLES = 1001
 """Instants of a motion that has no expression, as one from measured points."""
@@ -103,14 +104,14 @@ def _frame(solution: Solution, body: str) -> Frame:
 def _body(name: str, body: BodyNumbers, frame: Frame, space: bool) -> Body:
     whole, zero = body.whole, np.zeros(3)
     if body.length is None:
-        return Body(name, whole.mass, zero, None, frame, point=True)
+        return Body(name, whole.mass, zero, np.zeros((3, 3)), frame, point=True)
     if (
         body.density is not None
         and [*map(len, body.density.cells)] == [1]
         and not any(one.mass for one in body.slices)
     ):
-        rod = Body.slender(name, whole.mass, (zero, np.array([body.length, 0.0, 0.0])))
-        return Body(name, whole.mass, rod.centre, rod.inertia, frame, rod=rod.rod)
+        rod = zero, np.array([body.length, 0.0, 0.0])
+        return Body(name, whole.mass, *slender(whole.mass, *rod), frame, rod=rod)
     inertia = np.array(whole.inertia)
     if body.density is None and not space:
         # In a plane one moment is given; two more that a body may have.
@@ -132,12 +133,10 @@ def _joint(name: str, numbers: JointNumbers) -> Joint:
 
 def _law(law: ca.Function, span: tuple[float, float, int]) -> Law:
     """Return a motion as text, or as samples where it has none."""
-    try:
+    with suppress(DeclarationError, LawError):
         ((text,),) = interpret(law, [["t"]], _TEXT)
         parsed(text)
         return Law(text)
-    except (DeclarationError, LawError):
-        pass
     times = np.linspace(span[0], span[1], SAMPLES)
     values: Array = law(times[None, :]).full()[0]
     return Law(samples=(tuple(times.tolist()), tuple(values.tolist())))

@@ -5,13 +5,14 @@ how bodies are moved to close them.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from heapq import heapify, heappop, heappush
 from types import SimpleNamespace
 from typing import Any, TypeVar
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from ...base.arrays import Array
 from .file_frames import Frame, turned
@@ -79,24 +80,31 @@ def posed(model: Model, posture: Mapping[str, float]) -> Model:
     """Return a model whose bodies are where coordinates of its tree of joints, zero in the
     reference posture, put them.
     """
-    found, bodies = {GROUND: Frame()}, dict(model.bodies)
-    for joint in outward([*model.joints.values()], {GROUND}):
-        if joint.parent in found and joint.child in found:
+    found, reached = replace(model, bodies=dict(model.bodies)), {GROUND}
+    for joint in outward([*model.joints.values()], reached):
+        if joint.parent in reached and joint.child in reached:
             continue
-        across = joint.on_parent
+        across = Frame()
         for name, (_, move, axis) in zip(joint.coordinates, MOVES[joint.kind], strict=True):
             if axis == "w":
                 across, axis = across.then(_relative(model, joint)), "z"
             along, q = np.eye(3)["xyz".index(axis)], posture.get(name, 0.0)
             slide, turn = (q, 0.0) if move == "slide" else (joint.lead * q / math.tau, q)
             across = across.then(Frame(slide * along, turned(turn * along)))
-        across = across.then(joint.on_child.inverse())
-        near, far = joint.parent, joint.child
-        if far in found:
-            near, far, across = far, near, across.inverse()
-        found[far] = found[near].then(across)
-        bodies[far] = replace(bodies[far], frame=found[far])
-    return replace(model, bodies=bodies)
+        _put(found, joint, across, reached)
+    return found
+
+
+def _put(model: Model, joint: Joint, across: Frame, reached: Collection[str]) -> str:
+    """Move the body of a joint that is not reached where the child's frame is ``across`` the
+    parent's; return the body's name.
+    """
+    across = joint.on_parent.then(across).then(joint.on_child.inverse())
+    near, far = joint.parent, joint.child
+    if far in reached:
+        near, far, across = far, near, across.inverse()
+    model.bodies[far] = replace(model.bodies[far], frame=model.frame_of(near).then(across))
+    return far
 
 
 def _axes(kind: str, *moves: str) -> str:
@@ -171,14 +179,11 @@ def apart(model: Model, joint: Joint) -> tuple[float, float]:
         return gap, 0.0
     if joint.kind == "universal":
         return gap, abs(float(known.axes[2, 2]))
-    if joint.kind == "screw":
-        away = (float(known.place[2]) - joint.lead * about_z(known) / math.tau) / (
-            joint.lead or 1.0
-        )
-        gap = math.hypot(gap, joint.lead * (away - round(away)))
+    if joint.kind == "screw" and joint.lead:
+        off = float(known.place[2]) - joint.lead * about_z(known) / math.tau
+        gap = math.hypot(gap, math.remainder(off, joint.lead))
     if not turns:
-        sine = math.hypot(*(known.axes - known.axes.T)[[0, 0, 1], [1, 2, 2]].tolist()) / 2.0
-        return gap, math.atan2(sine, (float(np.trace(known.axes)) - 1.0) / 2.0)
+        return gap, float(Rotation.from_matrix(known.axes).magnitude())
     tilt = math.hypot(float(known.axes[0, 2]), float(known.axes[1, 2]))
     return gap, math.atan2(tilt, float(known.axes[2, 2])) if turns == 1 else 0.0
 
@@ -215,17 +220,10 @@ def hang(model: Model) -> None:
     for joint in outward([*model.joints.values()], placed):
         if joint.parent in placed and joint.child in placed:
             continue
-        near, far = model.frames(joint)
-        relative = _closest(model, joint)
-        moves = joint.child if joint.parent in placed else joint.parent
-        if moves == joint.child:
-            frame = near.then(relative).then(joint.on_child.inverse())
-        else:
-            frame = far.then(relative.inverse()).then(joint.on_parent.inverse())
         gap, angle = open_joints[joint.name]
-        model.bodies[moves] = replace(model.bodies[moves], frame=frame)
+        moved = _put(model, joint, _closest(model, joint), placed)
         model.notes.append(
-            f"body '{moves}' is moved so that joint '{joint.name}' is closed, which is open by"
+            f"body '{moved}' is moved so that joint '{joint.name}' is closed, which is open by"
             f" {gap:.3g} m and {angle:.3g} rad in the file"
         )
 

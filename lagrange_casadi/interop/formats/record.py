@@ -81,7 +81,7 @@ class Body:
     name: str
     mass: float
     centre: Array
-    inertia: Array | None
+    inertia: Array
     frame: Frame = field(default_factory=Frame)
     places: Mapping[str, Array] = field(default_factory=dict)
     rod: tuple[Array, Array] | None = None
@@ -90,12 +90,12 @@ class Body:
     strange: bool = False
     where: str = ""
 
-    @classmethod
-    def slender(cls, name: str, mass: float, rod: tuple[Array, Array]) -> Body:
-        """Return a uniform rod between two places."""
-        along = rod[1] - rod[0]
-        inertia = mass / 12.0 * (along @ along * np.eye(3) - np.outer(along, along))
-        return cls(name, mass, (rod[0] + rod[1]) / 2.0, inertia, rod=rod)
+
+def slender(mass: float, start: Array, end: Array) -> tuple[Array, Array]:
+    """Return the centre and the inertia of a uniform rod between two places."""
+    along = end - start
+    inertia = mass / 12.0 * (along @ along * np.eye(3) - np.outer(along, along))
+    return (start + end) / 2.0, inertia
 
 
 @dataclass(frozen=True, eq=False)
@@ -360,7 +360,7 @@ class Model:
         on, frame = self.spot(found[1])
         at = self.frame_of(on).then(frame).then(at)
         words = f"{found[1]}_payload"
-        name = self.add(Body, words, "", mass, np.zeros(3), None, at, point=True)
+        name = self.add(Body, words, "", mass, np.zeros(3), np.zeros((3, 3)), at, point=True)
         self.attach(name, on, "weld", "")
         self.payloads.append(name)
 

@@ -8,7 +8,6 @@ import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TypeVar
 
 import casadi as ca
 import numpy as np
@@ -38,7 +37,8 @@ class Member:
     """A member of a struct: its name in C, the full name of what it holds, and what a reader must
     know of it.
 
-    ``wrapped`` is true for an angle that is known up to whole turns.
+    ``wrapped`` is true for an angle that is known up to whole turns. A parameter has a ``default``,
+    and a range from ``low`` to ``high``.
     """
 
     name: str
@@ -48,6 +48,9 @@ class Member:
     sign: str = ""
     range: str = ""
     wrapped: bool = False
+    default: float = math.nan
+    low: float = -math.inf
+    high: float = math.inf
 
     @property
     def rest_of(self) -> str:
@@ -65,18 +68,6 @@ class Member:
     def path(self) -> str:
         """Path in a file of results."""
         return self.source.replace(":", "/")
-
-
-@dataclass(frozen=True)
-class Setting(Member):
-    """A parameter, with its default and its range."""
-
-    default: float = math.nan
-    low: float = -math.inf
-    high: float = math.inf
-
-
-_Member = TypeVar("_Member", bound=Member)
 
 
 @dataclass(frozen=True)
@@ -100,7 +91,7 @@ class Contract(Brief):
     prefix: str
     name: str
     precision: Precision
-    settings: tuple[Setting, ...]
+    settings: tuple[Member, ...]
     inputs: tuple[Member, ...]
     outputs: tuple[Member, ...]
     links: tuple[LinkContract, ...]
@@ -161,6 +152,13 @@ class Contract(Brief):
         first = f"({self.prefix}_real) {value}"
         rest = f"({self.prefix}_real) ({value} - (double) {first})"
         return [first, rest] if self.rests else [first]
+
+    def given(self, struct: str, name: str, value: str) -> Iterator[str]:
+        """Yield the statements of C that give the inputs of a ``struct``, by a full name, a
+        variable that is a double; rates and accelerations have no rest.
+        """
+        for member, part in zip(self.parts_of(name), self.split(value), strict=False):
+            yield f"{struct}{member} = {part};"
 
     @property
     def moved(self) -> list[list[str]]:
@@ -234,7 +232,7 @@ def contract(
     )
 
 
-def _named(struct: Sequence[_Member], kind: str = "") -> tuple[_Member, ...]:
+def _named(struct: Sequence[Member], kind: str = "") -> tuple[Member, ...]:
     """Members of a struct, with their names in C."""
     names = members({m.source: _short(m.source, kind) for m in struct})
     return tuple(replace(m, name=names[m.source]) for m in struct)
@@ -259,10 +257,10 @@ def _timed(program: Program) -> bool:
     )
 
 
-def _setting(key: str, parameter: ParameterNumbers) -> Setting:
+def _setting(key: str, parameter: ParameterNumbers) -> Member:
     low, high = parameter.low, parameter.high
     begin, end = "[" if math.isfinite(low) else "(", "]" if math.isfinite(high) else ")"
-    return Setting(
+    return Member(
         name="",
         source=key,
         unit=parameter.unit,
@@ -338,14 +336,7 @@ def _where(output: Output) -> str:
 
 def _brief(meaning: str) -> str:
     """A meaning as it is said of a part that was named."""
-    for words in (
-        " of the joint's coordinate",
-        " of the joint",
-        " of the drive",
-        ", continuous in time",
-    ):
-        meaning = meaning.replace(words, "")
-    return meaning
+    return re.sub(" of the joint('s coordinate)?| of the drive|, continuous in time", "", meaning)
 
 
 def _range(solution: Solution, output: Output, largest: float) -> str:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from importlib import resources
 
 import numpy as np
 
 from ...base.lookups import lookup
 from ...base.vocabulary import Precision
+from ...engine.codegen.compiler import written
+from ...engine.codegen.printer import Format, function_name
+from ...engine.instants.cycle_table import CycleTable
 from ...errors import SizeError
 from .exported_program import ExportedProgram
 
@@ -17,6 +19,20 @@ LARGEST: dict[Precision, int] = {"double": 16_000_000, "single": 64_000}
 """Bytes of a table, unless more are allowed: what a large and what a small machine has room for."""
 
 _LINE = 6
+
+_ALONE = {
+    r"^(#.*|typedef REAL real;)\n": "",
+    r"restrict ": "",
+    r"\b(BLOCK|PACK)\b": "1",
+    r"\bTILE\b": "32",
+    r"\bWEIGHTS\b": "6",
+    r"\bFACTORS\b": "4",
+    # A number becomes a long by one instruction of a small machine, a long long by a library's
+    # arithmetic of doubles.
+    r"long long": "long",
+    r"\breal\b": "casadi_real",
+}
+"""What reads a table, where instants come one by one and C has no macros."""
 
 
 def check_size(exported: ExportedProgram, limit: int) -> None:
@@ -45,50 +61,26 @@ def table_text(exported: ExportedProgram) -> str:
     cycle = exported.cycle
     if cycle is None:
         return ""
-    text = (resources.files("lagrange_casadi.engine.codegen") / "interpolate.c").read_text()
-    text = re.sub(r"^#.*\n", "", text, flags=re.MULTILINE)
-    text = (
-        text.replace("typedef REAL real;\n", "")
-        .replace("*restrict ", "*")
-        .replace("* restrict ", "* ")
-    )
-    for word, value in (
-        ("BLOCK", "1"),
-        ("PACK", "1"),
-        ("TILE", "32"),
-        ("WEIGHTS", "6"),
-        ("FACTORS", "4"),
-    ):
-        text = re.sub(rf"\b{word}\b", value, text)
-    # A number becomes a long by one instruction of a small machine, a long long by a library's
-    # arithmetic of doubles.
-    text = text.replace("long long", "long")
-    text = re.sub(r"\breal\b", "casadi_real", text)
-    if exported.precision == "single":
-        text = text.replace("floor(", "floorf(")
-    layout = cycle.layout
+    text = written("interpolate.c")
+    for pattern, words in _ALONE.items():
+        text = re.sub(pattern, words, text, flags=re.MULTILINE)
+    text = text.replace("floor(", f"{function_name('floor', exported.precision)}(")
     reals = {"cell": cycle.cell, "slopes": cycle.slopes, "coefficients": cycle.coefficients}
     for name, values in reals.items():
-        numbers = values.ravel().astype(float)
-        text += _array("casadi_real", name, map(exported.number, numbers))
-    for name, values in {"order": layout.order, "runs": layout.runs}.items():
+        text += _array("casadi_real", name, map(exported.number, values.ravel().tolist()))
+    for name, values in {"order": cycle.layout.order, "runs": cycle.layout.runs}.items():
         text += _array("int", name, map(str, values.ravel().tolist()))
     return "\n" + text
 
 
-def table_call(exported: ExportedProgram) -> Iterable[str]:
-    """Statements that read the columns ``y`` from the table, for what the
-    drive's own graph gave.
-    """
-    cycle = exported.cycle
-    assert cycle is not None
+def table_call(cycle: CycleTable, number: Format) -> Iterable[str]:
+    """Statements that read the columns ``y`` from a table, for what the drive's own graph gave."""
     phase = f"drive[{2 + cycle.turns}]"
     yield (
         f"interpolate(1, 1, &{phase}, drive + 1, drive + 2, {cycle.nodes}, cell,"
         f" {cycle.coefficients.shape[1]}, coefficients, {len(cycle.columns)}, order, slopes,"
         f" {len(cycle.layout.runs)}, runs, y);"
     )
-    number = exported.number
     for k in np.flatnonzero(cycle.drift):
         yield f"y[{k}] = y[{k}] + {number(cycle.drift[k])}*(drive[0] - {phase});"
 

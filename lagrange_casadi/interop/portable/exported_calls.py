@@ -5,7 +5,7 @@ fills, for every language, and how C calls it.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import casadi as ca
 
@@ -66,26 +66,16 @@ _POINTERS |= {name: f"&{name}" for name in ("size", "iterated", "rule", "time")}
 """Vectors of C that are no arrays of the function that calls."""
 
 
-@dataclass(eq=False)
-class CalledInC:
-    """Statements of C that call ``functions`` by way of ``arg`` and ``res``, of which only those
-    are set that differ from the call before. ``pointers`` are vectors that have other names in C.
+def call(functions: Mapping[str, ca.Function], name: str, **pointers: str) -> Iterator[str]:
+    """Yield the statements of C that call one of some functions by way of ``arg`` and ``res``;
+    ``pointers`` are vectors that have other names in C.
     """
+    yield from given(functions, name, **pointers)
+    yield f"{name}(arg, res);"
 
-    functions: Mapping[str, ca.Function]
-    pointers: dict[str, str] = field(default_factory=dict)
-    _set: dict[str, str] = field(default_factory=dict)
 
-    def call(self, name: str) -> Iterator[str]:
-        """Yield the statements of a call."""
-        yield from self.given(name)
-        yield f"{name}(arg, res);"
-
-    def given(self, name: str) -> Iterator[str]:
-        """Yield the statements before a call: a vector without elements is 0."""
-        known = _POINTERS | self.pointers
-        for place, vector, size in CALLS[name].places(self.functions[name]):
-            pointer = known.get(vector, vector) if size else "0"
-            if self._set.get(place) != pointer:
-                self._set[place] = pointer
-                yield f"{place} = {pointer};"
+def given(functions: Mapping[str, ca.Function], name: str, **pointers: str) -> Iterator[str]:
+    """Yield the statements before a call: a vector without elements is 0."""
+    known = _POINTERS | pointers
+    for place, vector, size in CALLS[name].places(functions[name]):
+        yield f"{place} = {known.get(vector, vector) if size else '0'};"

@@ -23,6 +23,7 @@ from ...engine.codegen.printer import Format, literal
 from ...engine.codegen.stages import controlled
 from ...engine.dead_centres import CLOSURES
 from ...engine.instants.cycle_table import CycleTable
+from ...engine.instants.from_table import drive_of
 from ...engine.instants.tabulate import still
 from ...engine.program import Program
 from ...engine.section_function import SectionInputs, section
@@ -103,55 +104,57 @@ def exported(
     precision: Precision,
     newton: int | None,
     p: Array,
-    read: tuple[Program, CycleTable] | None,
+    cycle: CycleTable | None,
 ) -> ExportedProgram:
-    """The program of a graph; ``read`` are the graph of its drive alone and a table, to be read for
-    parameters ``p``.
+    """The program of a graph; ``cycle`` is a table to be read for parameters ``p``, by the graph of
+    the drive alone.
     """
-    evaluated = program if read is None else read[0]
-    fixed = read is not None
+    fixed = cycle is not None
+    evaluated = drive_of(program) if fixed else program
     stages = controlled(evaluated, precision, tuple(p.tolist()) if fixed else None)
     hidden = {*evaluated.checks("turns").values(), *evaluated.checks("multiplier").values()}
     kept = [k for k in range(len(evaluated.columns)) if k not in hidden]
-    columns = tuple(evaluated.columns[k] for k in kept) if read is None else program.columns
+    columns = program.columns if fixed else tuple(evaluated.columns[k] for k in kept)
     constants, instant = hoisted(stages.instant, kept)
     symbols = program.data.symbols
-    gapped = read is None and any(
+    gapped = not fixed and any(
         isinstance(column, Check) and column.kind in ("gap", "open") for column in columns
     )
     sound, positive = _sound(program, symbols, precision)
-    functions = {
+    given = {
         "law": stages.law,
         "count": stages.drive,
         "constants_of": constants,
         "matter": _mass_properties(program, symbols, extent_first=gapped),
+        "beyond": program.laws.beyond,
     }
-    if fixed:  # numbers, which were checked when they were fixed
-        functions = {name: _fixed(function, p) for name, function in functions.items()}
-    else:
-        functions["sound"] = sound
-    ends = program.laws.beyond
-    if ends is not None:
-        functions["beyond"] = _fixed(ends, p) if fixed else ends
-    functions["instant"] = instant
-    if program.rules:
-        functions["status"] = _status(
-            program, columns, precision, newton, gapped, p if fixed else None
-        )
-    if stages.loops is not None:
-        functions["loops"] = stages.loops
-    if read is None and stages.closing is not None:
-        functions["closing"] = stages.closing
+    if fixed:  # the parameters are numbers, which were checked when they were fixed
+        given = {name: f if f is None else _fixed(f, p) for name, f in given.items()}
     of_sections, sections = _sections(program, symbols, precision)
-    filled = {name: f for name, f in (functions | of_sections).items() if f.size1_out(0)}
+    functions = (
+        given
+        | of_sections
+        | {
+            "sound": None if fixed else sound,
+            "instant": instant,
+            "status": (
+                _status(program, columns, precision, newton, gapped, p if fixed else None)
+                if program.rules
+                else None
+            ),
+            "loops": stages.loops,
+            "closing": stages.closing,
+        }
+    )
+    filled = {name: f for name, f in functions.items() if f is not None and f.size1_out(0)}
     return ExportedProgram(
         program,
         precision,
         filled,
         columns,
         newton,
-        cycle=None if read is None else read[1],
-        still={} if read is None else still(program, tuple(p.tolist())),
+        cycle=cycle,
+        still=still(program, tuple(p.tolist())) if fixed else {},
         sections=sections,
         positive=positive,
         extent_first=gapped,

@@ -19,8 +19,8 @@ from ...errors import DeclarationError
 from ...model.wanted_names import SENSITIVITY
 from ...results.sensitivity.jacobian import total
 from ...results.sensitivity.series import at_instants
-from .contract import Contract, Setting
-from .exported_calls import CalledInC
+from .contract import Contract, Member
+from .exported_calls import call
 from .text import comment, indented, member, number_rows, numbers, template
 
 FUNCTION = "slopes_of"
@@ -40,7 +40,7 @@ class ExportedSlopes:
     give at the instants of the self-test, each within ``off`` (outputs, parameters).
     """
 
-    by: tuple[Setting, ...]
+    by: tuple[Member, ...]
     function: Any
     expected: Array
     off: Array
@@ -108,7 +108,7 @@ def code(c: Contract, slopes: ExportedSlopes) -> str:
 def _given(c: Contract, slopes: ExportedSlopes) -> Iterator[str]:
     for name, members in zip(("d", "rate", "acceleration"), c.motion, strict=True):
         yield from (f"{name}[{k}] = inputs->{member};" for k, member in enumerate(members))
-    yield from CalledInC({FUNCTION: slopes.function}).call(FUNCTION)
+    yield from call({FUNCTION: slopes.function}, FUNCTION)
 
 
 def selftest_numbers(slopes: ExportedSlopes) -> str:

@@ -23,7 +23,7 @@ from ...engine.instants.evaluation_method import EvaluationMethod
 from ...engine.program import Program
 from ...results.solution import Solution
 from ...results.verification.accuracy import estimate
-from .contract import FAINT, REST, Contract, Member, largest_of
+from .contract import FAINT, REST, Contract, largest_of
 
 INSTANTS = 9
 RATIOS = (0.0, 0.5, 1.0)
@@ -77,9 +77,13 @@ def golden(
     t = solution.t[chosen]
     moved = {"time": t} | motions_at(program, t, p)
     inputs = np.stack([_input(moved, m.source, precision) for m in contract.inputs], axis=1)
-    outputs = np.stack([exact.series[m.source][chosen] for m in contract.outputs], axis=1)
+    whole, found = (
+        np.stack([one.series[m.source] for m in contract.outputs]) for one in (exact, solution)
+    )
+    outputs, gaps = whole[:, chosen].T, found - whole
+    turns = math.tau * np.round(gaps / math.tau)
+    saved = np.abs(gaps - [[m.wrapped] for m in contract.outputs] * turns).max(axis=1)
     rounding = np.array([ALLOWED * errors[m.source] for m in contract.outputs])
-    saved = np.array([_saved(m, solution, exact) for m in contract.outputs])
     off = rounding + 2.0 * saved + least * np.abs(outputs).max(axis=0)
     names = contract.table.forces
     forces = np.zeros((t.size, len(contract.links), len(RATIOS), len(names)))
@@ -96,7 +100,7 @@ def golden(
             )
     inputs_off = _MOTION * ROUNDING[precision] * np.abs(inputs).max(axis=0)
     steps = stride if program.newton is not None else 1
-    worst = _worst(contract, exact, rounding / ALLOWED + saved)
+    worst = _worst(contract, np.abs(whole).max(axis=1), rounding / ALLOWED + saved)
     return Golden(t, steps, inputs, outputs, forces, inputs_off, off, forces_off, worst)
 
 
@@ -146,24 +150,16 @@ def remainder(values: Array) -> Array:
     return np.asarray(values - values.astype(np.float32))
 
 
-def _worst(contract: Contract, exact: Solution, errors: Array) -> tuple[float, str]:
-    """The largest of some errors, of an output's largest value, where that is more than rounding of
-    others of its unit.
+def _worst(contract: Contract, peaks: Array, errors: Array) -> tuple[float, str]:
+    """The largest of some errors, of an output's largest value, which are its ``peaks``, where that
+    is more than rounding of others of its unit.
     """
-    peaks = [float(np.abs(exact.series[m.source]).max()) for m in contract.outputs]
     largest = largest_of((m.unit for m in contract.outputs), peaks)
     rows = zip(errors, peaks, contract.outputs, strict=True)
     return max(
-        ((float(e) / p, m.name) for e, p, m in rows if p > FAINT * largest[m.unit]),
+        ((float(e / p), m.name) for e, p, m in rows if p > FAINT * largest[m.unit]),
         default=(0.0, ""),
     )
-
-
-def _saved(member: Member, solution: Solution, exact: Solution) -> float:
-    """Error of a quantity by a method's steps or table."""
-    gaps = solution.series[member.source] - exact.series[member.source]
-    gaps -= math.tau * np.round(gaps / math.tau) if member.wrapped else 0.0
-    return float(np.abs(gaps).max())
 
 
 def motions_at(program: Program, t: Array, p: Array) -> dict[str, Array]:

@@ -62,7 +62,10 @@ def header(source: Source) -> str:
         ),
         outputs=_rows(c, c.outputs),
         links=_links(source) + (types(c, source.slopes) if source.slopes else ""),
-        model="\n".join(f"  {line}" for line in _model(source)),
+        model="\n".join(
+            f"  {c.prefix}_real {name}[{count}];" if kind == "real" else f"  {kind} {name};"
+            for name, kind, count in source.model
+        ),
         for_parameters=", for parameters, or 0 for the defaults" if c.settings else "",
         anew=(
             " Starts again: iterated loops start from the scene's first instant."
@@ -125,14 +128,6 @@ def _parameters(source: Source) -> str:
 
 def _rows(c: Contract, members: Iterable[Member]) -> str:
     return "\n".join(member(c.prefix, m.name, m.comment) for m in members)
-
-
-def _model(source: Source) -> list[str]:
-    real = f"{source.contract.prefix}_real"
-    return [
-        f"{real} {name}[{count}];" if kind == "real" else f"{kind} {name};"
-        for name, kind, count in source.model
-    ]
 
 
 def _links(source: Source) -> str:

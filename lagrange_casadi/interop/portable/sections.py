@@ -96,9 +96,8 @@ def about(table: Table, force: str) -> str:
 def comparisons(table: Table) -> str:
     """Comparisons of each force in the self-test."""
     many = len(table.forces)
-    places = [f"{many}*i" if k == 0 else f"{many}*i + {k}" for k in range(many)]
     return "\n".join(
         f'      compare("{table.row("section", force).long_name}", row[{k}], (double)'
-        f" forces.{force}, forces_off[{place}], 0);"
-        for k, (force, place) in enumerate(zip(table.forces, places, strict=True))
+        f" forces.{force}, forces_off[{many}*i + {k}], 0);"
+        for k, force in enumerate(table.forces)
     )

@@ -15,7 +15,7 @@ from ...engine.derive import derived
 from ...engine.identity import declaration
 from ...engine.instants.determinacy import determinate
 from ...engine.instants.evaluation_method import EvaluationMethod
-from ...engine.instants.from_table import drive_of, table_of
+from ...engine.instants.from_table import table_of
 from ...errors import CertificateError, DeclarationError
 from ...model.expressions import check_line
 from ...model.scene import Scene
@@ -87,13 +87,11 @@ def sourced(
             backend="vm",
             certificate=False,
         )
-    read = (
-        None if table is None else (drive_of(compiled), table_of(compiled, solution.t, p, method))
-    )
+    cycle = None if table is None else table_of(compiled, solution.t, p, method)
     agreed = contract(compiled, name, precision, solution, indeterminate, fixed=table is not None)
-    emitted = exported(compiled, precision, newton, p, read)
+    emitted = exported(compiled, precision, newton, p, cycle)
     check_size(emitted, largest)
-    guess = compiled.newton.guess if compiled.newton is not None and read is None else ()
+    guess = compiled.newton.guess if compiled.newton is not None and cycle is None else ()
     vectors = golden(whole, agreed, solution, exact, p)
     slopes = exported_slopes(compiled, agreed, by, p, exact.t, vectors.times) if by else None
     if slopes is not None:

@@ -5,6 +5,7 @@ functions, along the deepest calls.
 from __future__ import annotations
 
 import functools
+import math
 import re
 
 _DEFINITION = re.compile(
@@ -52,10 +53,6 @@ def _kept(slots: int) -> int:
 
 def _slots(declarators: str) -> int:
     """Number of slots of a declaration's variables."""
-    found = 0
-    for word in re.split(r",(?![^\[{(]*[\]})])", declarators):
-        count = 1
-        for size in re.findall(r"\[([^\]]+)\]", word.partition("=")[0]):
-            count *= eval(size, {"__builtins__": {}})
-        found += count
-    return found
+    words = re.split(r",(?![^\[{(]*[\]})])", declarators)
+    arrays = (re.findall(r"\[([^\]]+)\]", word.partition("=")[0]) for word in words)
+    return sum(math.prod(eval(n, {"__builtins__": {}}) for n in sizes) for sizes in arrays)

@@ -18,7 +18,7 @@ from ...engine.dead_centres import POINTS
 from ...model.beyond_ends import BEYOND
 from .contract import Contract
 from .data import table_call, table_text
-from .exported_calls import INSTANT, MODEL, PREPARE, CalledInC
+from .exported_calls import INSTANT, MODEL, PREPARE, call, given
 from .exported_program import ExportedProgram
 from .text import indented, template
 
@@ -30,11 +30,6 @@ class Statements:
     contract: Contract
     exported: ExportedProgram
     guess: Sequence[float]
-
-    @property
-    def _upper(self) -> str:
-        """First part of constants."""
-        return self.contract.words["P"]
 
     def put(self) -> Iterator[str]:
         """Yield what fills the outputs from the columns."""
@@ -49,35 +44,34 @@ class Statements:
 
     def helpers(self) -> str:
         """Return what the functions share: a function of angles, one that closes loops, tables."""
-        number, found = self.exported.number, ""
+        c, number, found = self.contract, self.exported.number, ""
         if self.exported.program.loop_angles:
             turn = number(math.tau)
             found += (
                 "\n/* An angle without its whole turns, in (-pi, pi]. */\nstatic casadi_real"
                 " direction(casadi_real angle) {\n  return angle -"
-                f" {turn}*{function_name('ceil', self.contract.precision)}(angle/{turn} -"
+                f" {turn}*{function_name('ceil', c.precision)}(angle/{turn} -"
                 f" {number(0.5)});\n}}\n"
             )
         if "loops" in self.exported.functions:
-            rule = {key: number(value) for key, value in self.exported.rule.items()}
-            newton = self.exported.program.newton
+            newton, rule = self.exported.program.newton, self.exported.rule
             assert newton is not None
             found += template(
                 "loops.c",
-                **self.contract.words,
+                **c.words,
                 nz=self.exported.sizes["loops"],
                 turning=", ".join(str(int(turning)) for turning in newton.turning),
                 turn=number(math.tau),
                 inverse=number(1.0 / math.tau),
                 half=number(0.5),
-                floor=function_name("floor", self.contract.precision),
-                rate=rule["rate"],
-                rounding=rule["rounding"],
-                given=indented(CalledInC(self.exported.functions).given("loops")),
+                floor=function_name("floor", c.precision),
+                rate=number(rule["rate"]),
+                rounding=number(rule["rounding"]),
+                given=indented(given(self.exported.functions, "loops")),
             )
         if "status" in self.exported.functions:
-            names = ", ".join(f"{self._upper}_{name}" for name in self.exported.answers())
-            kind = f"static const {self.contract.prefix}_status"
+            names = ", ".join(f"{c.words['P']}_{name}" for name in self.exported.answers())
+            kind = f"static const {c.prefix}_status"
             found += (
                 f"\n/* What a broken rule says, by its number. */\n{kind} broken[] = {{{names}}};\n"
             )
@@ -90,7 +84,7 @@ class Statements:
         c, sizes, number = self.contract, self.exported.sizes, self.exported.number
         if "closing" not in self.exported.functions:
             return ""
-        given, loops, drives = indented(self._between()), sizes["loops"], len(c.drives)
+        loops, drives = sizes["loops"], len(c.drives)
         return template(
             "between.c",
             **c.words,
@@ -100,7 +94,7 @@ class Statements:
             counted=max(1, sizes["counted"]),
             drives=drives,
             kept=f"  casadi_real kept[{loops}];\n" if loops else "",
-            given=given,
+            given=indented(self._between()),
             slopes=1 + drives,
             all=sizes["slopes"],
             points=POINTS,
@@ -110,9 +104,8 @@ class Statements:
 
     def _between(self) -> Iterator[str]:
         """Yield the statements that evaluate ``closing`` at a fraction x of a step."""
-        c = self.contract
+        c, functions = self.contract, self.exported.functions
         model = {name: f"step->model->{name}" for name in MODEL}
-        calls = CalledInC(self.exported.functions, model)
         half = len(c.moment) // 2 if c.rests else len(c.moment)
         for k, member in enumerate(c.moment[:half]):
             rest = c.moment[half + k] if c.rests else ""
@@ -121,22 +114,21 @@ class Statements:
             else:
                 coordinate, v, a = (names[k - 1] for names in c.motion)
                 change = " + ".join(f"(after->{m} - before->{m})" for m in (coordinate, rest) if m)
-                ends = f"h*before->{v}, h*after->{v}, h*h*before->{a}, h*h*after->{a}"
-                straight = f"{change}, {change}, 0, 0"
-                into = f"rate + {k - 1}, acceleration + {k - 1}"
-                yield f"gone = h != 0 ? come(x, {change}, {ends}, {into}) :"
-                yield f"                come(x, {change}, {straight}, {into});"
+                yield (
+                    f"gone = come(x, h, {change}, before->{v}, after->{v}, before->{a}, after->{a},"
+                    f" rate + {k - 1}, acceleration + {k - 1});"
+                )
             yield f"moment[{k}] = {f'before->{member} + gone' if member else '0'};"
             if c.rests:
                 left = f"(before->{member} - moment[{k}]) + gone + before->{rest}"
                 yield f"moment[{half + k}] = {left if member else '0'};"
-        if "count" in self.exported.functions:
-            yield from calls.call("count")
-        if "loops" in self.exported.functions:
+        if "count" in functions:
+            yield from call(functions, "count", **model)
+        if "loops" in functions:
             words = {"nz": self.exported.sizes["loops"], "limits": self._limits(None)}
             yield template("between_loops.c", **c.words, **words).rstrip()
-        yield from calls.call("closing")
-        if "loops" in self.exported.functions:
+        yield from call(functions, "closing", **model)
+        if "loops" in functions:
             yield f"for (k = 0; k < {words['nz']}; ++k) step->model->loops[k] = kept[k];"
 
     def _limits(self, newton: int | None) -> str:
@@ -155,7 +147,7 @@ class Statements:
     def prepare(self) -> Iterator[str]:
         """Yield what checks parameters, and computes what they alone set."""
         c, sizes, number = self.contract, self.exported.sizes, self.exported.number
-        calls, called = CalledInC(self.exported.functions), self.exported.called(PREPARE)
+        functions, called = self.exported.functions, self.exported.called(PREPARE)
         if c.settings:
             given = f"parameters ? parameters : &{c.prefix}_defaults"
             yield f"const {c.prefix}_parameters* values = {given};"
@@ -168,10 +160,10 @@ class Statements:
             value = f"values->{m.name}"
             ends = self._ends(value, (">=", m.low), ("<=", m.high))
             within = " && ".join([f"is_finite({value})", *ends])
-            yield f"if (!({within})) return {self._upper}_BAD_PARAMETER;"
+            yield f"if (!({within})) return {c.words['P']}_BAD_PARAMETER;"
             yield f"model->parameters[{k}] = {value};"
         for name in called:
-            yield from calls.call(name)
+            yield from call(functions, name)
             if name == "sound":
                 yield from self._refused_parts()
         if self.exported.newton is not None:
@@ -190,7 +182,7 @@ class Statements:
     def motion(self) -> Iterator[str]:
         """Yield what fills the inputs with the motion of the drives at a time."""
         c, functions, drives = self.contract, self.exported.functions, len(self.contract.drives)
-        calls, at = CalledInC(functions), ["time", "time_rest"] if c.rests else ["time"]
+        at = ["time", "time_rest"] if c.rests else ["time"]
         vectors = f"at[{len(at)}], d[{len(at) * drives}], rate[{drives}], acceleration[{drives}]"
         yield f"casadi_real {vectors};\nconst casadi_real* arg[2];\ncasadi_real* res[3];"
         if (ends := functions.get("beyond")) is not None:
@@ -200,9 +192,9 @@ class Statements:
         untimely = [f"!is_finite({time})", *self._ends(time, ("<", low), (">", high))]
         yield self._refused(" || ".join(untimely), "BAD_TIME")
         yield from (f"at[{k}] = {one};" for k, one in enumerate(at))
-        yield from calls.call("law")
+        yield from call(functions, "law")
         if ends is not None:
-            yield from calls.call("beyond")
+            yield from call(functions, "beyond")
             limit = self.exported.number(BEYOND[c.precision])
             far = (f"!(far[{k}] <= {limit})" for k in range(ends.size1_out(0)))
             yield self._refused(" || ".join(far), "BAD_TIME")
@@ -215,12 +207,12 @@ class Statements:
         for vector, members in zip(("rate", "acceleration"), c.motion[1:], strict=True):
             values |= {member: f"{vector}[{k}]" for k, member in enumerate(members)}
         yield from (f"inputs->{m.name} = {values[m.name]};" for m in c.inputs)
-        yield f"return {self._upper}_OK;"
+        yield f"return {c.words['P']}_OK;"
 
     def _refused(self, condition: str, status: str) -> str:
         """Return what gives nothing but a status, where a condition holds."""
         nothing = indented(f"inputs->{m.name} = nothing;" for m in self.contract.inputs)
-        return f"if ({condition}) {{\n{nothing}\n  return {self._upper}_{status};\n}}"
+        return f"if ({condition}) {{\n{nothing}\n  return {self.contract.words['P']}_{status};\n}}"
 
     def _ends(self, value: str, *ends: tuple[str, float]) -> Iterator[str]:
         """Yield how a value is compared with those ends of a range that are finite."""
@@ -230,11 +222,10 @@ class Statements:
 
     def instant(self) -> Iterator[str]:
         """Yield what computes the columns of an instant, and refuses those that break a rule."""
-        c, P = self.contract, self._upper
+        c, P = self.contract, self.contract.words["P"]
         sizes, table = self.exported.sizes, self.exported.cycle
         drives, called = len(c.drives), self.exported.called(INSTANT)
-        evaluated = "y" if table is None else "drive"
-        calls = CalledInC(self.exported.functions, {"evaluated": evaluated})
+        functions, pointers = self.exported.functions, {"evaluated": "drive" if table else "y"}
         if "count" in called:
             yield f"casadi_real moment[{sizes['moment']}], counted[{sizes['counted']}];"
         yield f"casadi_real rate[{drives}], acceleration[{drives}];"
@@ -253,16 +244,16 @@ class Statements:
         given = " + ".join(f"inputs->{m.name}" for m in c.inputs)
         yield f"if (!is_finite({given})) return {P}_BAD_INPUT;"
         for name in called:
-            yield from self._close() if name == "loops" else calls.call(name)
+            yield from self._close() if name == "loops" else call(functions, name, **pointers)
             if name == "instant" and table is not None:
-                yield from table_call(self.exported)
+                yield from table_call(table, self.exported.number)
             if name == "status":
                 yield "if (rule > 0) return broken[(int) rule];"
         yield f"if (!all_finite(y, {len(self.exported.columns)})) return {P}_NOT_FINITE;"
 
     def _close(self) -> Iterator[str]:
         """Yield what closes loops: by all steps that these want, or first so and then by a few."""
-        P, newton = self._upper, self.exported.newton
+        P, newton = self.contract.words["P"], self.exported.newton
         if newton is not None:
             yield template("close_first.c", P=P, limits=self._limits(None)).rstrip()
         yield f"closed = close_loops(model, counted, {self._limits(newton)});"

@@ -41,24 +41,14 @@ def check_zig(what: str) -> None:
     check_installed("ziglang", what, "live")
 
 
-def module(source: Source) -> bytes:
-    """The module of a program, which imports nothing.
-
-    The same program gives the same bytes, as far as the compiler does. Raises
-    :class:`LagrangeCasadiError` where ziglang is missing, :class:`CompilerError` for what it
-    refuses.
-    """
-    return _build(source, {}, _ALONE)()
-
-
 def page_build(
     source: Source, more: Mapping[str, str], calls: Sequence[str]
 ) -> Callable[[], bytes]:
     """Prepare the module of a page, which imports the browser's ``Math``; returns what compiles it.
 
     ziglang then need not build a C library, which takes it a minute where its cache is empty.
-    ``more`` are other files of C with functions ``calls`` that are seen too. Raises as
-    :func:`module` does.
+    ``more`` are other files of C with functions ``calls`` that are seen too. Raises as :func:`wasm`
+    does.
     """
     if any(map(_ERF.search, (source.code, *more.values()))):
         return _build(source, more, _ALONE, calls)
@@ -69,8 +59,9 @@ def page_build(
 def _build(
     source: Source, more: Mapping[str, str], target: Sequence[str], calls: Sequence[str] = ()
 ) -> Callable[[], bytes]:
-    """Prepare a module; what is returned compiles it, in any thread."""
-    check_zig("WebAssembly")
+    """Prepare a module; what is returned compiles it, in any thread, by ziglang, which
+    :func:`check_zig` has found.
+    """
     c = source.contract
     exported = [f"{c.prefix}_{call}" for call in (*_CALLS, *(["section"] if c.links else []))]
     stack = -(-(deepest(source.code) + _STACK) // 16) * 16
@@ -129,8 +120,12 @@ def places(source: Source) -> dict[str, int]:
 
 
 def wasm(source: Source) -> dict[str, bytes]:
-    """The files for web pages, by name."""
-    c, content = source.contract, module(source)
+    """The files for web pages, by name; the module imports nothing.
+
+    The same program gives the same bytes, as far as the compiler does. Raises
+    :class:`CompilerError` for what it refuses.
+    """
+    c, content = source.contract, _build(source, {}, _ALONE)()
     texts = {
         f"{c.prefix}.js": template(
             "wasm.js", **_words(source), contract=_contract(source), engine=engine()

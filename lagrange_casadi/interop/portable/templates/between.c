@@ -11,10 +11,12 @@ typedef casadi_real centre_real;
 
 static const casadi_real zero[$many] = {$limits};
 
-/* How far a coordinate that changes by so much has come at a fraction x of a step, with its rates and accelerations at both ends:
-   v0, v1, a0 and a1 for a unit of x. Its rate and acceleration there are what is returned by way of rate and acceleration. */
-static casadi_real come(casadi_real x, casadi_real change, casadi_real v0, casadi_real v1, casadi_real a0, casadi_real a1,
-                        casadi_real* rate, casadi_real* acceleration) {
+/* How far a coordinate that changes by so much has come at a fraction x of a step of h seconds, with its rates and accelerations
+   at both ends; where h is 0, on the straight way. Its rate and acceleration there, for a unit of x, are what is
+   returned by way of rate and acceleration. */
+static casadi_real come(casadi_real x, casadi_real h, casadi_real change, casadi_real from_v, casadi_real to_v, casadi_real from_a,
+                        casadi_real to_a, casadi_real* rate, casadi_real* acceleration) {
+  const casadi_real v0 = h != 0 ? h*from_v : change, v1 = h != 0 ? h*to_v : change, a0 = h*h*from_a, a1 = h*h*to_a;
   const casadi_real left = change - v0 - a0/2, gain = v1 - v0 - a0, bend = a1 - a0;
   const casadi_real c3 = 10*left - 4*gain + bend/2, c4 = 7*gain - 15*left - bend, c5 = 6*left - 3*gain + bend/2;
   *rate = v0 + x*(a0 + x*(3*c3 + x*(4*c4 + x*5*c5)));
