@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -18,7 +18,7 @@ from ...engine.instants.evaluation_method import EvaluationMethod
 from ...errors import PathError
 from ...model.scene import Scene
 from ...version import __version__
-from ..portable.contract import Contract, Member
+from ..portable.contract import Contract
 from ..portable.data import LARGEST
 from ..portable.header import header
 from ..portable.source import Source
@@ -163,12 +163,6 @@ def export(
 def _manifest(source: Source) -> dict[str, Json]:
     """Contents of the folder, for programs: names, units and places of all members."""
     agreed = source.contract
-
-    def rows(members: Sequence[Member]) -> list[dict[str, str]]:
-        return [
-            {"name": m.name, "path": m.path, "unit": m.unit, "meaning": m.meaning} for m in members
-        ]
-
     return {
         "versions": {"lagrange_casadi": __version__, "casadi": ca.CasadiMeta.version()},
         "mechanism": agreed.name,
@@ -181,12 +175,9 @@ def _manifest(source: Source) -> dict[str, Json]:
         },
         "fixed": dict(source.fixed),
         "scene": source.identity,
-        "parameters": [
-            row | {"default": m.default}
-            for row, m in zip(rows(agreed.settings), agreed.settings, strict=True)
-        ],
-        "inputs": rows(agreed.inputs),
-        "outputs": rows(agreed.outputs),
+        "parameters": [m.described(m.meaning) | {"default": m.default} for m in agreed.settings],
+        "inputs": [m.described(m.meaning) for m in agreed.inputs],
+        "outputs": [m.described(m.meaning) for m in agreed.outputs],
         **({"sensitivities": [m.name for m in source.slopes.by]} if source.slopes else {}),
         "links": [{"name": link.name, "constant": link.constant} for link in agreed.links],
         "model": [

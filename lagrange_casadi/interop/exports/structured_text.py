@@ -152,7 +152,8 @@ class _Block:
         assert newton is not None
         z, stood, c = (self.array(name, exported.sizes["loops"]) for name in ("w", "z", "c"))
         self.vectors |= {"z": z, "loops": z, "correction": c, "kept": stood}
-        turn, rule = _number(math.tau), {key: _number(x) for key, x in exported.rule.items()}
+        turn, rule = _number(math.tau), newton_rule("double", exported.newton)
+        words = {key: _number(x) for key, x in rule.items()}
         whole = [
             f" - {turn} * LC_FLOOR({now} / {turn} + 0.5)" if turning else ""
             for now, turning in zip(z, newton.turning, strict=True)
@@ -160,9 +161,9 @@ class _Block:
         step = ["before := size;", *self.step()]
         yield template(
             "structured_loops.st",
-            **rule,
+            **words,
             begin="\n".join(map("{} := {};".format, z, stood)),
-            iterate="\n".join(_iterated("n", int(exported.rule["steps"]), rule["done"], step)),
+            iterate="\n".join(_iterated("n", int(rule["steps"]), words["done"], step)),
             keep="\n".join(map("{} := {}{};".format, stood, z, whole)),
             slow=_number(Status.SLOW),
         ).rstrip()

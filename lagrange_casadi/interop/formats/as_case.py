@@ -71,7 +71,7 @@ class CaseText:
         self.lines: list[str] = []
         turned = [*self.open, *(one.joint for one in model.springs if one.stiffness)]
         ends = (model.joints.get(name) or model.ties[name] for name in turned)
-        self.turned = {name for one in ends for name in (one.parent, one.child)}
+        self.turned = {name for one in ends for name in one.ends}
         self.used = {end for one in model.couplings.values() for end in (one.first, one.second)}
         self.used |= {*model.motors, *(one.joint for one in model.springs)}
         self.stated = {
@@ -181,7 +181,7 @@ class CaseText:
                 self.lines.append(
                     f"# Closes a loop elsewhere: here it is {gap:.3g} m, {angle:.3g} rad open."
                 )
-            parent, child = (self.places.link_axes(one) for one in (joint.parent, joint.child))
+            parent, child = (self.places.link_axes(one) for one in joint.ends)
             arguments.append(self.places.point(joint.parent, near.place))
             arguments.append(self.places.point(joint.child, far.place))
             arguments += self.axes(joint, parent.T @ near.axes, far)
@@ -342,11 +342,11 @@ def _turns_about(places: Places, tie: Joint, body: str, sign: float) -> str:
     """Return by how much a body of a tie has turned about z of its first frame, as a term with a
     sign: the coordinate of the joint on which it turns, of both on the same body.
     """
-    model, ends = places.model, {tie.parent, tie.child}
+    model = places.model
     along = model.frames(tie)[0].axes[:, 2]
     for joint in (model.joints[name] for name in places.on[body]):
         names = [one for one, _, _ in MOVES[joint.kind] if one in ("", "turn")]
-        mine = not ends <= {joint.parent, joint.child}
+        mine = {*tie.ends} != {*joint.ends}
         cosine = float(model.frames(joint)[0].axes[:, 2] @ along)
         if mine and names and joint.kind != "prismatic" and abs(cosine) > 1.0 - 1e-9:
             direction = sign * (cosine if joint.child == body else -cosine)

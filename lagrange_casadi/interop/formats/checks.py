@@ -29,7 +29,7 @@ def checked(model: Model, *, accept_inertias: bool = False) -> Model:
         raise model.refuse("", "no body that moves has a mass: give the bodies masses")
     wrong: dict[str, str] = {}
     welds = (one for one in model.joints.values() if one.kind == "weld")
-    welded = {name for one in welds for name in (one.parent, one.child)}
+    welded = {name for one in welds for name in one.ends}
     for body in model.bodies.values():
         model.bodies[body.name] = _body(model, body, welded, wrong)
     if wrong and not accept_inertias:
@@ -46,7 +46,7 @@ def checked(model: Model, *, accept_inertias: bool = False) -> Model:
         )
     bodies = {GROUND: None, **model.bodies}
     for joint in model.closures:
-        for name in (joint.parent, joint.child):
+        for name in joint.ends:
             model.known(f"{joint.where}: joint '{joint.name}'", "body", name, bodies)
         if joint.parent == joint.child:
             words = f"joint '{joint.name}' joins '{joint.parent}' to itself"
@@ -108,7 +108,7 @@ def _connected(model: Model) -> None:
     """
     reached = {GROUND}
     for one in outward(model.closures, reached):  # a tie comes where no joint can follow
-        for free in {one.parent, one.child} - reached if one.rows else ():
+        for free in {*one.ends} - reached if one.rows else ():
             model.attach(free, GROUND, "free", one.where)
     for body in model.bodies.values():
         if body.name not in reached:
@@ -179,12 +179,11 @@ def _rounding(model: Model) -> None:
         model.notes.append(f"{words} are taken as rounding, and set at right angles.")
     for joint in model.joints.values():
         gap, angle = apart(model, joint)
-        if max(gap / size, angle) > SLACK or max(gap / size, angle) <= EXACT:
-            continue
-        model.notes.append(
-            f"joint '{joint.name}': its two frames differ by {gap:.1e} m and {angle:.1e} rad,"
-            " which is taken as rounding: the child's place and the parent's axes are used"
-        )
+        if EXACT < max(gap / size, angle) <= SLACK:
+            model.notes.append(
+                f"joint '{joint.name}': its two frames differ by {gap:.1e} m and {angle:.1e} rad,"
+                " which is taken as rounding: the child's place and the parent's axes are used"
+            )
 
 
 def spinning(model: Model) -> list[str]:

@@ -126,7 +126,7 @@ def _twists(model: Model, joint: Joint, size: float) -> Iterator[tuple[str, Arra
     three of the mass itself, which are no coordinates.
     """
     near, far = model.frames(joint)
-    ends = (model.bodies[one] for one in (joint.parent, joint.child) if one != GROUND)
+    ends = (model.bodies[one] for one in joint.ends if one != GROUND)
     point = next((body.frame.place for body in ends if body.point), None)
     for name, (_, move, axis) in zip(joint.coordinates, MOVES[joint.kind], strict=True):
         if point is not None and move != "slide":

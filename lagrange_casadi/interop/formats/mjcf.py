@@ -259,8 +259,7 @@ class _Reader:
         for j in range(first, first + count):
             below = name
             if j < first + count - 1:
-                none = 0.0, np.zeros(3), np.zeros((3, 3)), frame
-                below = model.add(Body, f"{name}_{j - first + 1}", where, *none)
+                below = model.add(Body, f"{name}_{j - first + 1}", where, frame=frame)
             self.joint(j, above, below, frame)
             above = below
 

@@ -102,15 +102,15 @@ def _frame(solution: Solution, body: str) -> Frame:
 
 
 def _body(name: str, body: BodyNumbers, frame: Frame, space: bool) -> Body:
-    whole, zero = body.whole, np.zeros(3)
+    whole = body.whole
     if body.length is None:
-        return Body(name, whole.mass, zero, np.zeros((3, 3)), frame, point=True)
+        return Body(name, whole.mass, frame=frame, point=True)
     if (
         body.density is not None
         and [*map(len, body.density.cells)] == [1]
         and not any(one.mass for one in body.slices)
     ):
-        rod = zero, np.array([body.length, 0.0, 0.0])
+        rod = np.zeros(3), np.array([body.length, 0.0, 0.0])
         return Body(name, whole.mass, *slender(whole.mass, *rod), frame, rod=rod)
     inertia = np.array(whole.inertia)
     if body.density is None and not space:

@@ -30,7 +30,7 @@ class Places:
         self.variables: dict[str, str] = {GROUND: "m.ground"}
         self._used = set(own)
         closed = [one for one in model.joints.values() if one.name not in opened]
-        self.held = {GROUND, *(end for one in closed for end in (one.parent, one.child))}
+        self.held = {GROUND, *(end for one in closed for end in one.ends)}
         self.at = {one.name: self.place(model.frames(one)[1].place) for one in closed}
         self.on = model.joints_on()
         self.between = {

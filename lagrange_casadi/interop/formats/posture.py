@@ -82,7 +82,7 @@ def posed(model: Model, posture: Mapping[str, float]) -> Model:
     """
     found, reached = replace(model, bodies=dict(model.bodies)), {GROUND}
     for joint in outward([*model.joints.values()], reached):
-        if joint.parent in reached and joint.child in reached:
+        if reached.issuperset(joint.ends):
             continue
         across = Frame()
         for name, (_, move, axis) in zip(joint.coordinates, MOVES[joint.kind], strict=True):
@@ -100,7 +100,7 @@ def _put(model: Model, joint: Joint, across: Frame, reached: Collection[str]) ->
     parent's; return the body's name.
     """
     across = joint.on_parent.then(across).then(joint.on_child.inverse())
-    near, far = joint.parent, joint.child
+    near, far = joint.ends
     if far in reached:
         near, far, across = far, near, across.inverse()
     model.bodies[far] = replace(model.bodies[far], frame=model.frame_of(near).then(across))
@@ -175,7 +175,7 @@ def apart(model: Model, joint: Joint) -> tuple[float, float]:
         return _untied(model, joint)
     known, turns = _relative(model, joint), len(_turns(joint.kind))
     gap = math.hypot(*known.place[_held(joint.kind)].tolist())
-    if any(one != GROUND and model.bodies[one].point for one in (joint.parent, joint.child)):
+    if any(one != GROUND and model.bodies[one].point for one in joint.ends):
         return gap, 0.0
     if joint.kind == "universal":
         return gap, abs(float(known.axes[2, 2]))
@@ -216,9 +216,9 @@ def hang(model: Model) -> None:
     """
     open_joints = opened(model)
     closed = [one for one in model.joints.values() if one.name not in open_joints]
-    placed = {GROUND, *(name for one in closed for name in (one.parent, one.child))}
+    placed = {GROUND, *(name for one in closed for name in one.ends)}
     for joint in outward([*model.joints.values()], placed):
-        if joint.parent in placed and joint.child in placed:
+        if placed.issuperset(joint.ends):
             continue
         gap, angle = open_joints[joint.name]
         moved = _put(model, joint, _closest(model, joint), placed)

@@ -79,9 +79,9 @@ class Body:
     """
 
     name: str
-    mass: float
-    centre: Array
-    inertia: Array
+    mass: float = 0.0
+    centre: Array = field(default_factory=lambda: np.zeros(3))
+    inertia: Array = field(default_factory=lambda: np.zeros((3, 3)))
     frame: Frame = field(default_factory=Frame)
     places: Mapping[str, Array] = field(default_factory=dict)
     rod: tuple[Array, Array] | None = None
@@ -118,6 +118,11 @@ class Joint:
     lead: float = 0.0
     rows: tuple[Row, ...] = ()
     where: str = ""
+
+    @property
+    def ends(self) -> tuple[str, str]:
+        """Parent and child."""
+        return self.parent, self.child
 
     @property
     def coordinates(self) -> tuple[str, ...]:
@@ -359,8 +364,7 @@ class Model:
         at = Frame(np.array([_amount(what, one, "m") for one in place]))
         on, frame = self.spot(found[1])
         at = self.frame_of(on).then(frame).then(at)
-        words = f"{found[1]}_payload"
-        name = self.add(Body, words, "", mass, np.zeros(3), np.zeros((3, 3)), at, point=True)
+        name = self.add(Body, f"{found[1]}_payload", "", mass, frame=at, point=True)
         self.attach(name, on, "weld", "")
         self.payloads.append(name)
 
@@ -387,7 +391,7 @@ class Model:
         """Return the names of the joints on each body."""
         found: dict[str, list[str]] = {name: [] for name in (GROUND, *self.bodies)}
         for joint in self.joints.values():
-            for name in (joint.parent, joint.child):
+            for name in joint.ends:
                 found[name].append(joint.name)
         return found
 

@@ -61,7 +61,7 @@ def read(model: Model, text: str) -> None:
         if one.name == "frame" and (body := joints.body_of(name)):
             frame = joints.frame(name, ())
             model.spots[name] = body, model.frame_of(body).relative(frame)
-    hung = {name for one in model.joints.values() for name in (one.parent, one.child)}
+    hung = {name for one in model.joints.values() for name in one.ends}
     if GROUND not in hung and model.bodies:
         first = next(iter(model.bodies.values()))
         model.base(first.name, first.where)
@@ -140,7 +140,7 @@ class Joints:
             body = self.end(line, side)
             bodies = {body, self.on[line.known("link", carrier, self.on)][0]}
             mine = (model.joints[name] for name in on[body])
-            found = [one.name for one in mine if {one.parent, one.child} == bodies]
+            found = [one.name for one in mine if {*one.ends} == bodies]
             if len(found) != 1:
                 words = f"its {side} has no joint on the reference body {shown(carrier)}"
                 raise line.refuse(words)

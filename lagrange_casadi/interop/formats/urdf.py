@@ -79,7 +79,7 @@ class _Robot:
             self.on[roots[0]] = (name := self.body(roots[0], Frame()), Frame())
             self.model.base(name, self.links[roots[0]].where)
         for one in outward(joints, {roots[0]}, down=True):
-            self.grow(one.line)
+            self.grow(one.line, one.parent, one.child)
         for one in joints:
             if one.parent not in self.on:
                 raise one.line.refuse("its links are not connected to the root")
@@ -92,16 +92,15 @@ class _Robot:
                 name, leader = joint.attribute("name"), mimic.attribute("joint")
                 law = mimic.amount("multiplier", 1.0), mimic.amount("offset", 0.0)
                 self.model.follow(name, leader, mimic.where, *law)
-        above = {one.child: one.line for one in reversed(joints)}
+        above = {one.child: one for one in reversed(joints)}
         for coupling in self.root.all("coupling"):
             self.coupling(coupling, above)
         self.gazebo()
         self.actuators()
 
-    def grow(self, line: Element) -> None:
+    def grow(self, line: Element, parent: str, child: str) -> None:
         """Read a joint: its link is placed by it, or closes a loop."""
         kind = line.choice("type", KINDS)
-        parent, child = (self.end(line, names)[0] for names in (_ONE, _OTHER))
         origin, stated = self.origin(line.optional("origin")), line.attribute("name")
         if child not in self.on:
             body, frame = self.on[parent]
@@ -156,15 +155,15 @@ class _Robot:
         line.given.setdefault("name", f"ball_{len(self.model.joints)}")
         self.add(line, "spherical", sides[0], sides[1])
 
-    def coupling(self, line: Element, above: dict[str, Element]) -> None:
+    def coupling(self, line: Element, above: dict[str, SimpleNamespace]) -> None:
         """Read a coupling of two links' joints, of those by the links above which they are."""
         links = [self.end(line, side)[0] for side in (_ONE, _OTHER)]
         for link in links:
             if link not in above:
                 raise line.refuse(f"link {shown(link)} has no joint")
-        if len({self.end(above[link], _ONE)[0] for link in links}) > 1:
+        if len({above[link].parent for link in links}) > 1:
             raise line.refuse("is supported only if both its links have the same parent")
-        joints = [self.model.named["joint", above[link].attribute("name")] for link in links]
+        joints = [self.model.named["joint", above[link].line.attribute("name")] for link in links]
         ratio = line.needed("ratio").amount("value", what="ratio")
         self.model.add(Coupling, line.attribute("name"), line.where, *joints, ratio)
 

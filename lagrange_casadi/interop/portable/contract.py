@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import casadi as ca
 import numpy as np
 
+from ...base.arrays import Json
 from ...base.brief import Brief
 from ...base.quantities import Output, motion_names, motions_of
 from ...base.symbolic import symbolic
@@ -68,6 +69,10 @@ class Member:
     def path(self) -> str:
         """Path in a file of results."""
         return self.source.replace(":", "/")
+
+    def described(self, meaning: str) -> dict[str, Json]:
+        """Return what programs read of it."""
+        return {"name": self.name, "path": self.path, "unit": self.unit, "meaning": meaning}
 
 
 @dataclass(frozen=True)

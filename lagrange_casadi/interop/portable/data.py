@@ -32,7 +32,7 @@ _ALONE = {
     r"long long": "long",
     r"\breal\b": "casadi_real",
 }
-"""What reads a table, where instants come one by one and C has no macros."""
+"""Changes to the C that reads a table, where instants come one by one and without macros."""
 
 
 def check_size(exported: ExportedProgram, limit: int) -> None:

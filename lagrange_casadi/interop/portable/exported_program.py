@@ -18,7 +18,7 @@ from ...base.scalars import column
 from ...base.status import Status
 from ...base.symbolic import symbolic
 from ...base.vocabulary import Precision
-from ...engine.codegen.emit import hoisted, newton_rule
+from ...engine.codegen.emit import hoisted
 from ...engine.codegen.printer import Format, literal
 from ...engine.codegen.stages import controlled
 from ...engine.dead_centres import CLOSURES
@@ -91,11 +91,6 @@ class ExportedProgram:
             for bound, limit in zip(program.bounds, most, strict=True)
             if bound.beside in CLOSURES
         ]
-
-    @property
-    def rule(self) -> dict[str, float]:
-        """Limits of the iteration of loops."""
-        return newton_rule(self.precision, self.newton)
 
 
 @symbolic

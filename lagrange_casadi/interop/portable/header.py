@@ -28,23 +28,13 @@ def header(source: Source) -> str:
             f"Conventions: {c.table.conventions}. {_ZERO} Gravity is ({gravity}) m/s^2."
         ),
         law=law_in_words(c),
-        mapping=(
-            filled(
-                "Called otherwise here: "
-                + ", ".join(f"{k} is {v}" for k, v in c.mapped.items())
-                + ".",
-                "\n\n",
+        notes="".join(
+            filled(f"{begin}: {', '.join(names)}.", "\n\n")
+            for begin, names in (
+                ("Called otherwise here", [f"{k} is {v}" for k, v in c.mapped.items()]),
+                ("Not determined by equilibrium, and left out", c.undetermined),
             )
-            if c.mapped
-            else ""
-        ),
-        undetermined=(
-            filled(
-                "Not determined by equilibrium, and left out: " + ", ".join(c.undetermined) + ".",
-                "\n\n",
-            )
-            if c.undetermined
-            else ""
+            if names
         ),
         precision=c.precision,
         stack=deepest(source.code),

@@ -54,7 +54,8 @@ class Statements:
                 f" {number(0.5)});\n}}\n"
             )
         if "loops" in self.exported.functions:
-            newton, rule = self.exported.program.newton, self.exported.rule
+            newton = self.exported.program.newton
+            rule = newton_rule(c.precision, self.exported.newton)
             assert newton is not None
             found += template(
                 "loops.c",

@@ -16,7 +16,7 @@ import numpy as np
 
 from ...base.packages import check_installed
 from ...engine.codegen.compiler import Compiler, built
-from .contract import Contract, Member
+from .contract import Contract
 from .header import header
 from .sections import about
 from .source import Source
@@ -148,9 +148,6 @@ def _forces(c: Contract) -> tuple[str, ...]:
 def _contract(source: Source) -> str:
     c = source.contract
 
-    def described(m: Member) -> dict[str, str]:
-        return {"name": m.name, "path": m.path, "unit": m.unit, "meaning": m.comment}
-
     def end(value: float) -> float | None:
         return value if math.isfinite(value) else None
 
@@ -161,11 +158,11 @@ def _contract(source: Source) -> str:
         "precision": c.precision,
         "model": places(source)["end"],
         "parameters": [
-            described(m) | {"default": m.default, "low": end(m.low), "high": end(m.high)}
+            m.described(m.comment) | {"default": m.default, "low": end(m.low), "high": end(m.high)}
             for m in c.settings
         ],
-        "inputs": [described(m) for m in c.inputs],
-        "outputs": [described(m) for m in c.outputs],
+        "inputs": [m.described(m.comment) for m in c.inputs],
+        "outputs": [m.described(m.comment) for m in c.outputs],
         "links": [link.name for link in c.links],
         "forces": [
             {"name": name, "unit": row.unit, "meaning": about(c.table, name)}

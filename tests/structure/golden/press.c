@@ -91,6 +91,57 @@ static void matter(const casadi_real** arg, casadi_real** res) {
   res[0][2] = a1;
 }
 
+static void section_of_0(const casadi_real** arg, casadi_real** res) {
+  casadi_real a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10;
+  a0 = arg[0][0];
+  a1 = arg[0][1];
+  a2 = arg[2][1];
+  a3 = 1.0;
+  a4 = arg[3][0];
+  a3 = a3 - a4;
+  a5 = a2 * a3;
+  a1 = a1 * a5;
+  a0 = a0 + a1;
+  a1 = arg[0][2];
+  a6 = arg[2][0];
+  a7 = a4 * a5;
+  a8 = a3 * a3;
+  a9 = 2.0;
+  a9 = a8 / a9;
+  a9 = a2 * a9;
+  a7 = a7 + a9;
+  a7 = a6 * a7;
+  a1 = a1 * a7;
+  a0 = a0 + a1;
+  res[0][0] = a0;
+  a0 = arg[0][3];
+  a1 = arg[0][4];
+  a5 = a1 * a5;
+  a5 = a0 + a5;
+  a10 = arg[0][5];
+  a7 = a10 * a7;
+  a5 = a5 + a7;
+  res[0][1] = a5;
+  a5 = arg[0][6];
+  a7 = a6 * a3;
+  a0 = a0 * a7;
+  a5 = a5 + a0;
+  a0 = a6 * a9;
+  a1 = a1 * a0;
+  a5 = a5 + a1;
+  a6 = a6 * a6;
+  a4 = a4 * a9;
+  a3 = a3 * a8;
+  a8 = 3.0;
+  a3 = a3 / a8;
+  a2 = a2 * a3;
+  a4 = a4 + a2;
+  a6 = a6 * a4;
+  a10 = a10 * a6;
+  a5 = a5 + a10;
+  res[0][2] = a5;
+}
+
 static void sound(const casadi_real** arg, casadi_real** res) {
   casadi_real a0, a1, a2, a3;
   a0 = arg[0][0];
@@ -260,57 +311,6 @@ static void closing(const casadi_real** arg, casadi_real** res) {
   res[2][1] = a6;
 }
 
-static void section_of_0(const casadi_real** arg, casadi_real** res) {
-  casadi_real a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10;
-  a0 = arg[0][0];
-  a1 = arg[0][1];
-  a2 = arg[2][1];
-  a3 = 1.0;
-  a4 = arg[3][0];
-  a3 = a3 - a4;
-  a5 = a2 * a3;
-  a1 = a1 * a5;
-  a0 = a0 + a1;
-  a1 = arg[0][2];
-  a6 = arg[2][0];
-  a7 = a4 * a5;
-  a8 = a3 * a3;
-  a9 = 2.0;
-  a9 = a8 / a9;
-  a9 = a2 * a9;
-  a7 = a7 + a9;
-  a7 = a6 * a7;
-  a1 = a1 * a7;
-  a0 = a0 + a1;
-  res[0][0] = a0;
-  a0 = arg[0][3];
-  a1 = arg[0][4];
-  a5 = a1 * a5;
-  a5 = a0 + a5;
-  a10 = arg[0][5];
-  a7 = a10 * a7;
-  a5 = a5 + a7;
-  res[0][1] = a5;
-  a5 = arg[0][6];
-  a7 = a6 * a3;
-  a0 = a0 * a7;
-  a5 = a5 + a0;
-  a0 = a6 * a9;
-  a1 = a1 * a0;
-  a5 = a5 + a1;
-  a6 = a6 * a6;
-  a4 = a4 * a9;
-  a3 = a3 * a8;
-  a8 = 3.0;
-  a3 = a3 / a8;
-  a2 = a2 * a3;
-  a4 = a4 + a2;
-  a6 = a6 * a4;
-  a10 = a10 * a6;
-  a5 = a5 + a10;
-  res[0][2] = a5;
-}
-
 /* ---- What calls it ---- */
 
 #define SEAL <seal>
@@ -388,8 +388,10 @@ press_status press_prepare(press_model* model, const press_parameters* parameter
   for (k = 3; k < 6; ++k) {
     if (!(sound_of[k] >= 0 && is_finite(sound_of[k]))) return PRESS_BAD_PARAMETER;
   }
+  arg[0] = model->parameters;
   res[0] = model->constants;
   constants_of(arg, res);
+  arg[0] = model->parameters;
   res[0] = model->matter;
   matter(arg, res);
   model->seal = SEAL;
@@ -493,10 +495,12 @@ typedef casadi_real centre_real;
 
 static const casadi_real zero[1] = {7.1054273576010019e-15};
 
-/* How far a coordinate that changes by so much has come at a fraction x of a step, with its rates and accelerations at both ends:
-   v0, v1, a0 and a1 for a unit of x. Its rate and acceleration there are what is returned by way of rate and acceleration. */
-static casadi_real come(casadi_real x, casadi_real change, casadi_real v0, casadi_real v1, casadi_real a0, casadi_real a1,
-                        casadi_real* rate, casadi_real* acceleration) {
+/* How far a coordinate that changes by so much has come at a fraction x of a step of h seconds, with its rates and accelerations
+   at both ends; where h is 0, on the straight way. Its rate and acceleration there, for a unit of x, are what is
+   returned by way of rate and acceleration. */
+static casadi_real come(casadi_real x, casadi_real h, casadi_real change, casadi_real from_v, casadi_real to_v, casadi_real from_a,
+                        casadi_real to_a, casadi_real* rate, casadi_real* acceleration) {
+  const casadi_real v0 = h != 0 ? h*from_v : change, v1 = h != 0 ? h*to_v : change, a0 = h*h*from_a, a1 = h*h*to_a;
   const casadi_real left = change - v0 - a0/2, gain = v1 - v0 - a0, bend = a1 - a0;
   const casadi_real c3 = 10*left - 4*gain + bend/2, c4 = 7*gain - 15*left - bend, c5 = 6*left - 3*gain + bend/2;
   *rate = v0 + x*(a0 + x*(3*c3 + x*(4*c4 + x*5*c5)));
@@ -515,8 +519,7 @@ static void centre_at(const centre_step* step, casadi_real x, casadi_real* squar
   int k;
   gone = x*h;
   moment[0] = 0;
-  gone = h != 0 ? come(x, (after->O - before->O), h*before->O_rate, h*after->O_rate, h*h*before->O_acceleration, h*h*after->O_acceleration, rate + 0, acceleration + 0) :
-                  come(x, (after->O - before->O), (after->O - before->O), (after->O - before->O), 0, 0, rate + 0, acceleration + 0);
+  gone = come(x, h, (after->O - before->O), before->O_rate, after->O_rate, before->O_acceleration, after->O_acceleration, rate + 0, acceleration + 0);
   moment[1] = before->O + gone;
   arg[0] = moment;
   arg[1] = step->model->parameters;

@@ -38,7 +38,7 @@ extern "C" {
 
 /* Bytes of stack that any call of these functions takes at most, without what the C library takes for a sine, on machines whose
    pointers are of 8 bytes or less. */
-#define PRESS_STACK 1656
+#define PRESS_STACK 1680
 
 typedef double press_real;
 

@@ -17,7 +17,7 @@
 
    $story
 
-   $conventions$mapping$undetermined */
+   $conventions$notes */
 #ifndef ${P}_H
 #define ${P}_H
 
