@@ -411,13 +411,6 @@ class Description(Brief):
         return [name for name, joint in self.joints.items() if joint.fitted]
 
     @property
-    def shaft_bearings(self) -> list[str]:
-        """The joints of shafts in a fixed and a floating bearing in space: those that say by which
-        coordinate the shaft turns in them.
-        """
-        return [name for name, joint in self.joints.items() if joint.turning is not None]
-
-    @property
     def bends(self) -> list[str]:
         """The welds between the pieces of bent bars, by the names that they get there."""
         found = []

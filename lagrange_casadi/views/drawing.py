@@ -8,9 +8,12 @@ import os
 import textwrap
 from collections.abc import Mapping
 from contextlib import suppress
+from functools import partial
 from html import escape
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from ..base.drawn import Drawing
 from ..base.files import writing
@@ -27,7 +30,7 @@ from .shapes.marks import (
     load_marks,
 )
 from .shapes.picture_files import check_picture
-from .shapes.picture_sheet import Picture, picture, view_of
+from .shapes.picture_sheet import picture, view_of
 from .shapes.pixels import frames
 from .shapes.poses import Poses
 from .shapes.primitives import cloud, drawing, seen, size_of
@@ -103,38 +106,32 @@ def _drawn(
 ) -> Drawing:
     """A drawing of a placed mechanism with some words, by default on its gaps; in a file too."""
     gaps = tuple(gap.sentence for gap in placement.gaps)
-    things, view = _things(placement), view_of(placement.description)
     lines = [line for one in ([words] if words else gaps) for line in textwrap.wrap(one, _LETTERS)]
-
-    def shown(unit: int) -> Picture:
-        """The picture, with so many pixels for a point."""
-        return picture(
-            placement.declared.name,
-            things,
-            view,
-            _WIDE * unit,
-            tallest=_TALLEST,
-            unit=unit,
-            words="\n".join(lines),
-        )
-
-    still = shown(1)
+    shown = partial(
+        picture,
+        placement.declared.name,
+        _things(placement),
+        view_of(placement.description),
+        tallest=_TALLEST,
+        words="\n".join(lines),
+    )
+    still = shown(_WIDE)
     if path is not None:
         check_picture(path, ENDINGS)
         with writing(Path(path)) as file:
             if Path(path).suffix == ".svg":
                 file.write(svg(still).encode())
             else:
-                next(frames(shown(_FINE))).save(file, "PNG")
+                next(frames(shown(_FINE * _WIDE, unit=_FINE))).save(file, "PNG")
     return Drawing(placement.declared.name, svg(still, paper=False), gaps)
 
 
 def _things(placement: Placement) -> list[Primitive]:
     """All that a drawing of a placed mechanism shows."""
-    poses = Poses.above_ground(
+    poses = Poses(
         placement.description,
-        {body: base[None] for body, base in placement.bases.items()},
-        {body: axes[None] for body, axes in placement.axes.items()},
+        {"ground": np.zeros((1, 3))} | {name: x[None] for name, x in placement.bases.items()},
+        {"ground": np.eye(3)[None]} | {name: x[None] for name, x in placement.axes.items()},
     )
     parts, p = drawing(poses), [*placement.description.values.values()]
     size = size_of(parts)

@@ -86,6 +86,8 @@ def write_animation(
     """
     target, film = Path(path), film or Film()
     check_ending(target)
+    require_motion(solution)
+    solution = moving(solution)
     ending = target.suffix.lower()
     if ending == ".glb":
         if film.section:
@@ -107,10 +109,8 @@ def write_animation(
 def picture_of(solution: Solution, film: Film) -> Picture:
     """All that is drawn, frame by frame.
 
-    Raises :class:`.DeclarationError` for motion or forces that the solution lacks.
+    Raises :class:`.DeclarationError` for forces that the solution lacks.
     """
-    solution = moving(solution)
-    require_motion(solution)
     whole = Poses.of(solution)
     shown, closed = frames_of(solution, whole, max(2, round(film.rate * film.seconds)))
     description = solution.description

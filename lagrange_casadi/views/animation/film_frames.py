@@ -9,7 +9,7 @@ import numpy as np
 from ...errors import DeclarationError
 from ...results.solution import Solution
 from ..shapes.poses import Poses, require_poses
-from ..shapes.primitives import drawing, size_of
+from ..shapes.primitives import cloud, drawing, size_of
 
 _SAME = 1e-3
 """Over the mechanism's size: a motion whose ends are no farther apart is a cycle, and its last
@@ -34,12 +34,8 @@ def frames_of(solution: Solution, whole: Poses, count: int) -> tuple[Solution, b
     ``whole`` motion.
     """
     t = solution.t
-    ends = [
-        one.points
-        for one in drawing(whole.during([0, -1]), whole)
-        if len(one.points) == 2  # of what moves
-    ]
-    gap = max((float(np.max(np.abs(points[1] - points[0]))) for points in ends), default=0.0)
+    first, last = (cloud(drawing(whole.during([k]), whole)) for k in (0, -1))
+    gap = float(np.abs(last - first).max())
     closed = t.size > 2 and gap <= _SAME * size_of(drawing(whole))
     frames = max(2, min(count, t.size - 1 if closed else t.size))
     at = np.linspace(t[0], t[-1], frames + 1)[:-1] if closed else np.linspace(t[0], t[-1], frames)

@@ -4,7 +4,7 @@ as ribbons along links.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -68,13 +68,10 @@ def drawn_forces(
     found: list[Primitive] = []
     words: list[str] = []
     if arrows:
-        pushes, moments = actions_of(shown, poses)
-        for actions, unit, what in ((pushes, "N", "arrows"), (moments, "N m", "drive torques")):
-            largest = largest_of(actions)
+        for unit, actions, largest in actions_of(shown, poses):
             found += [_arrow(one, shown.description.space, size, largest or 1.0) for one in actions]
-            words += (
-                [f"{what}: up to {scale_for(unit, largest).said(largest, 3)}"] if actions else []
-            )
+            what = "drive torques" if unit == "N m" else "arrows"
+            words.append(f"{what}: up to {scale_for(unit, largest).said(largest, 3)}")
     if section:
         laws = _laws(whole, section)
         peaks = [whole.peak(Output("section", link, section)) for link in laws]
@@ -102,8 +99,9 @@ def _arrow(action: Action, space: bool, size: float, largest: float) -> Arrow:
     return Arrow(points, action.colour, _HEAD * size)
 
 
-def actions_of(solution: Solution, poses: Poses) -> tuple[list[Action], list[Action]]:
-    """Reactions, efforts and loads: forces, and the moments of drives.
+def actions_of(solution: Solution, poses: Poses) -> list[tuple[str, list[Action], float]]:
+    """Reactions, efforts and loads: the unit, actions, and the largest size of any over all frames,
+    of forces and of the moments of drives, as far as there are some.
 
     Raises :class:`.DeclarationError` where the solution has none of them.
     """
@@ -112,12 +110,15 @@ def actions_of(solution: Solution, poses: Poses) -> tuple[list[Action], list[Act
         raise DeclarationError(
             f"{solution.case}: there is no reaction, effort or load to be shown; want reaction too"
         )
-    return [one for one in found if not one.moment], [one for one in found if one.moment]
-
-
-def largest_of(actions: Sequence[Action]) -> float:
-    """The largest size of any, over all frames; 0 of none."""
-    return max((float(np.max(np.linalg.norm(one.vector, axis=1))) for one in actions), default=0.0)
+    groups = {
+        "N": [one for one in found if not one.moment],
+        "N m": [one for one in found if one.moment],
+    }
+    return [
+        (unit, some, float(np.linalg.norm([one.vector for one in some], axis=2).max()))
+        for unit, some in groups.items()
+        if some
+    ]
 
 
 def moving(solution: Solution) -> Solution:
@@ -150,13 +151,10 @@ def _actions(solution: Solution, poses: Poses) -> Iterator[Action]:
 
 def _vector(solution: Solution, group: str, name: str) -> Array | None:
     """A force in ground axes (frames, 3) [N], or None where it is not known."""
-    outputs = [Output(group, name, member) for member in ("fx", "fy", "fz")]
-    columns = [solution.outputs.get(output) for output in outputs]
-    if all(column is None for column in columns):
-        return None
-    nothing = np.zeros_like(solution.t)
-    found = np.column_stack([nothing if column is None else column for column in columns])
-    return found if np.isfinite(found).all() else None
+    columns = [solution.outputs.get(Output(group, name, member)) for member in ("fx", "fy", "fz")]
+    found = np.column_stack([0.0 * solution.t if one is None else one for one in columns])
+    known = any(one is not None for one in columns) and np.isfinite(found).all()
+    return found if known else None
 
 
 def _laws(solution: Solution, force: str) -> list[str]:

@@ -26,8 +26,7 @@ from ..shapes.poses import Poses, frame_along
 from ..shapes.primitives import disc_axis, drawing, size_of
 from ..shapes.shapes import Shape, shapes
 from ..shapes.symbols import PATH
-from .film_frames import require_motion
-from .forces import LONGEST, actions_of, largest_of, moving
+from .forces import LONGEST, actions_of
 from .solids import Mesh, arrow, block, cylinder, prism, sphere, together
 
 _GIRTH = 0.013
@@ -47,13 +46,12 @@ def glb(solution: Solution, frames: int, seconds: float, *, forces: bool = False
     """The file: one cycle in so many ``seconds``, with at most ``frames`` keys and one more.
 
     With ``forces`` it has arrows of reactions, efforts and loads. Raises :class:`.DeclarationError`
-    where there is no motion to show, and where none of the forces that are asked for is known.
+    where none of the forces that are asked for is known.
     """
-    require_motion(solution)
     t = solution.t
-    chosen = np.zeros(t.size, bool)
-    chosen[np.linspace(0, t.size - 1, min(t.size, frames + 1)).round().astype(int)] = True
-    shown, size = moving(solution).during(chosen), size_of(drawing(Poses.of(solution)))
+    spread = np.linspace(0, t.size - 1, min(t.size, frames + 1)).round()
+    chosen = np.isin(np.arange(t.size), spread)
+    shown, size = solution.during(chosen), size_of(drawing(Poses.of(solution)))
     poses = Poses.of(shown)
     keys = (shown.t - t[0]) / (t[-1] - t[0]) * seconds
     file = _File()
@@ -61,12 +59,12 @@ def glb(solution: Solution, frames: int, seconds: float, *, forces: bool = False
     parts = [*_bodies(file, poses, _GIRTH * size), *_still(file, poses, _GIRTH * size)]
     if forces:
         parts += _actions(file, shown, poses, size)
-    turned: dict[str, Any] = {}
+    rotation = None
     if solution.description.space:
         right, away, up = upright(solution.description.gravity)
         # Up is y there, and what is near z.
-        turned["rotation"] = _quaternions(np.stack([right, up, -away])[None])[0].tolist()
-    file.node(solution.case, children=parts, **turned)
+        rotation = _quaternions(np.stack([right, up, -away])[None])[0].tolist()
+    file.node(solution.case, children=parts, rotation=rotation)
     return file.made(solution.case)
 
 
@@ -204,14 +202,15 @@ def _actions(file: _File, solution: Solution, poses: Poses, size: float) -> Iter
     """Reactions, efforts and loads as arrows of length 1, which are placed, turned and made as long
     as they are large.
     """
-    pushes, moments = actions_of(solution, poses)
-    for actions, unit, heads in ((pushes, "N", 1), (moments, "N m", 2)):
-        largest = largest_of(actions)
+    for unit, actions, largest in actions_of(solution, poses):
         if not largest:
             continue
         scale = LONGEST * size / largest
-        colours = dict.fromkeys(one.colour for one in actions)
-        meshes = {colour: file.mesh("arrow", arrow(heads), colour) for colour in colours}
+        heads = 2 if unit == "N m" else 1
+        meshes = {
+            colour: file.mesh("arrow", arrow(heads), colour)
+            for colour in dict.fromkeys(one.colour for one in actions)
+        }
         for one in actions:
             sizes = np.linalg.norm(one.vector, axis=1)
             # What is nothing has no direction; it keeps the one before.

@@ -49,8 +49,7 @@ def revolved(start: Array, axis: Array, profile: Sequence[tuple[float, float]]) 
 
     def around(along: float, radius: float) -> Array:
         ring = np.stack([along + 0.0 * k, radius * np.cos(angles), radius * np.sin(angles)], 1)
-        found: Array = ring @ frame
-        return found
+        return np.asarray(ring @ frame)
 
     bands = []
     for (x, r), (x2, r2) in itertools.pairwise(profile):

@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...base.arrays import Array, every
-from ...results.elastic.deflection import Deflection
+from ...base.arrays import Array
 from ...results.elastic.vibration import Vibration, vibration
 from ...results.solution import Solution
 from ..shapes.picture_files import subplots
 from ..shapes.readable import Scale
-from .link_map import PIXELS, draw_map
+from .link_map import draw_along
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -34,7 +33,19 @@ def draw_deflection(
     found, response = solution.deflection(link), vibration(solution, link)
     down = 2 if response.harmonics else 1
     figure, (upper, *lower) = subplots((8.0, 7.0 if response.harmonics else 3.8), down)
-    _map(upper, found, along, *_UNITS[si])
+    (factor, unit), peak = _UNITS[si], found.peak()
+    most = abs(peak.value) * factor or 1.0
+    draw_along(
+        upper,
+        found.member,
+        along,
+        lambda t, xi: found.size(np.broadcast_to(xi, (solution.t.size, xi.size)))[t] * factor,
+        peak,
+        f"largest: {peak.value * factor:.4g} {unit}",
+        ends=(0.0, None) if found.member.space else (-most, most),
+        scale=Scale(1.0, unit),
+        what="deflection across the link",
+    )
     upper.set_xlabel(label)
     for axes in lower:
         _spectrum(axes, response)
@@ -42,26 +53,6 @@ def draw_deflection(
         f"{solution.case}: deflection of {link} from {_FROM[found.against]}", fontsize=11
     )
     return figure
-
-
-def _map(axes: Axes, found: Deflection, along: Array, factor: float, unit: str) -> None:
-    member = found.member
-    instants, ratios = (every(size, PIXELS) for size in (member.t.size, member.xi.size))
-    xi, peak = member.xi[ratios], found.peak()
-    u = np.broadcast_to(xi, (member.t.size, xi.size))
-    values = found.size(u)[instants] * factor
-    most = abs(peak.value) * factor or 1.0
-    place = float(along[int(np.argmin(np.abs(member.t - peak.t)))])
-    draw_map(
-        axes,
-        (along[instants], xi),
-        values,
-        (0.0, None) if member.space else (-most, most),
-        Scale(1.0, unit),
-        "deflection across the link",
-        f"largest: {peak.value * factor:.4g} {unit}, " + rf"$\xi/l$ = {peak.xi:.3f}",
-        (place, peak.xi),
-    )
 
 
 def _spectrum(axes: Axes, response: Vibration) -> None:

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from ...base.arrays import Array
+import numpy as np
+
+from ...base.arrays import Array, every
+from ...results.strength.member import Member
 from ..shapes.readable import Scale
 
 if TYPE_CHECKING:
@@ -12,6 +16,31 @@ if TYPE_CHECKING:
 
 PIXELS = 1600
 """Instants and ratios of a map at most."""
+
+
+def draw_along(
+    axes: Axes,
+    member: Member,
+    along: Array,
+    grid: Callable[[slice, Array], Array],
+    peak: Any,
+    title: str,
+    **how: Any,
+) -> None:
+    """Draw what ``grid`` gives at instants and ratios of a member over places ``along`` its motion,
+    as :func:`draw_map` does; the title goes on with where the peak is.
+    """
+    instants, ratios = (every(size, PIXELS) for size in (member.t.size, member.xi.size))
+    xi = member.xi[ratios]
+    place = float(along[int(np.argmin(np.abs(member.t - peak.t)))])
+    draw_map(
+        axes,
+        (along[instants], xi),
+        grid(instants, xi),
+        title=rf"{title}, $\xi/l$ = {peak.xi:.3f}",
+        peak=(place, peak.xi),
+        **how,
+    )
 
 
 def draw_map(

@@ -7,7 +7,6 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -66,21 +65,20 @@ def draw_mechanism(solution: Solution, spec: MechanismDrawing, si: bool = False)
     entries = _entries(poses)
     widest = max(0.62 + _LETTER * len(name) for name, _ in entries)
     titles = [view.title.split("\n") for view, _ in panels]
-    laid_out = partial(
-        page,
+    across, tall, places, boxes = page(
         ends,
         min(len(panels), 2 if space or wide > 0.7 * high else 4),
         title=0.15 + 0.17 * max(map(len, titles)),
         least=_LETTER * max(len(line) for title in titles for line in title),
     )
-    (across, _), *_ = laid_out(head=0.0, foot=0.0)
     head = textwrap.wrap(words, int(across / (1.15 * _LETTER))) if space else []
     columns = max(1, min(len(entries), int(across / widest)))
     foot = 0.1 + _ROW * -(-len(entries) // columns)
-    sheet, places, boxes = laid_out(head=0.1 + _ROW * len(head), foot=foot)
-    figure = Figure(figsize=sheet)
+    tall += 0.1 + _ROW * len(head) + foot
+    figure = Figure(figsize=(across, tall))
     for (view, instants), place, box in zip(panels, places, boxes, strict=True):
-        axes = figure.add_axes(tuple(np.array(place) / (sheet * 2)))
+        shares = np.add(place, (0.0, foot, 0.0, 0.0)) / [across, tall, across, tall]
+        axes = figure.add_axes(tuple(shares))
         _frame(axes, view, box, place[2:], scale_for("m", size, si))
         axes.set_title(view.title, fontsize=10)
         point = (box[1] - box[0]) / (72.0 * place[2])
@@ -100,7 +98,7 @@ def draw_mechanism(solution: Solution, spec: MechanismDrawing, si: bool = False)
         labelspacing=0.35,
         handler_map={Symbol: _Legend()},
     )
-    figure.suptitle("\n".join(head), fontsize=11, y=1.0 - 0.1 / sheet[1], va="top")
+    figure.suptitle("\n".join(head), fontsize=11, y=1.0 - 0.1 / tall, va="top")
     return figure
 
 

@@ -51,9 +51,8 @@ def draw_optimum(scene: Scene, optimum: Optimum, file: BinaryIO, ending: str) ->
     table.axis("off")
     lines = [f"{optimum.minimised} = {optimum.objective:.6g} {optimum.unit}", ""]
     for limit in optimum.limits:
-        mark = "active" if limit.active else ""
         lines.append(
-            f"{limit.constraint!s:<{_TEXT}} {limit.value:>11.5g} {mark:<6}"
+            f"{limit.constraint!s:<{_TEXT}} {limit.value:>11.5g} {'active' * bool(limit.active):<6}"
             f" {limit.multiplier:>11.4g}"
         )
     for name, multiplier in optimum.bounds.items():

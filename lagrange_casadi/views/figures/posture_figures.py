@@ -124,12 +124,12 @@ def assemblies(scene: Scene) -> tuple[list[tuple[str, Solution]], int]:
         possible = math.prod(counts)
         if possible > _ALL:
             levels = sum(math.prod(counts[: k + 1]) <= _SOME for k in range(len(counts)))
-    modes = _ways(scene, scene.posture, first, levels)
-    found = list(itertools.islice(modes, 1))
+    ways = _ways(scene, scene.posture, first, levels)
+    found = list(itertools.islice(ways, 1))
     if found and len(found[0][1].description.bodies) > _LARGE:
         return [], 0
     # What a builder can build comes first.
-    return sorted([*found, *modes], key=lambda one: _negative(one[1])), possible
+    return sorted([*found, *ways], key=lambda one: _negative(one[1])), possible
 
 
 def _negative(solution: Solution) -> int:
@@ -143,15 +143,11 @@ def _apart(found: Sequence[Solution]) -> list[list[int]]:
     """Numbers of the ways, those together that look the same."""
     clouds = [cloud(drawing(Poses.of(solution))) for solution in found]
     near = 1e-6 * float(np.ptp(clouds[0], axis=0).max())
-    pictures: list[list[int]] = []
-    for number, points in enumerate(clouds):
-        for group in pictures:
-            if np.abs(points - clouds[group[0]]).max() <= near:
-                group.append(number)
-                break
-        else:
-            pictures.append([number])
-    return pictures
+    first = [
+        next(k for k, other in enumerate(clouds) if np.abs(points - other).max() <= near)
+        for points in clouds
+    ]
+    return [[k for k, one in enumerate(first) if one == number] for number in dict.fromkeys(first)]
 
 
 def _closed(scene: Scene, posture: Mapping[str, float]) -> Solution | PostureError | None:

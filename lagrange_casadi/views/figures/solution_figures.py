@@ -50,6 +50,8 @@ if TYPE_CHECKING:
 
 _LABEL = 40
 
+_DRAWN = ("effort", "reaction", "multiplier", "load", "friction", "output")
+"""Groups of outputs that are drawn over time."""
 
 _FILE = re.compile(r"[A-Za-z0-9_-]+")
 
@@ -72,17 +74,8 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
     internal = solution.description.bends
     groups: dict[tuple[str, str], list[str]] = {}
     for output, values in solution.outputs.items():
-        drawn = output.group in (
-            "effort",
-            "reaction",
-            "multiplier",
-            "load",
-            "friction",
-            "output",
-        ) or output == Output("motion", output.part)
-        if output.part in internal:
-            continue
-        if drawn and solution.determined(output) and np.any(values):
+        drawn = output.group in _DRAWN or output == Output("motion", output.part)
+        if drawn and output.part not in internal and solution.determined(output) and np.any(values):
             suffix = "_own" if output.member.endswith(("u", "v", "w")) else ""
             if suffix and all(solution.determined(other) for other in _in_ground_axes(output)):
                 continue
@@ -100,16 +93,18 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
         specs.append(
             TimePlot(f"{group}_{part.replace(':', '-')}", tuple(names), f"{solution.case}: {what}")
         )
-    for link in solution.links_with_sections:
-        if solution.determined(Output("section", link, "bending")):
-            specs.append(SectionMaps(f"section_{link}", link))
-    if diagrams := tuple(spec.link for spec in specs if isinstance(spec, SectionMaps)):
-        specs.append(SectionDiagrams("diagrams", diagrams))
-    shafts = solution.description.shaft_bearings
+    bent = tuple(
+        link
+        for link in solution.links_with_sections
+        if solution.determined(Output("section", link, "bending"))
+    )
+    specs += [SectionMaps(f"section_{link}", link) for link in bent]
+    if bent:
+        specs.append(SectionDiagrams("diagrams", bent))
     bearings = tuple(
         name
         for name, joint in solution.description.joints.items()
-        if (joint.kind in ("revolute", "cylindrical") or name in shafts)
+        if (joint.kind in ("revolute", "cylindrical") or joint.turning is not None)
         and polar_members(solution, name)
     )
     if bearings:

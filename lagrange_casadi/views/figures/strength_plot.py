@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...base.arrays import Array, every
+from ...base.arrays import Array
 from ...results.solution import Solution
 from ...results.strength.fatigue import Loaded, loaded, use_score, used
 from ...results.strength.fibres import sampled, worst
 from ...results.strength.stress import Stress
 from ..shapes.picture_files import subplots
 from ..shapes.readable import Scale
-from .link_map import PIXELS, draw_map
+from .link_map import draw_along
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -40,7 +40,18 @@ def draw_strength(
     figure, (upper, *lower) = subplots((8.0, 7.6 if fatigue else 3.8), 2 if fatigue else 1)
     # What is drawn is in MPa.
     unit = Scale(_MEGA, "Pa") if si else Scale(1.0, "MPa")
-    _map(upper, stress, along, unit)
+    peak = stress.peak("von_mises")
+    draw_along(
+        upper,
+        stress.member,
+        along,
+        lambda t, xi: Stress(stress.member.during(t)).grid("von_mises", xi) / _MEGA,
+        peak,
+        f"von Mises: peak {unit.said(peak.value / _MEGA)} at {peak.fibre}",
+        ends=(0.0, None),
+        scale=unit,
+        what="von Mises",
+    )
     upper.set_xlabel(label)
     for axes in lower:
         _goodman(axes, stress, unit)
@@ -73,24 +84,6 @@ def draw_utilisation(solution: Solution, parts: Sequence[str]) -> Figure:
     axes.set_xlabel("utilisation, 1 / factor of safety")
     axes.set_title(f"{solution.case}: what governs each part is red", fontsize=11)
     return figure
-
-
-def _map(axes: Axes, stress: Stress, along: Array, unit: Scale) -> None:
-    member = stress.member
-    instants, ratios = (every(size, PIXELS) for size in (member.t.size, member.xi.size))
-    xi, peak = member.xi[ratios], stress.peak("von_mises")
-    place = float(along[int(np.argmin(np.abs(member.t - peak.t)))])
-    said = f"von Mises: peak {unit.said(peak.value / _MEGA)} at {peak.fibre}, "
-    draw_map(
-        axes,
-        (along[instants], xi),
-        Stress(member.during(instants)).grid("von_mises", xi) / _MEGA,
-        (0.0, None),
-        unit,
-        "von Mises",
-        said + rf"$\xi/l$ = {peak.xi:.3f}",
-        (place, peak.xi),
-    )
 
 
 def _goodman(axes: Axes, stress: Stress, unit: Scale) -> None:

@@ -22,7 +22,6 @@ def draw_trade(trade: Trade, file: BinaryIO, ending: str) -> None:
     axes.step(
         *zip(*(places[one] for one in front), strict=True), where="post", color="tab:red", lw=1
     )
-    words = []
     for number, (one, place) in enumerate(places.items(), 1):
         colour = "tab:red" if one in front else "0.35"
         axes.plot(*place, "o", color=colour, ms=5)
@@ -36,7 +35,15 @@ def draw_trade(trade: Trade, file: BinaryIO, ending: str) -> None:
             fontsize=8,
             color=colour,
         )
-        words.append((f"{number:>2}  {one.method.options}", colour))
+        key.text(
+            0.0,
+            0.98 - (number - 1) / max(len(places), 20),
+            f"{number:>2}  {one.method.options}",
+            va="top",
+            fontsize=9,
+            color=colour,
+            family="monospace",
+        )
     axes.set(
         xscale="log",
         yscale="log",
@@ -47,16 +54,6 @@ def draw_trade(trade: Trade, file: BinaryIO, ending: str) -> None:
     axes.grid(True, color="0.9")
     axes.margins(0.1)
     key.axis("off")
-    for line, (text, colour) in enumerate(words):
-        key.text(
-            0.0,
-            0.98 - line / max(len(words), 20),
-            text,
-            va="top",
-            fontsize=9,
-            color=colour,
-            family="monospace",
-        )
     key.set_title(
         "red: nothing is faster and more accurate", fontsize=9, color="tab:red", loc="left"
     )

@@ -77,9 +77,16 @@ def _page(solutions: tuple[Solution, Solution], names: Sequence[str]) -> str:
             }
         )
     cases = " and ".join(dict.fromkeys(solution.case for solution in solutions))
-    content: dict[str, Json] = {"case": cases, "runs": runs, "rows": rows, "groups": GROUPS}
-    content |= {"clock": clock, "same": same_runs(*solutions)}
-    content |= {"arrays": arrays.places, "numbers": arrays.block()}
+    content: dict[str, Json] = {
+        "case": cases,
+        "runs": runs,
+        "rows": rows,
+        "groups": GROUPS,
+        "clock": clock,
+        "same": same_runs(*solutions),
+        "arrays": arrays.places,
+        "numbers": arrays.block(),
+    }
     return assembled(
         f"{cases}: two runs",
         content,

@@ -100,7 +100,13 @@ def _page(sweep: Sweep, scene: Scene | None, command: str) -> str:
     content: dict[str, Any] = {
         "case": sweep.case,
         "parameters": [
-            {"name": name, "title": name, "unit": unit, "sized": False}
+            {
+                "name": name,
+                "title": name,
+                "unit": unit,
+                "sized": False,
+                "values": arrays.add(values[name]),
+            }
             for name, unit in sweep.parameters.items()
         ],
         "columns": [
@@ -109,6 +115,7 @@ def _page(sweep: Sweep, scene: Scene | None, command: str) -> str:
                 "title": name,
                 "unit": sweep.unit(name),
                 "sized": name.startswith("peak:"),
+                "values": arrays.add(values[name]),
             }
             for name in names
         ],
@@ -124,17 +131,16 @@ def _page(sweep: Sweep, scene: Scene | None, command: str) -> str:
         "command": command or run_of(sweep.case),
         "note": _NO_SCENE,
         "frame": None if scene is None else _frame(sweep, scene, front, command),
+        "designs": {
+            "shown": values[DESIGN].size,
+            "total": sweep.size,
+            "grid": DESIGN not in sweep.dimensions,
+            "numbers": arrays.add(values[DESIGN]),
+            "status": arrays.add(values[STATUS]),
+        },
+        "arrays": arrays.places,
+        "numbers": arrays.block(),
     }
-    for one in (*content["parameters"], *content["columns"]):
-        one["values"] = arrays.add(values[one["name"]])
-    content["designs"] = {
-        "shown": values[DESIGN].size,
-        "total": sweep.size,
-        "grid": DESIGN not in sweep.dimensions,
-        "numbers": arrays.add(values[DESIGN]),
-        "status": arrays.add(values[STATUS]),
-    }
-    content |= {"arrays": arrays.places, "numbers": arrays.block()}
     others = [viewer(live=True)] if scene is not None else []
     scripts = [script(name) for name in SWEEP_SCRIPTS]
     return assembled(

@@ -61,7 +61,12 @@ def contents(solution: Solution, live: Live | None = None) -> dict[str, Json]:
         "space": description.space,
         "upright": upright(description.gravity).tolist(),
         "gravity": list(description.components(description.gravity)),
-        "instants": _instants(solution, chosen, arrays),
+        "instants": {
+            "total": solution.t.size,
+            "shown": int(chosen.size),
+            "t": arrays.add(solution.t[chosen]),
+            "over": drive_entry(solution, chosen, arrays),
+        },
         "bodies": list(_bodies(solution, chosen, arrays)),
         "joints": [_joint(joint, description) for joint in description.joints.values()],
         "named": list(named_spots(description)),
@@ -85,7 +90,16 @@ def contents(solution: Solution, live: Live | None = None) -> dict[str, Json]:
         "rows": [*_rows(solution)],
         "strength": list(_strength(solution)),
         "drives": [{"name": name} | asdict(use) for name, use in solution.drives_used().items()],
-        "parameters": list(_parameters(description)),
+        "parameters": [
+            {
+                "name": name,
+                "value": parameter.value,
+                "unit": parameter.unit,
+                "low": finite(parameter.low),
+                "high": finite(parameter.high),
+            }
+            for name, parameter in description.parameters.items()
+        ],
         "certificate": _certificate(solution),
         "notes": [*solution.notes, *(live.notes if live else ())],
         "undetermined": list(solution.undetermined),
@@ -96,15 +110,6 @@ def contents(solution: Solution, live: Live | None = None) -> dict[str, Json]:
     if live:
         found["live"] = live_entry(live, solution, chosen, arrays)
     return found | {"arrays": arrays.places, "numbers": arrays.block()}
-
-
-def _instants(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) -> dict[str, Json]:
-    return {
-        "total": solution.t.size,
-        "shown": int(chosen.size),
-        "t": arrays.add(solution.t[chosen]),
-        "over": drive_entry(solution, chosen, arrays),
-    }
 
 
 def _bodies(
@@ -151,7 +156,7 @@ def _carried(description: Description, poses: Poses) -> Iterator[dict[str, Json]
     for body, line in carried(first, poses, size_of(drawing(first, poses))):
         yield {
             "body": body,
-            "points": first.on_body(body, line.points[0]).tolist(),
+            "points": ((line.points[0] - first.bases[body][0]) @ first.axes[body][0].T).tolist(),
             "of": line.body,
             "width": line.width,
             "closed": line.closed,
@@ -195,9 +200,14 @@ def series_of(
     for slope in derivatives(solution, solution.sensitivities):
         if slope.values.ndim == 1 and slope.output.group in _CHARTED:
             by = f"{what(slope.output, table) or slope.output.part}, by {slope.name.split(':')[1]}"
-            words: dict[str, Json] = {"name": slope.name, "group": "sensitivity", "what": by}
             yield _series(
-                slope.output, table, slope.unit, arrays.add(slope.values[chosen]), **words
+                slope.output,
+                table,
+                slope.unit,
+                arrays.add(slope.values[chosen]),
+                name=slope.name,
+                group="sensitivity",
+                what=by,
             )
     for output, values in held_outputs(solution.holding).items():
         number = arrays.add(values[chosen])
@@ -215,8 +225,13 @@ def _rows(solution: Solution) -> Iterator[dict[str, Json]]:
         return mark(solution, extreme.value, extreme.t, extreme.xi)
 
     for output in ordered(solution):
-        named = {"name": str(output), "group": output.group, "part": output.part}
-        row = named | {"what": what(output, solution.table), "unit": solution.unit(output)}
+        row: dict[str, Json] = {
+            "name": str(output),
+            "group": output.group,
+            "part": output.part,
+            "what": what(output, solution.table),
+            "unit": solution.unit(output),
+        }
         if not solution.determined(output):
             nothing = ("peak", "error", "smallest", "largest", "mean", "rms")
             yield row | {"open": True} | dict.fromkeys(nothing)
@@ -245,21 +260,25 @@ def _strength(solution: Solution) -> Iterator[dict[str, Json]]:
     """
     for found in looked(solution):
         for verdict in found.verdicts:
-            values: dict[str, Json] = {
+            yield {
                 "part": found.link,
                 "against": verdict.against,
                 "where": verdict.where,
                 "open": False,
-            }
-            used = 1.0 / verdict.factor if verdict.factor else None
-            yield values | {
                 "factor": finite(verdict.factor),
-                "used": used,
+                "used": 1.0 / verdict.factor if verdict.factor else None,
                 "governs": verdict is found.governs,
             }
         for why in found.not_evaluated:
-            values = {"part": found.link, "against": "", "where": why, "open": True}
-            yield values | {"factor": None, "used": None, "governs": False}
+            yield {
+                "part": found.link,
+                "against": "",
+                "where": why,
+                "open": True,
+                "factor": None,
+                "used": None,
+                "governs": False,
+            }
 
 
 def _joint(joint: JointNumbers, description: Description) -> dict[str, Json]:
@@ -274,17 +293,6 @@ def _joint(joint: JointNumbers, description: Description) -> dict[str, Json]:
         "coordinates": [(axis.coordinate, axis.kind) for axis in joint.axes],
         "driven": [a.coordinate for a in joint.axes if a.coordinate in description.drives],
     }
-
-
-def _parameters(description: Description) -> Iterator[dict[str, Json]]:
-    for name, parameter in description.parameters.items():
-        yield {
-            "name": name,
-            "value": parameter.value,
-            "unit": parameter.unit,
-            "low": finite(parameter.low),
-            "high": finite(parameter.high),
-        }
 
 
 def _residuals(solution: Solution) -> Iterator[tuple[Output, Array]]:

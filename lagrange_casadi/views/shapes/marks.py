@@ -81,7 +81,7 @@ def load_marks(
             continue
         vector = _signed(load.components, numbers)
         if load.turning:
-            vector = poses.direction(load.point.body.name, (vector[0], vector[1], vector[2]))[0]
+            vector = vector @ poses.axes[load.point.body.name][0]
         way = vector / (np.linalg.norm(vector) or 1.0)
         words = _components(load.components, "N" if isinstance(load, Force) else "N m")
         if isinstance(load, Torque) and load.coiled:
@@ -153,7 +153,7 @@ def _comb(load: LineLoad, poses: Poses, numbers: Array, size: float) -> Iterator
         ends = dict.fromkeys(f"{np.linalg.norm(acts[k]):.4g}" for k in (0, -1))
         words = " to ".join(ends)
     else:
-        words = _text(expressions[0] if len(expressions) == 1 else ca.vertcat(*expressions))
+        words = _text(ca.vertcat(*expressions))
     yield Name(tails[:, _TEETH // 2, None], f"{load.name}: {words} N/m", colour=LOAD)
 
 
@@ -172,12 +172,8 @@ def _measured(entry: Entry, poses: Poses) -> float:
         way = poses.place(joint.child) - poses.place(joint.parent)
         return float(np.sum(way * poses.direction(joint.parent.body, axis.direction)))
     _, first, second = frame_along(np.array(axis.direction))
-    x, y, z = (np.array(joint.turned) @ first).tolist()
-    seen = poses.direction(joint.child.body, (x, y, z))[0]
-    cosine, sine = (
-        float(seen @ poses.direction(joint.parent.body, (one[0], one[1], one[2]))[0])
-        for one in (first, second)
-    )
+    seen = np.array(joint.turned) @ first @ poses.axes[joint.child.body][0]
+    cosine, sine = np.array([first, second]) @ poses.axes[joint.parent.body][0] @ seen
     return math.atan2(sine, cosine)
 
 

@@ -89,20 +89,13 @@ def views(
 
 
 def page(
-    ends: Sequence[tuple[Array, Array]],
-    across: int,
-    *,
-    head: float,
-    title: float,
-    foot: float,
-    least: float = 0.0,
-) -> tuple[tuple[float, float], list[Quad], list[Quad]]:
+    ends: Sequence[tuple[Array, Array]], across: int, *, title: float, least: float
+) -> tuple[float, float, list[Quad], list[Quad]]:
     """A page of pictures that show the ranges between their ``ends``, lower left and upper right
-    [m], so many ``across``, in rows, all to one scale: its size [inch]; of each picture left,
-    bottom, width and height [inch]; and left, right, bottom and top of what it shows [m].
+    [m], so many ``across``, in rows, all to one scale: its width and height [inch]; of each picture
+    left, bottom, width and height [inch]; and left, right, bottom and top of what it shows [m].
 
-    ``head``, ``title`` above each picture and ``foot`` are heights, ``least`` the width of each
-    picture at least [inch].
+    ``title`` is the height above each picture, ``least`` the width of each at least [inch].
     """
     spans = np.array([high - low for low, high in ends])
     columns = np.array([spans[k::across, 0].max() for k in range(across)])
@@ -112,8 +105,7 @@ def page(
     )
     columns = np.maximum(columns, least / scale)
     lefts = _LEFT + np.cumsum([0.0, *(scale * columns[:-1] + _BETWEEN)])
-    step = _BELOW + title
-    bottoms = foot + _BELOW + np.cumsum([0.0, *(scale * rows[:0:-1] + step)])[::-1]
+    bottoms = _BELOW + np.cumsum([0.0, *(scale * rows[:0:-1] + _BELOW + title)])[::-1]
     places, boxes = list[Quad](), list[Quad]()
     for k, (low, high) in enumerate(ends):
         row, column = divmod(k, across)
@@ -121,8 +113,8 @@ def page(
         (left, bottom), (right, top) = middle - half, middle + half
         boxes.append((left, right, bottom, top))
         places.append((lefts[column], bottoms[row], scale * columns[column], scale * rows[row]))
-    size = (lefts[-1] + scale * columns[-1] + _RIGHT, bottoms[0] + scale * rows[0] + title + head)
-    return size, places, boxes
+    width, height = lefts[-1] + scale * columns[-1] + _RIGHT, bottoms[0] + scale * rows[0] + title
+    return width, height, places, boxes
 
 
 def _named(direction: Array) -> str:

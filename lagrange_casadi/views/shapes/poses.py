@@ -41,25 +41,14 @@ class Poses:
     @classmethod
     def of(cls, solution: Solution) -> Poses:
         """The poses at the instants of a solution, which must have its motion."""
-        poses = {body: solution.pose(body) for body in solution.description.bodies}
-        bases = {
-            body: np.column_stack([pose.x, pose.y, 0.0 * pose.x if pose.z is None else pose.z])
-            for body, pose in poses.items()
-        }
-        axes = {body: _axes(pose) for body, pose in poses.items()}
-        return cls.above_ground(solution.description, bases, axes, solution.t.size)
-
-    @classmethod
-    def above_ground(
-        cls,
-        description: Description,
-        bases: Mapping[str, Array],
-        axes: Mapping[str, Array],
-        count: int = 1,
-    ) -> Poses:
-        """The poses of bodies at so many instants, and of the ground."""
-        still = {"ground": np.zeros((count, 3))}, {"ground": np.tile(np.eye(3), (count, 1, 1))}
-        return cls(description, {**still[0], **bases}, {**still[1], **axes})
+        count = solution.t.size
+        bases = {"ground": np.zeros((count, 3))}
+        axes = {"ground": np.tile(np.eye(3), (count, 1, 1))}
+        for body in solution.description.bodies:
+            pose = solution.pose(body)
+            z = 0.0 * pose.x if pose.z is None else pose.z
+            bases[body], axes[body] = np.column_stack([pose.x, pose.y, z]), _axes(pose)
+        return cls(solution.description, bases, axes)
 
     def during(self, chosen: slice | list[int]) -> Poses:
         """The poses at some of the instants."""
@@ -73,10 +62,6 @@ class Poses:
     def along(self, body: str, places: Sequence[Triple]) -> Array:
         """Places on a body or on the ground, (t, n, 3) in ground axes [m]."""
         return np.asarray(self.bases[body][:, None] + np.array(places, float) @ self.axes[body])
-
-    def on_body(self, body: str, points: Array) -> Array:
-        """Places (n, 3) at the first instant in the axes of a body or of the ground [m]."""
-        return np.asarray((points - self.bases[body][0]) @ self.axes[body][0].T)
 
     def direction(self, body: str, local: Triple) -> Array:
         """A direction that a body carries, (t, 3) in ground axes."""

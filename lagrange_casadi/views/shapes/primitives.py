@@ -62,16 +62,12 @@ def drawing(
     """
     whole = whole or poses
     description = poses.description
-    joints = list(description.joints.values())
-    parts = [*shapes(description)]
-    bodies = [one for shape in parts for one in _body(poses, shape)]
-    spots = [Line(whole.place(spot), PATH, 0.0) for spot in spots_of(description)]
-    size = size_of([*bodies, *spots])
+    found = [one for shape in shapes(description) for one in _body(poses, shape)]
+    size = size_of([*found, *(Line(whole.place(at), PATH, 0.0) for at in spots_of(description))])
 
     def symbol(kind: str, spot: Place, level: int) -> Symbol:
         return Symbol(kind, poses.place(spot)[:, None], level=level)
 
-    found: list[Primitive] = [*bodies]
     for spot in description.paths.values():
         way = Line(whole.place(spot)[None], PATH, 1.4, level=WAYS)
         found += [way, symbol("point", spot, POINTS)]
@@ -81,22 +77,16 @@ def drawing(
             lines = between(start, stop, _COIL * size, load)
             found += [Line(line, _METAL, 1.5, level=SPRINGS) for line in lines]
     found += [line for _, line in carried(poses, whole, size)]
-    masses = {shape.name for shape in parts if shape.kind == "point"}
-    for joint in joints:
+    for joint in description.joints.values():
         ground = [end for end in joint.ends if end.body == "ground"]
         if ground and joint.kind not in _UNSUPPORTED:
             found.append(symbol("stand", ground[0], GROUND))
         if joint.kind in _SLIDES:
-            found += [_guide(poses, whole, joint, size), _block(poses, joint, masses)]
+            found += [_guide(poses, whole, joint, size), _block(poses, joint)]
         else:
             found.append(symbol(joint.kind, joint.child, PINS))
             if description.space:
                 found += _axes(poses, joint, size)
-            if description.space and joint.kind == "planar":
-                sides = _PLANE * size * np.array([(0, x, y) for x, y in _SQUARE])
-                corners = np.array(joint.parent.at) + sides @ np.array(joint.triad)
-                plane = poses.along(joint.parent.body, corners.tolist())
-                found.append(Line(plane, _PITCH, 0.8, closed=True, opacity=0.12, level=GROUND))
     named = named_spots(description) if named is None else named
     found += [Name(poses.place(spot)[:, None], name) for name, spot in named.items()]
     # Of a mechanism without bodies, the origin of the ground.
@@ -129,8 +119,7 @@ def carried(poses: Poses, whole: Poses, size: float) -> Iterator[tuple[str, Line
     for pitch in pitches:
         yield from _meshing(poses, whole, pitch)
     for track in description.tracks.values():
-        for line in _drum(poses, track):
-            yield line.body, line
+        yield from _drum(poses, track)
 
 
 def cloud(primitives: Iterable[Primitive]) -> Array:
@@ -173,10 +162,9 @@ def _body(poses: Poses, shape: Shape) -> Iterator[Primitive]:
     along = partial(poses.along, name)
     for plate in shape.plates:
         yield Line(along(plate), colour, 2.0, closed=True, opacity=0.25, body=name)
-    middle, axis, rim = Place(name, shape.centre or (0.0, 0.0, 0.0)), disc_axis(poses, shape), None
+    middle, axis = Place(name, shape.centre or (0.0, 0.0, 0.0)), disc_axis(poses, shape)
     if axis is not None:
-        way = poses.direction(name, (axis[0], axis[1], axis[2]))
-        rim = around(poses.place(middle), way, shape.disc * ROUND)
+        rim = around(poses.place(middle), axis @ poses.axes[name], shape.disc * ROUND)
         yield Line(rim, colour, 2.4, closed=True, opacity=0.2, body=name)
         yield Line(np.stack([np.mean(rim, axis=1), rim[:, 0]], axis=1), colour, 2.4, body=name)
     if shape.axis:
@@ -187,7 +175,7 @@ def _body(poses: Poses, shape: Shape) -> Iterator[Primitive]:
     slides = any(
         joint.kind in _SLIDES and name in (joint.parent.body, joint.child.body) for joint in joints
     )
-    if not slides and rim is None and not (shape.plates or shape.axis or shape.arms):
+    if not slides and axis is None and not (shape.plates or shape.axis or shape.arms):
         yield Symbol("mass", poses.place(middle)[:, None], None, colour, BODIES)
 
 
@@ -220,10 +208,10 @@ def _guide(poses: Poses, whole: Poses, joint: JointNumbers, size: float) -> Line
     return Line(np.stack(ends, axis=1), "#888888", 1.2, dashed=True, level=GROUND)
 
 
-def _block(poses: Poses, joint: JointNumbers, masses: set[str]) -> Symbol:
+def _block(poses: Poses, joint: JointNumbers) -> Symbol:
     """The part that slides: in the colour of its body, larger if the part is a point mass."""
     body = joint.parent.body if joint.child.body == "ground" else joint.child.body
-    mass = body in masses
+    mass = poses.description.bodies[body].length is None
     spot = Place(body, (0.0, 0.0, 0.0)) if mass else joint.child
     along = poses.direction(joint.parent.body, joint.triad[0])
     kind = "sliding mass" if mass else joint.kind
@@ -233,13 +221,18 @@ def _block(poses: Poses, joint: JointNumbers, masses: set[str]) -> Symbol:
 
 
 def _axes(poses: Poses, joint: JointNumbers, size: float) -> Iterator[Line]:
-    """Short lines along the axes about which a joint in space turns."""
-    if joint.kind not in ("revolute", "universal"):
-        return
-    middle = poses.place(joint.child)
+    """The plane in which a joint in space slides, or short lines along the axes about which it
+    turns.
+    """
+    if joint.kind == "planar":
+        sides = _PLANE * size * np.array([(0, x, y) for x, y in _SQUARE])
+        corners = np.array(joint.parent.at) + sides @ np.array(joint.triad)
+        plane = poses.along(joint.parent.body, corners.tolist())
+        yield Line(plane, _PITCH, 0.8, closed=True, opacity=0.12, level=GROUND)
     carried = [(joint.child.body, joint.carried)] if joint.carried else []
-    for body, axis in [(joint.parent.body, joint.triad[0]), *carried]:
-        half = _AXIS * size * poses.direction(body, axis)
+    turned = [(joint.parent.body, joint.triad[0]), *carried]
+    for body, axis in turned if joint.kind in ("revolute", "universal") else ():
+        middle, half = poses.place(joint.child), _AXIS * size * poses.direction(body, axis)
         yield Line(np.stack([middle - half, middle + half], axis=1), "#222222", 2.0, level=AXES)
 
 
@@ -261,7 +254,7 @@ def _meshing(poses: Poses, whole: Poses, pitch: PitchCircles) -> Iterator[tuple[
         yield body, Line(points, colour, 2.0, closed=True, opacity=0.25, body=body)
 
 
-def _drum(poses: Poses, track: Track) -> Iterator[Line]:
+def _drum(poses: Poses, track: Track) -> Iterator[tuple[str, Line]]:
     """A drum with the flanks of its groove, and the roller in that."""
     body, radius = track.centre.body, track.radius
     way: Array = np.array(track.way)
@@ -274,18 +267,17 @@ def _drum(poses: Poses, track: Track) -> Iterator[Line]:
     colour, edge_of = poses.colours[body], 2.0 * radius or 0.2 * size.max()
     for end in (high.min() - edge_of, high.max() + edge_of):
         ring = around((centre + end * axis)[None], axis[None], size.max() * ROUND)[0]
-        yield Line(
-            poses.along(body, ring.tolist()), colour, 2.0, closed=True, opacity=0.15, body=body
-        )
+        points = poses.along(body, ring.tolist())
+        yield body, Line(points, colour, 2.0, closed=True, opacity=0.15, body=body)
     for side in (-1.0, 1.0) if radius else (0.0,):
         flank = poses.along(body, (way + side * across).tolist())
-        yield Line(flank, colour, 1.6, closed=True, body=body)
+        yield body, Line(flank, colour, 1.6, closed=True, body=body)
     middle, about = poses.place(track.held), poses.direction(body, track.axis)
     seat = middle - poses.place(track.centre)
     seat = seat - np.sum(seat * about, axis=1, keepdims=True) * about
     held = track.held.body
-    ring = around(middle, seat, radius * ROUND)
-    yield Line(ring, poses.colours[held], 2.0, closed=True, opacity=0.25, level=POINTS, body=held)
+    ring, colour = around(middle, seat, radius * ROUND), poses.colours[held]
+    yield held, Line(ring, colour, 2.0, closed=True, opacity=0.25, level=POINTS, body=held)
 
 
 def _arrow(arrow: Arrow, points: Array) -> Iterator[Line]:

@@ -15,8 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...model.description import Description, Place, Triple
+from .curves import ROUND
 
-_ROUND, _WAYS = (np.exp(2j * np.pi * np.arange(n) / n) for n in (48, 1440))
+_WAYS = np.exp(2j * np.pi * np.arange(1440) / 1440)
 
 _FLAT = 1e-6
 """Over a body's size: points that are no farther from a plane, or from a line, lie in it."""
@@ -35,11 +36,11 @@ class Shape:
     kind: str
     length: float | None
     mass: float
-    axis: tuple[Triple, ...]
-    arms: tuple[tuple[Triple, Triple], ...]
-    plates: tuple[tuple[Triple, ...], ...]
-    centre: Triple | None
-    disc: float
+    axis: tuple[Triple, ...] = ()
+    arms: tuple[tuple[Triple, Triple], ...] = ()
+    plates: tuple[tuple[Triple, ...], ...] = ()
+    centre: Triple | None = None
+    disc: float = 0.0
 
 
 def shapes(description: Description) -> Iterator[Shape]:
@@ -49,7 +50,7 @@ def shapes(description: Description) -> Iterator[Shape]:
         spots = list(dict.fromkeys(spot.at for spot in spots_of(description) if spot.body == name))
         length, mass = body.length, body.mass
         if length is None:
-            yield Shape(name, "point", None, mass, (), (), (), (0.0, 0.0, 0.0), 0.0)
+            yield Shape(name, "point", None, mass, centre=(0.0, 0.0, 0.0))
         elif body.centre is not None and not math.isnan(mass):
             centre = body.centre
             plates = outlines or _plates(spots)
@@ -61,17 +62,8 @@ def shapes(description: Description) -> Iterator[Shape]:
                 else [(centre, at) for at in spots if at != centre]
             )
             arms = () if plates else tuple(ends)
-            yield Shape(
-                name,
-                "rigid",
-                length,
-                mass,
-                (),
-                arms,
-                plates + rollers,
-                centre,
-                0.0 if arms or plates else max(length, 0.0),
-            )
+            disc = 0.0 if arms or plates else max(length, 0.0)
+            yield Shape(name, "rigid", length, mass, (), arms, plates + rollers, centre, disc)
         else:
             axis: tuple[Triple, ...] = ((0.0, 0.0, 0.0), (length, 0.0, 0.0))
             beside = [
@@ -88,9 +80,7 @@ def shapes(description: Description) -> Iterator[Shape]:
             )
             # A true outline stands for the axis and what is beside it.
             axis, arms = (axis, arms) if not outlines else ((), ())
-            yield Shape(
-                name, "link", length, mass, axis, arms, (outlines or plates) + rollers, None, 0.0
-            )
+            yield Shape(name, "link", length, mass, axis, arms, (outlines or plates) + rollers)
 
 
 def named_spots(description: Description) -> dict[str, Place]:
@@ -124,8 +114,8 @@ def _rollers(description: Description, body: str) -> tuple[tuple[Triple, ...], .
     """The rollers on a body, each as a polygon."""
     return tuple(
         tuple(
-            (roller.centre.at[0] + roller.radius * x, roller.centre.at[1] + roller.radius * y, 0.0)
-            for x, y in zip(_ROUND.real.tolist(), _ROUND.imag.tolist(), strict=True)
+            (roller.centre.at[0] + corner.real, roller.centre.at[1] + corner.imag, 0.0)
+            for corner in (roller.radius * ROUND).tolist()
         )
         for roller in description.rollers.values()
         if roller.centre.body == body

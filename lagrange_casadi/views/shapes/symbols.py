@@ -86,8 +86,7 @@ Primitive: TypeAlias = Line | Symbol | Arrow | Name
 
 def frame(values: Array, k: int) -> Array:
     """The values at a frame; the only ones of what stands still."""
-    found: Array = values[min(k, len(values) - 1)]
-    return found
+    return np.asarray(values[min(k, len(values) - 1)])
 
 
 def turn(symbol: Symbol, k: int) -> float:
@@ -155,6 +154,11 @@ SYMBOLS: dict[str, tuple[Line, ...]] = {
     "mass": (_box(18.0, 18.0, BODY),),
     "sliding mass": (_box(36.0, 24.0, BODY),),
     "point": (_polygon([(-5, 0), (0, -5), (5, 0), (0, 5)], PATH, PATH),),
+    "centre": (
+        _circle(3.6, PAPER),
+        _polygon([(0, 0), (3.6, 0), (3.3, -1.4), (2.5, -2.5), (1.4, -3.3), (0, -3.6)], INK),
+        _polygon([(0, 0), (-3.6, 0), (-3.3, 1.4), (-2.5, 2.5), (-1.4, 3.3), (0, 3.6)], INK),
+    ),
     "stand": (
         _polygon([(0, 0), (10, -17), (-10, -17)], FOOT, STAND),
         _line((-16, -17), (16, -17), STAND),
@@ -162,6 +166,6 @@ SYMBOLS: dict[str, tuple[Line, ...]] = {
     ),
 }
 """The symbols by kinds of joints, of a drive in a page, of a point mass, of one that slides, of a
-declared point and of the ground: lines whose points (n, 2) are against the symbol's place [points
-of paper], x along the symbol's direction and y up.
+declared point, of a centre of mass in a page and of the ground: lines whose points (n, 2) are
+against the symbol's place [points of paper], x along the symbol's direction and y up.
 """

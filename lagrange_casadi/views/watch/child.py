@@ -52,8 +52,7 @@ def main() -> None:
         threading.Thread(target=_end_with_input, daemon=True).start()
 
         def say(kind: str, value: object) -> None:
-            out.write(json.dumps([kind, value], allow_nan=False) + "\n")
-            out.flush()
+            print(json.dumps([kind, value], allow_nan=False), file=out, flush=True)
 
         say("error", _shown(json.loads(order), say))
 
@@ -75,11 +74,11 @@ def _shown(given: Mapping[str, Any], say: Say) -> str:
     except LagrangeCasadiError as error:
         with suppress(LagrangeCasadiError):
             if error.placement is not None:
-                say("drawing", draw_error(error).svg)
+                say("drawing", {"svg": draw_error(error).svg})
             elif isinstance(error, PostureError) and isinstance(error.scene, Scene):
                 picture, postures, _ = draw_postures(error.scene)
                 if picture is not None:
-                    say("drawing", svg(picture, paper=False))
+                    say("drawing", {"svg": svg(picture, paper=False)})
                     return "\n".join([str(error), *numbered(postures)])
         if isinstance(error.__cause__, MemoryError):
             return f"out of memory: the case takes more than there is ({error})"
@@ -100,26 +99,27 @@ def _show(case: Path, given: Mapping[str, Any], say: Say) -> None:
         scene = load_case(case).scene
     except LagrangeCasadiError as error:
         if drawing := draw_declared(file, error):
-            say("drawing", drawing.svg)
+            say("drawing", {"svg": drawing.svg})
         raise
     finally:
         say("files", sorted(opened))
     parameters, t = given["parameters"], given["t"]
     wanted = with_motion(given["wanted"] or scene.wanted)
     say("doing", "drawing")
-    say("drawing", scene.draw(parameters=parameters, t=t and t[0]).svg)
+    say("drawing", {"svg": scene.draw(parameters=parameters, t=t and t[0]).svg})
     say("doing", "computing the motion")
     run = partial(evaluate, scene, parameters=parameters, t=t, backend="vm")
-    say("motion", contents(run(wanted=["motion"], certificate=False)))
+    motion = contents(run(wanted=["motion"], certificate=False))
+    say("contents", {"whole": False, "contents": motion})
     say("doing", "computing forces and peaks")
     solution = run(wanted=wanted)
-    say("all", contents(solution))
+    say("contents", {"whole": True, "contents": contents(solution)})
     # What elasticity determines is not in the program of a live page.
     if scene.values() and not solution.elasticity.completed:
         say("doing", "compiling for the browser")
         try:
             live = Live.of(scene, scene.timing(t), wanted, run_of(str(case)), parameters)
-            say("all", contents(solution, live))
+            say("contents", {"whole": True, "contents": contents(solution, live)})
         except LagrangeCasadiError as error:
             say("note", f"joints cannot be dragged: {one_line(error)}")
 

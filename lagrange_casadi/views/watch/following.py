@@ -11,7 +11,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -45,7 +45,6 @@ def follow(case: Path, given: Mapping[str, Any], news: News, limit: float | None
     Raises :class:`.CaseError` where there is no such file.
     """
     order, file = json.dumps({"case": str(case), **given}), case_file(case).resolve()
-    limits = (_DRAWING, _WHOLE) if limit is None else (limit, limit)
     said: Said = Queue()
     runs = [_Run(said)]  # the last waits for its turn, for to import the program takes long
     files: set[str] = set()
@@ -57,26 +56,26 @@ def follow(case: Path, given: Mapping[str, Any], news: News, limit: float | None
             if stamps == before != shown:
                 runs.append(_Run(said))
                 for run in runs[:-2]:
-                    run.end()
+                    programs.end(run.process)
                 runs, shown = runs[-2:], stamps
                 news.begin()
                 runs[0].begin(order)
             before = stamps
-            for run, kind, value in _heard(said):
-                if run is not runs[0] or run.done:
-                    continue
-                run.hear(kind)
-                if kind == "files":
-                    files |= set(value)
-                    shown = _stamps(file, files) | shown
-                else:
-                    news.put(kind, value)
-            if words := runs[0].late(*limits):
-                runs[0].end()
+            with suppress(Empty):
+                run, kind, value = said.get(timeout=_MOMENT)
+                if run is runs[0] and not run.done:
+                    run.hear(kind)
+                    if kind == "files":
+                        files |= set(value)
+                        shown = _stamps(file, files) | shown
+                    else:
+                        news.put(kind, value)
+            if words := runs[0].late(limit):
+                programs.end(runs[0].process)
                 news.put("error", words)
     finally:
         for run in runs:
-            run.end()
+            programs.end(run.process)
 
 
 def _stamps(file: Path, files: Collection[str]) -> Stamps:
@@ -87,14 +86,6 @@ def _stamps(file: Path, files: Collection[str]) -> Stamps:
             there = os.stat(path)
             found[path] = (there.st_mtime_ns, there.st_size, there.st_ino)
     return found
-
-
-def _heard(said: Said) -> Iterator[tuple[_Run, str, Any]]:
-    """Hear what is said within a moment: by which run, of which kind, and what."""
-    with suppress(Empty):
-        yield said.get(timeout=_MOMENT)
-        while True:
-            yield said.get_nowait()
 
 
 @dataclass(eq=False)
@@ -137,14 +128,11 @@ class _Run:
         self.drawn = self.drawn or kind == "drawing"
         self.done = kind == "error"
 
-    def late(self, drawing: float, whole: float) -> str:
+    def late(self, limit: float | None) -> str:
         """Give the error of a process that takes too long, and count it as done; else nothing."""
-        most, what = (whole, "") if self.drawn else (drawing, " to draw")
+        most, what = (_WHOLE, "") if self.drawn else (_DRAWING, " to draw")
+        most = most if limit is None else limit
         if self.done or time.monotonic() - self.began < most:
             return ""
         self.done = True
         return f"the case takes more than {most:g} s{what}: it was ended"
-
-    def end(self) -> None:
-        """End the process, and what the case has started."""
-        programs.end(self.process)

@@ -30,13 +30,11 @@ class News:
 
     def put(self, kind: str, value: Any) -> None:
         """Hear what a run of the case says: what it does, a note, a drawing, the contents of a page
-        with the motion or with all; or at its end an error, which may be empty.
+        with the motion or with the whole; or at its end an error, which may be empty.
         """
-        state, save = self._state, {"save": self._state["save"]}
-        if kind == "drawing":
-            self._tell("drawing", save | {"svg": value})
-        elif kind in ("motion", "all"):
-            self._tell("contents", save | {"whole": kind == "all", "contents": value})
+        state = self._state
+        if kind in ("drawing", "contents"):
+            self._tell(kind, {"save": state["save"], **value})
         elif kind == "note":
             state["notes"].append(value)
         else:

@@ -61,12 +61,12 @@ class _Request(BaseHTTPRequestHandler):
     def _begin(self, kind: str) -> None:
         self.send_response(200)
         self.send_header("Content-Type", kind)
-        self.send_header("Content-Security-Policy", self.server.policy)
         self.end_headers()
 
     def end_headers(self) -> None:
         """End the heads that every answer has."""
         for name, value in (
+            ("Content-Security-Policy", self.server.policy),
             ("Cache-Control", "no-store"),
             ("Cross-Origin-Resource-Policy", "same-origin"),
             ("Cross-Origin-Opener-Policy", "same-origin"),
