@@ -15,7 +15,7 @@ class Alive {
     this.postures = new Postures(this);
     this.read();
     this.carries = true;
-    this.carried = this.carriedNow(this.numbers(this.values));
+    this.file.numbers = this.numbers(this.values);
     const rowsTold = new Set([...this.targets.map((target) => target.row), ...this.curves.flatMap((curve) => [...curve.rowOf.values()])]);
     this.untold = contents.rows.filter((row) => !row.open && !rowsTold.has(row));
     const ends = this.curves.flatMap((curve) => [...curve.series.values()].flat());
@@ -315,7 +315,7 @@ class Alive {
       load.spots.forEach((spot, i) => (spot.at = at(picture.loads[k][i])));
       [load.closed] = at([picture.closed[k]]);
     });
-    this.carries = this.carriedNow(numbers) === this.carried;
+    this.carries = picture.carried.every((place) => numbers[place] === this.file.numbers[place]);
     contents.paths.forEach((path, k) => (path.at = at(picture.paths[k])));
     const spots = [
       ...spotsNow(),
@@ -331,11 +331,6 @@ class Alive {
       if (sectionByLink.has(body.name)) sectionByLink.get(body.name).length = length;
     }
     return numbers;
-  }
-
-  /** The numbers that carried lines are made of, as one text. */
-  carriedNow(numbers) {
-    return String(this.live.picture.carried.map((place) => numbers[place]));
   }
 
   check(status, t) {

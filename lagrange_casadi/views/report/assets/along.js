@@ -205,7 +205,6 @@ function largestSize(c) {
 
 /** What a force is nowhere from 0 to 1 beyond in size: no polynomial is beyond its ordinates of Bernstein. */
 function boundOf(parts) {
-  if (parts.length === 1) return largestSize(parts[0]);
   let sum = 0;
   for (const c of parts) sum += largestSize(c) ** 2;
   return Math.sqrt(sum);

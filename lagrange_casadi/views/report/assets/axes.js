@@ -202,7 +202,14 @@ function closest(count, awayOf, within = Infinity) {
   return best;
 }
 
-/** The number of the value that is nearest to another. */
+/** The number of the value that is nearest to another, among values that only ever rise, or fall. */
 function nearest(values, wanted) {
-  return closest(values.length, (k) => Math.abs(values[k] - wanted)) ?? 0;
+  const rises = values.at(-1) >= values[0];
+  let [low, high] = [0, values.length - 1];
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if (values[middle] <= wanted === rises) low = middle;
+    else high = middle;
+  }
+  return Math.abs(values[high] - wanted) < Math.abs(values[low] - wanted) ? high : low;
 }

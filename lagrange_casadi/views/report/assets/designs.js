@@ -12,13 +12,9 @@ const picked = { row: -1, where: "", met: null, watchers: new Set() };
 
 /** The least, the largest, and the largest in size, of what a column is compared by, over designs with a result. */
 function rangeOfColumn(column) {
-  let [low, high] = [Infinity, -Infinity];
-  for (let row = 0; row < designs.count; row += 1) {
-    const value = status[row] === 0 ? costOf(column, row) : NaN;
-    if (value < low) low = value;
-    if (value > high) high = value;
-  }
-  return low <= high ? [low, high, Math.max(Math.abs(low), Math.abs(high))] : [0, 0, 0];
+  const values = Array.from(status, (state, row) => (state === 0 ? costOf(column, row) : NaN));
+  const ends = values.some(Number.isFinite) ? endsOf(values) : [0, 0];
+  return [...ends, largestOf(ends)];
 }
 
 /** The part of its size by which a column varies. */

@@ -18,12 +18,11 @@ class Drag {
 
   /** For each joint, which parameters its place on its bodies is made of. */
   ownParameters() {
-    const { values } = this.engine.file;
-    const numbers = this.engine.numbers(values);
-    const changed = values.reduce((all, _, n) => {
+    const { values, numbers } = this.engine.file;
+    const changed = Array.from(values, (_, n) => {
       const others = [-1, 1].map((way) => this.engine.numbers(this.beside(values, n, way)));
-      return [...all, (place) => place >= 0 && others.some((other) => other[place] !== numbers[place])];
-    }, []);
+      return (place) => place >= 0 && others.some((other) => other[place] !== numbers[place]);
+    });
     return this.engine.live.picture.joints.map(({ parent, child }) => changed.map((by) => [...parent, ...child].some(by)));
   }
 
@@ -53,7 +52,7 @@ class Drag {
     const owned = contents.parameters.map((_, n) => this.own.some((own, k) => together[k] && own[n]));
     this.active = owned.map((is, n) => this.freed[n] || is || !owned.some(Boolean));
     const base = this.base();
-    return Boolean(base) && near(engine.postures.placeOf(base, this.spot)) && this.columns(base).some(([x, y]) => x || y);
+    return Boolean(base) && near(this.placeOf(base)) && this.columns(base).some(([x, y]) => x || y);
   }
 
   /** The posture that is shown. */
@@ -64,8 +63,12 @@ class Drag {
     return engine.stood.posture;
   }
 
+  /** The place of the joint in a posture. */
   placeOf(posture) {
-    return this.engine.postures.placeOf(posture, this.spot);
+    const { spot, engine } = this;
+    const own = contents.joints.findIndex((joint) => joint.child === spot);
+    const at = engine.live.picture.joints[own].child.map((place) => (place < 0 ? 0 : posture.numbers[place]));
+    return placeIn(spot.body === "ground" ? GROUND : engine.postures.frameOf(posture, spot.body), at);
   }
 
   missOf(place, pointer) {
@@ -146,14 +149,13 @@ class Drag {
   }
 
   start(pointer) {
-    if (!this.seek(pointer)) return false;
+    if (!this.seek(pointer)) return;
     player.pause();
     this.moving = true;
     this.before = [...this.engine.values];
     this.posture = this.base();
     const at = this.stage.paper.on(spotOf(this.spot, this.stage.instant));
     this.grip = [at[0] - pointer[0], at[1] - pointer[1]];
-    return true;
   }
 
   move(pointer) {

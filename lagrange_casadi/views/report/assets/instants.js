@@ -7,24 +7,14 @@ const { over } = contents.instants;
 /** The axis along which instants are shown where nothing else is asked for. */
 const alongInstants = over ? "over" : "t";
 
+/** The number of the instant that is nearest to a time. */
+const instantAt = (time) => nearest(instants.t, time);
+
 /** The number of the instant that is nearest to a place on that axis. */
 const instantOn = (place) => (over ? nearest(array(over.values), place) : instantAt(place));
 
 const seriesByName = new Map(contents.series.map((one) => [one.name, one]));
 const rowByName = new Map(contents.rows.map((one) => [one.name, one]));
-
-/** The number of the instant that is nearest to a time. */
-function instantAt(time) {
-  const t = instants.t;
-  let low = 0;
-  let high = t.length - 1;
-  while (high - low > 1) {
-    const middle = (low + high) >> 1;
-    if (t[middle] <= time) low = middle;
-    else high = middle;
-  }
-  return Math.abs(t[high] - time) < Math.abs(t[low] - time) ? high : low;
-}
 
 /** A time in words, by the longest of all. */
 const timeWords = (t) => shown(t, "s", 5, Math.max(...[0, -1].map((k) => Math.abs(instants.t.at(k)))));

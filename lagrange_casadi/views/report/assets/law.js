@@ -80,26 +80,18 @@ function sectionOverInstants(section, name, ratio, found) {
 /** A force along a link at an instant: ratios and values, twice at each station; by straight lines between the ratios of which the functions
  *  along the link are known. */
 function forceAlong(section, name, instant, step = 2) {
-  const ratios = [];
-  const values = [];
-  const stations = [...new Set(section.loads.map((load) => load.station[instant]))].filter((u) => u > 0 && u < 1).sort((a, b) => a - b);
+  const [ratios, values] = [[], []];
+  const stations = new Set(section.loads.map((load) => load.station[instant]).filter((u) => u > 0 && u < 1));
   const last = section.xi.length - 1;
-  const put = (xi, side) => {
+  const places = new Set([...section.xi.filter((_, k) => k % step === 0), ...stations]);
+  for (const xi of [...places].sort((a, b) => a - b)) {
     const left = Math.max(0, Math.min(last - 1, Math.floor(xi * last)));
     const part = xi * last - left;
     const between = (row) => (part ? row[left] + part * (row[left + 1] - row[left]) : row[left]);
-    ratios.push(xi);
-    values.push(forceAt(section, section.forces.get(name), instant, xi, between, side));
-  };
-  let next = 0;
-  for (let k = 0; k < section.xi.length; k += step) {
-    const xi = section.xi[k];
-    while (next < stations.length && stations[next] <= xi) {
-      put(stations[next], "base");
-      put(stations[next], "tip");
-      next += 1;
+    for (const side of stations.has(xi) ? ["base", "tip"] : ["tip"]) {
+      ratios.push(xi);
+      values.push(forceAt(section, section.forces.get(name), instant, xi, between, side));
     }
-    if (!stations.includes(xi)) put(xi, "tip");
   }
   return { ratios, values };
 }

@@ -136,9 +136,7 @@ function shade(colour, part) {
 }
 
 /** The same colour, through which one sees. */
-function sheer(colour, part) {
-  return `rgb(${partsOfInk(colour).join(" ")} / ${part})`;
-}
+const sheer = (colour, part) => `color-mix(in srgb, ${colour} ${100 * part}%, transparent)`;
 
 function lineThrough(context, points, closed = false) {
   context.beginPath();

@@ -43,8 +43,7 @@ function spotOf(spot, instant) {
 
 /** A direction that a body carries, in ground axes. */
 function directionOf(body, local, instant) {
-  const [, x, y, z] = frameOf(body, instant);
-  return [0, 1, 2].map((k) => local[0] * x[k] + local[1] * y[k] + local[2] * z[k]);
+  return placeIn([[0, 0, 0], ...frameOf(body, instant).slice(1)], local);
 }
 
 const plus = (a, b, factor = 1) => [a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2]];
@@ -68,8 +67,8 @@ function acrossOf(axis) {
 }
 
 /** The corners by which a circle about a middle is drawn; `x` and `y` are two directions at right angles. */
-function circleOf(middle, x, y, radius) {
-  const angles = Array.from({ length: 48 }, (_, k) => (2 * Math.PI * k) / 48);
+function circleOf(middle, x, y, radius, count = 48) {
+  const angles = Array.from({ length: count }, (_, k) => (2 * Math.PI * k) / count);
   return angles.map((angle) => plus(plus(middle, x, radius * Math.cos(angle)), y, radius * Math.sin(angle)));
 }
 

@@ -68,10 +68,7 @@ function transportBar() {
   const play = signButton(icon("play"), "Play", toggle, { class: "sign play" });
   const slider = element("input", {
     type: "range", min: 0, max: instants.count - 1, step: 1, value: 0, "aria-label": "Instant",
-    input: () => {
-      player.pause();
-      player.seek(Number(slider.value));
-    },
+    input: () => seekTo(Number(slider.value)),
   });
   const readout = element("output", { class: "readout" });
   const speeds = [1, 2, 4, 8, 16, 60];
@@ -84,14 +81,10 @@ function transportBar() {
       player.seconds = Number(value);
     },
   );
-  let playing = false;
   const describe = (instant) => {
-    if (playing !== player.playing) {
-      playing = player.playing;
-      play.replaceChildren(icon(playing ? "pause" : "play"));
-    }
     const words = player.playing ? "Pause" : "Play";
-    play.setAttribute("aria-label", words);
+    if (play.ariaLabel !== words) play.replaceChildren(icon(words.toLowerCase()));
+    play.ariaLabel = words;
     play.title = `${words} (space)`;
     slider.value = instant;
     const when = whenIs(instant);

@@ -138,13 +138,6 @@ class Postures {
     return [origin, unit(x), y, z];
   }
 
-  /** The place of a joint's end in a posture. */
-  placeOf(posture, spot) {
-    const own = contents.joints.findIndex((joint) => joint.child === spot);
-    const at = contents.live.picture.joints[own].child.map((place) => (place < 0 ? 0 : posture.numbers[place]));
-    return placeIn(spot.body === "ground" ? GROUND : this.frameOf(posture, spot.body), at);
-  }
-
   /** The gaps of a posture: their ends, and in words how wide they are. */
   gapsOf({ found, left }) {
     const joined = this.loops.filter((loop) => loop.bodies.length);

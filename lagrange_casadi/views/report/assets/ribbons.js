@@ -15,49 +15,19 @@ function drawRibbon(paper, section, force, instant, scale) {
   const [base, tip] = [0, section.length].map((x) => placeOf(section.link, [x, 0, 0], instant));
   const axis = ratios.map((u) => paper.on([0, 1, 2].map((k) => base[k] + u * (tip[k] - base[k]))));
   const [dx, dy] = paper.along(side);
-  const edge = axis.map(([x, y], k) => [x + values[k] * scale * dx, y + values[k] * scale * dy]);
   const depth = (axis[0][2] + axis[axis.length - 1][2]) / 2;
   paper.put(ORDER.ribbons, depth, (context) => {
     for (const sign of [1, -1]) {
+      if (!values.some((value) => sign * value > 0)) continue;
       const ink = sign > 0 ? paper.inks.positive : paper.inks.negative;
-      context.beginPath();
-      for (const part of partsOf(values, axis, edge, sign)) {
-        part.forEach(([x, y], k) => (k ? context.lineTo(x, y) : context.moveTo(x, y)));
-        context.closePath();
-      }
+      const ordinates = values.map((value) => (sign * value > 0 ? value * scale : 0));
+      const edge = axis.map(([x, y], k) => [x + ordinates[k] * dx, y + ordinates[k] * dy]);
+      lineThrough(context, [...axis, ...edge.reverse()], true);
       fillWith(context, sheer(ink, sign > 0 ? 0.34 : 0.16));
       if (sign < 0) fillWith(context, paper.hatched(ink));
       strokeWith(context, ink, 1.3);
     }
   });
-}
-
-/** The areas between an axis and an edge where values have a sign, cut where they pass through zero. */
-function partsOf(values, axis, edge, sign) {
-  const found = [];
-  let upper = [];
-  let lower = [];
-  const close = () => {
-    if (upper.length > 1) found.push([...lower, ...upper.reverse()]);
-    [upper, lower] = [[], []];
-  };
-  for (let k = 0; k < values.length; k += 1) {
-    const here = sign * values[k] > 0;
-    const before = k > 0 && sign * values[k - 1] > 0;
-    if (k > 0 && here !== before) {
-      const part = values[k - 1] / (values[k - 1] - values[k]);
-      const zero = Number.isFinite(part) ? [0, 1].map((c) => axis[k - 1][c] + part * (axis[k][c] - axis[k - 1][c])) : axis[k];
-      upper.push(zero);
-      lower.push(zero);
-      if (!here) close();
-    }
-    if (here) {
-      upper.push(edge[k]);
-      lower.push(axis[k]);
-    }
-  }
-  close();
-  return found;
 }
 
 /** What the section nearest to a point of the sheet is, within 18 points of it: the link and the number of its ratio. */

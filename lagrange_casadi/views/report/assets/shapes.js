@@ -40,20 +40,7 @@ function platesOf(places) {
   const second = unit(widest);
   const normal = cross(first, second);
   if (from.some((at) => Math.abs(dot(at, normal)) > 1e3 * FLAT * size)) return [];
-  return [hullOf(from.map((at) => [dot(at, first) / size, dot(at, second) / size])).map((k) => places[k])];
-}
-
-/** The corners of a convex polygon around points of a plane, in sequence (Andrew's monotone chain). */
-function hullOf(points) {
-  const order = points.map((_, k) => k).sort((a, b) => points[a][0] - points[b][0] || points[a][1] - points[b][1]);
-  const turn = (a, b, c) => (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-  const chain = (numbers) => {
-    const found = [];
-    for (const k of numbers) {
-      while (found.length > 1 && turn(points[found.at(-2)], points[found.at(-1)], points[k]) <= FLAT) found.pop();
-      found.push(k);
-    }
-    return found.slice(0, -1);
-  };
-  return [...chain(order), ...chain([...order].reverse())];
+  // A corner is farthest in some direction.
+  const corners = circleOf([0, 0, 0], first, second, 1, 360).map((way) => closest(places.length, (k) => -dot(from[k], way)));
+  return [[...new Set(corners)].map((k) => places[k])];
 }

@@ -58,4 +58,3 @@ function csvOf(heads, rows) {
   const lines = [heads.map(([words]) => quoted(words)), ...rows.map((row) => heads.map(([, describe]) => quoted(describe(row))))];
   return `${lines.map((line) => line.join(",")).join("\n")}\n`;
 }
-

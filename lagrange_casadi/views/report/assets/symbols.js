@@ -128,7 +128,10 @@ function drawBody(paper, body, instant) {
   for (const [start, stop] of body.arms) bar(paper, at(start), at(stop), (body.kind === "rigid" ? 0.9 : 0.6) * girth, colour);
   if (body.around) disc(paper, body, instant, colour);
   if (body.kind === "point") block(paper, at([0, 0, 0]), colour);
-  else if (body.centre && !body.around) centreMark(paper, at(body.centre));
+  else if (body.centre && !body.around) {
+    const on = paper.on(at(body.centre));
+    stamp(paper, "centre", on, ORDER.joints, on[2]);
+  }
 }
 
 /** A rotor: a wheel with a spoke by which one sees it turn. */
@@ -160,23 +163,4 @@ function drawCarried(paper, instant) {
       strokeWith(context, ink, line.width);
     });
   }
-}
-
-/** A centre of mass: the quartered circle. */
-function centreMark(paper, place) {
-  const [x, y, depth] = paper.on(place);
-  const r = 0.55 * pinSize(paper) + 1.5;
-  paper.put(ORDER.joints, depth, (context) => {
-    circleAround(context, x, y, r);
-    fillWith(context, paper.inks.sheet);
-    for (const from of [0, Math.PI]) {
-      context.beginPath();
-      context.moveTo(x, y);
-      context.arc(x, y, r, from, from + Math.PI / 2);
-      context.closePath();
-      fillWith(context, paper.inks.ink);
-    }
-    circleAround(context, x, y, r);
-    strokeWith(context, paper.inks.ink, 1);
-  });
 }

@@ -17,25 +17,20 @@ const THERE = {
 
 const keptOf = ({ kind, state }) => structuredClone({ kind, state });
 
-/** Make the cards that were chosen; returns what to keep for later contents. */
+/** Make the cards that were chosen; returns these, and what was chosen in the place of those that cannot be made now. */
 function takeCards(cards) {
   for (const card of [...deck.cards]) card.remove();
   return cards.map((wish) => {
     const chosen = THERE[wish.kind](wish.state);
     const card = chosen && addCard(wish.kind, chosen);
-    return { wish, card, made: card && JSON.stringify(keptOf(card)) };
+    return card ? Object.assign(card, { wish, made: JSON.stringify(keptOf(card)) }) : wish;
   });
 }
 
 /** What is chosen now: cards that were not touched as they were wished, then those that were added. */
 function cardsNow(taken) {
-  const wished = taken.flatMap(({ wish, card, made }) => {
-    if (!card) return [wish];
-    if (!deck.cards.includes(card)) return [];
-    const now = keptOf(card);
-    return [JSON.stringify(now) === made ? wish : now];
-  });
-  return [...wished, ...deck.cards.filter((card) => !taken.some((one) => one.card === card)).map(keptOf)];
+  const there = [...new Set([...taken, ...deck.cards])].filter((one) => !one.body || deck.cards.includes(one));
+  return there.map((one) => (!one.body || JSON.stringify(keptOf(one)) === one.made ? (one.wish ?? one) : keptOf(one)));
 }
 
 /** Have a page as it was before, as far as its contents allow; returns what gives how it is, and what ends it. */
