@@ -46,10 +46,11 @@ def test_a_harmonic_swing_has_the_means_of_its_closed_form():
     """Torque and speed are sines: what is given in a swing comes back, A^2 w^2 J/2 each quarter."""
     size, hertz, ratio, rotor = 0.4, 1.5, 8.0, 2e-4
     omega = 2 * math.pi * hertz
-    duty = duty_of(
-        turned(harmonic(0.0, size, hertz), (0, 1 / hertz, 2001)), "J", ratio=ratio, inertia=rotor
-    )
+    solution = turned(harmonic(0.0, size, hertz), (0, 1 / hertz, 2001))
+    duty = duty_of(solution, "J", ratio=ratio, inertia=rotor)
     torque = (INERTIA / ratio + rotor * ratio) * size * omega**2
+    backward = duty_of(solution, "J", ratio=-ratio, inertia=rotor)
+    assert (backward.torque + duty.torque).tolist() == [0.0] * 2001
     assert duty.rms_torque == pytest.approx(torque / math.sqrt(2), rel=1e-6)
     assert duty.peak_torque == pytest.approx(torque, rel=1e-6)
     assert duty.peak_speed == pytest.approx(ratio * size * omega, rel=1e-6)
@@ -58,24 +59,6 @@ def test_a_harmonic_swing_has_the_means_of_its_closed_form():
     assert duty.energy == pytest.approx(2 * energy, rel=1e-5)
     assert duty.regenerated == pytest.approx(2 * energy, rel=1e-5)
     assert duty.peak_power == pytest.approx(torque * ratio * size * omega / 2, rel=1e-6)
-
-
-@pytest.mark.quick
-def test_a_gearbox_loses_either_way():
-    """Speeding up by a trapezoid the motor gives more than the load takes; slowing down it gets
-    back less.
-    """
-    law = moves([move(2.0, time=0.6, law=trapezoid(1 / 3))])
-    solution = turned(law, (0, 0.6, 6001))
-    duty = duty_of(solution, "J", ratio=5.0, efficiency=0.8)
-    steady = INERTIA * 4.5 * 2.0 / 0.6**2 / 5.0
-    assert duty.torque[1000] == pytest.approx(steady / 0.8, rel=1e-9)
-    assert duty.torque[3000] == pytest.approx(0.0, abs=1e-12)
-    assert duty.torque[5000] == pytest.approx(-steady * 0.8, rel=1e-9)
-    kinetic = INERTIA * (1.5 * 2.0 / 0.6) ** 2 / 2
-    assert duty.energy == pytest.approx(kinetic / 0.8, rel=1e-3)
-    assert duty.regenerated == pytest.approx(kinetic * 0.8, rel=1e-3)
-    assert duty_of(solution, "J", ratio=-5.0).torque[1000] == pytest.approx(-steady, rel=1e-9)
 
 
 HEADS = "name,stall_torque,rated_torque,rated_speed,peak_torque,max_speed,inertia"
@@ -184,11 +167,52 @@ def test_a_bad_line_of_a_catalogue_is_told(here, rows, heads, says):
         (lambda s: read_motors("none.csv"), PathError, "no such file"),
         (lambda s: plot_duty(duty_of(s, "J"), "duty.txt"), DeclarationError, r"ends in \.png"),
         (lambda s: select([], duty_of), DeclarationError, "expected motors, and ratios"),
+        (lambda s: feels("four_bar", "P"), UnknownNameError, "unknown drive 'P'; valid: O"),
+        (
+            lambda s: feels("sleigh", "X"),
+            DeclarationError,
+            "with non-holonomic constraints no drive can move",
+        ),
+        (
+            lambda s: feels("excavator", "boom_cylinder", "foot"),
+            DeclarationError,
+            "with 4 drives for 3 motions no drive can move",
+        ),
+        (
+            lambda s: evened(minimise="fluctuation:reaction:O:fx"),
+            (DeclarationError, UnknownNameError),
+            "a fluctuation of energy is that of an effort",
+        ),
+        (
+            lambda s: evened(minimise="fluctuation:effort:P"),
+            (DeclarationError, UnknownNameError),
+            "effort of a joint whose motion is given",
+        ),
+        (
+            lambda s: evened(minimise="third", subject_to=[f"{TERM} >= 1"]),
+            DeclarationError,
+            "can be limited from above only",
+        ),
+        (
+            lambda s: sweep(
+                uneven_rotor(harmonic(0.0, 0.3, 1.0), t=(0.0, 1.0, 41)),
+                {"third": [1.0]},
+                fluctuation=True,
+            ),
+            DeclarationError,
+            "joint 'O' ends where it began",
+        ),
     ],
 )
 def test_misuse_is_named(ask, error, says):
     with pytest.raises(error, match=says):
         ask(turned(polynomial(0.0, 1.0), (0, 1, 3)))
+
+
+def feels(case, joint, *more):
+    """What a joint of a case feels, with more drives."""
+    scene = load_case(case).scene
+    return inertia_at(replace(scene, drives=[*scene.weights, *more]) if more else scene, joint)
 
 
 def added(scene, joint, at):
@@ -236,16 +260,6 @@ def test_at_rest_a_mechanism_has_inertia_too():
         for one, t in ((law, (0, 0.5, 51)), (polynomial(math.radians(90), 1.0), (0, 0, 1)))
     )
     assert still[30:] == pytest.approx(turning[0], rel=1e-12)
-
-
-def test_what_no_drive_feels_alone_is_told():
-    with pytest.raises(UnknownNameError, match="unknown drive 'P'; valid: O"):
-        inertia_at(load_case("four_bar").scene, "P")
-    with pytest.raises(DeclarationError, match="with non-holonomic constraints no drive can move"):
-        inertia_at(load_case("sleigh").scene, "X")
-    scene = load_case("excavator").scene
-    with pytest.raises(DeclarationError, match="with 4 drives for 3 motions no drive can move"):
-        inertia_at(replace(scene, drives=[*scene.weights, "foot"]), "boom_cylinder")
 
 
 @pytest.mark.parametrize("alone", ["boom_cylinder", "bucket_cylinder"])
@@ -388,17 +402,19 @@ def test_a_sweep_keeps_the_fluctuation_of_energy():
     assert found.columns[TERM].unit == "J"
 
 
+def evened(**asked):
+    """The best third harmonic."""
+    return optimise(uneven_rotor(), over={"third": (-6.0, 4.0)}, starts=1, screen=4, **asked)
+
+
 def test_a_third_harmonic_is_chosen_that_evens_the_energy():
     """The least of max |cos(x) + q cos(3 x)| is sqrt(3)/2, at q = -1/6."""
-    options = {"over": {"third": (-6.0, 4.0)}, "starts": 1, "screen": 4}
-    found = optimise(uneven_rotor(), minimise=TERM, **options)
+    found = evened(minimise=TERM)
     assert found.converged
     assert found.objective == pytest.approx(6.0 * math.sqrt(3.0), rel=1e-9)
     assert found.values["third"] == pytest.approx(-3.0, abs=1e-6)
     # For a smaller third the energy turns at its ends alone: it is 12 + 2/3 third.
-    other = optimise(
-        uneven_rotor(), minimise="peak:effort:O", subject_to=[f"{TERM} <= 11"], **options
-    )
+    other = evened(minimise="peak:effort:O", subject_to=[f"{TERM} <= 11"])
     assert other.converged
     assert other.values["third"] == pytest.approx(-1.5, abs=1e-6)
     assert other.limits[0].multiplier == pytest.approx(1.5, rel=1e-6)
@@ -430,19 +446,3 @@ def test_the_least_uneven_turn_is_chosen_that_evens_the_energy(name, t):
     assert found.values[name] == pytest.approx(best[name], rel=1e-7)
     slope = 2e-3 * best[name] / (near[2] - near[1])
     assert found.limits[0].multiplier == pytest.approx(slope, rel=1e-5)
-
-
-@pytest.mark.parametrize(
-    ("ask", "says"),
-    [
-        ({"minimise": "fluctuation:reaction:O:fx"}, "a fluctuation of energy is that of an effort"),
-        ({"minimise": "fluctuation:effort:P"}, "effort of a joint whose motion is given"),
-        ({"subject_to": [f"{TERM} >= 1"]}, "can be limited from above only"),
-    ],
-)
-def test_what_has_no_fluctuation_is_refused(ask, says):
-    with pytest.raises((DeclarationError, UnknownNameError), match=says):
-        optimise(uneven_rotor(), **{"minimise": "third", "over": {"third": (0.0, 1.0)}, **ask})
-    swung = uneven_rotor(harmonic(0.0, 0.3, 1.0), t=(0.0, 1.0, 41))
-    with pytest.raises(DeclarationError, match="joint 'O' ends where it began"):
-        sweep(swung, {"third": [1.0]}, fluctuation=True)

@@ -187,32 +187,11 @@ def test_profiles_are_written_for_workshops(here, monkeypatch):
 SHORT = moves([move(0.02, time=0.5), move(0.0, time=0.5), dwell()], cyclic=True, period=2 * math.pi)
 
 
-def broken(**options):
-    m = Mechanism("m")
-    disc, rod = m.link("disc", length=0.1, mass=1.0), m.link("rod", length=0.1, mass=1.0)
-    main = m.revolute("main", m.ground, disc)
-    lead = m.prismatic("lead", m.ground, rod, axis=(0, 1), angle="90 deg")
-    other = m.point_mass("other", 1.0)
-    given = {
-        "cam": main,
-        "follower": lead,
-        "lift": lambda x: 0.0 * x,
-        "base_radius": 0.05,
-        "point": None,
-    } | options
-    if given["point"] == "other":
-        given["point"] = other
-    if given["follower"] == "main":
-        given["cam"] = lead
-        given["follower"] = main
-    return disc_cam(m, "cam", given.pop("cam"), given.pop("follower"), given.pop("lift"), **given)
-
-
 @pytest.mark.parametrize(
     ("options", "says"),
     [
         (
-            {"follower": "main"},
+            {"cam": "lead", "follower": "main"},
             (
                 "cam 'cam': expected a revolute joint whose parent is the ground, in a plane, got"
                 " 'lead'"
@@ -220,7 +199,7 @@ def broken(**options):
         ),
         ({"flat": True, "roller": 0.01}, "a flat face has neither a roller nor a point"),
         ({"side": 2}, "side must be 1 or -1, got 2"),
-        ({"point": "other"}, "its point must be on 'rod', which joint 'lead' guides"),
+        ({"point": "disc"}, "its point must be on 'rod', which joint 'lead' guides"),
         (
             {"lift": lambda x: 0.001 * x},
             "its lift must be the same after a turn of the cam; expected a period of 2 pi",
@@ -232,8 +211,12 @@ def broken(**options):
     ],
 )
 def test_misuse_is_named(options, says):
+    m, main, lead, _ = guided("knife", 0.0, (0.0, 0.0))
+    parts = m.joints | m.links
+    told = {"cam": main, "follower": lead, "lift": lambda x: 0.0 * x, "base_radius": 0.05}
+    told |= {word: parts[x] if isinstance(x, str) else x for word, x in options.items()}
     with pytest.raises(DeclarationError, match=says):
-        broken(**options)
+        disc_cam(m, "cam", **told)
 
 
 def circle(radius, eccentric, count, phase=0.0):

@@ -1,13 +1,13 @@
-"""Plates, bent bars, cylinders and struts: closed forms, and that they are what they are made
-of.
-"""
+"""Plates, bent bars, cylinders and struts: closed forms, and what is refused."""
 
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
+from mechanisms import crank_slider
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate
 from lagrange_casadi.elements import bent_bar, cylinder, gas_spring, plate, strut
@@ -15,29 +15,6 @@ from lagrange_casadi.errors import AssemblyError, DeclarationError, ParameterErr
 from lagrange_casadi.motion import move, moves, polynomial
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
-
-
-def test_a_bar_bent_in_space_bends_and_twists_as_statics_says():
-    """A crank handle that hangs on three ways at right angles, held at its base, with a weight at
-    its end.
-    """
-    m = SpatialMechanism("handle")
-    bar = bent_bar(m, "bar", [(0, 0, 0), (0.3, 0, 0), (0.3, 0.2, 0), (0.3, 0.2, 0.1)], mass=0.6)
-    m.revolute("O", m.ground, bar.base, axis=(0, 0, 1))
-    m.force("weight", bar.tip, x=7.0, y=0.0, z=-30.0)
-    m.set_gravity(0, 0, 0)
-    solution = evaluate(Scene(m, {"O": polynomial(0.0)}, t=(0, 1, 2)))
-    assert solution.certified
-    push = np.array([7.0, 0.0, -30.0])
-    places = {"bar_1": (0, 0, 0), "bar_2": (0.3, 0, 0), "bar_3": (0.3, 0.2, 0)}
-    for name, way in (("bar_1", (1, 0, 0)), ("bar_2", (0, 1, 0)), ("bar_3", (0, 0, 1))):
-        moment = np.cross(np.array([0.3, 0.2, 0.1]) - places[name], push)
-        section, along = solution.section(name), np.array(way)
-        assert section.axial[0, 0] == pytest.approx(push @ along, abs=1e-13)
-        assert section.torsion[0, 0] == pytest.approx(moment @ along, abs=1e-13)
-        assert section.bending[0, 0] == pytest.approx(
-            np.linalg.norm(moment - (moment @ along) * along), abs=1e-13
-        )
 
 
 def test_corners_oblique_in_space_are_where_they_are_told():
@@ -66,6 +43,15 @@ def test_corners_oblique_in_space_are_where_they_are_told():
 def declared(make, space=False):
     m = SpatialMechanism("m") if space else Mechanism("m")
     return lambda: make(m)
+
+
+GAS = partial(gas_spring, force=(3.0, 4.0))
+
+
+def pushing(make, **given):
+    """A gas spring or a strut between the ground and a link."""
+    told = {"closed": 0.3, "open": 0.5} | given
+    return declared(lambda m: make(m, "g", m.ground, m.link("a", length=1, mass=1).tip, **told))
 
 
 @pytest.mark.parametrize(
@@ -107,6 +93,23 @@ def declared(make, space=False):
         "'b_1': there is no corner -1, expected 0 to 2": declared(
             lambda m: bent_bar(m, "b", [(0, 0), (1, 0), (1, 1)], mass=1.0).corner(-1)
         ),
+        "gas spring 'g': open must be longer than closed, got 0.2 m and 0.3 m": pushing(
+            GAS, open=0.2
+        ),
+        "gas spring 'g': closed must be positive, got -1 m": pushing(GAS, closed=-1),
+        "gas spring 'g': expected 2 forces, open and closed, got 300.0": pushing(GAS, force=300.0),
+        "'g': its force must be positive, and not fall as it closes, got 4 N open and 3": (
+            pushing(GAS, force=(4.0, 3.0))
+        ),
+        "gas spring 'g': end_damping needs end": pushing(GAS, end_damping=10.0),
+        "gas spring 'g': end must be positive, got 0 m": pushing(GAS, end=0.0),
+        "gas spring 'g': exponent must be 1 or more, got 0": pushing(GAS, exponent=0.0),
+        "gas spring 'g': damping must not be negative .N s/m., got -1": pushing(GAS, damping=-1.0),
+        "gas spring 'g': end_damping must not be negative .N s/m., got -2": pushing(
+            GAS, end_damping=-2.0
+        ),
+        "strut 'g': stiffness must not be negative, got -5": pushing(strut, stiffness=-5.0),
+        "strut 'g': damping must not be negative, got -5": pushing(strut, damping=-5.0),
     }.items(),
 )
 def test_misuse_is_named(make, says):
@@ -216,6 +219,18 @@ STROKES = {
     "gas spring 'gas': open must be longer than closed, got 0.2 m and 0.3 m": (
         lambda: hatch(assembly={"long": 0.2})
     ),
+    "'ram' is at its longest or shortest before that, and": (
+        lambda: lifted({"ram": polynomial(0.2, 0.5)}, 1.2, t=(0, 2, 8), posture={"lever": 0.5})
+    ),
+    "'ram' is at its longest or shortest there, and": (
+        lambda: lifted({"pivot": polynomial(2.8, 1)}, 1.2, t=(0, 1, 8), drives=["ram"])
+    ),
+    r"dead centre at t = 0.5 s(?!.*cylinder)": lambda: Scene(
+        crank_slider(lengths=(0.1, 0.3)),
+        {"guide": polynomial(0.35, 0.1)},
+        t=(0, 1, 9),
+        posture={"crank": 1.0},
+    ),
 }
 
 
@@ -223,61 +238,3 @@ STROKES = {
 def test_a_stroke_ends(says, make):
     with pytest.raises((AssemblyError, ParameterError), match=says):
         evaluate(make())
-
-
-@pytest.mark.parametrize(
-    ("scene", "where"),
-    [
-        (
-            lambda: lifted({"ram": polynomial(0.2, 0.5)}, 1.2, t=(0, 2, 8), posture={"lever": 0.5}),
-            "before that",
-        ),
-        (lambda: lifted({"pivot": polynomial(2.8, 1)}, 1.2, t=(0, 1, 8), drives=["ram"]), "there"),
-    ],
-)
-def test_a_cylinder_drives_no_further_than_its_dead_centre(scene, where):
-    with pytest.raises(AssemblyError, match=f"'ram' is at its longest or shortest {where}, and"):
-        evaluate(scene())
-
-
-def test_a_guide_on_the_ground_is_no_cylinder():
-    m = Mechanism("press")
-    m.revolute("O", m.ground, crank := m.link("crank", length=0.1, mass=1.0))
-    m.revolute("A", crank.tip, rod := m.link("rod", length=0.3, mass=1.0))
-    m.revolute("B", rod.tip, ram := m.point_mass("ram", 2.0))
-    m.prismatic("guide", m.ground, ram, axis=(1, 0))
-    law = {"guide": polynomial(0.35, 0.1)}  # stretched at 0.5 s
-    with pytest.raises(AssemblyError, match=r"dead centre at t = 0.5 s(?!.*cylinder)"):
-        evaluate(Scene(m, law, t=(0, 1, 9), posture={"crank": 1.0}))
-
-
-@pytest.mark.parametrize(
-    ("says", "given"),
-    {
-        "gas spring 'g': open must be longer than closed, got 0.2 m and 0.3 m": {"open": 0.2},
-        "gas spring 'g': closed must be positive, got -1 m": {"closed": -1},
-        "gas spring 'g': expected 2 forces, open and closed, got 300.0": {"force": 300.0},
-        "gas spring 'g': its force must be positive, and not fall as it closes, got 4 N open and 3":
-            {"force": (4.0, 3.0)},
-        "gas spring 'g': end_damping needs end": {"end_damping": 10.0},
-        "gas spring 'g': end must be positive, got 0 m": {"end": 0.0},
-        "gas spring 'g': exponent must be 1 or more, got 0": {"exponent": 0.0},
-        "gas spring 'g': damping must not be negative .N s/m., got -1": {"damping": -1.0},
-        "gas spring 'g': end_damping must not be negative .N s/m., got -2": {"end_damping": -2.0},
-    }.items(),
-)  # fmt: skip
-def test_misuse_of_a_gas_spring_is_named(says, given):
-    m = Mechanism("m")
-    tip = m.link("a", length=1.0, mass=1.0).tip
-    with pytest.raises(DeclarationError, match=says):
-        gas_spring(
-            m, "g", m.ground, tip, **{"closed": 0.3, "open": 0.5, "force": (3.0, 4.0)} | given
-        )
-
-
-@pytest.mark.parametrize("word", ["stiffness", "damping"])
-def test_a_strut_pushes_no_motion_on(word):
-    m = Mechanism("m")
-    tip = m.link("a", length=1.0, mass=1.0).tip
-    with pytest.raises(DeclarationError, match=f"strut 's': {word} must not be negative, got -5"):
-        strut(m, "s", m.ground, tip, closed=0.3, open=0.5, **{word: -5.0})

@@ -11,7 +11,7 @@ import casadi as ca
 import numpy as np
 import pytest
 from conftest import CASES
-from mechanisms import four_bar, pins_of
+from mechanisms import crank_slider, four_bar, pins_of
 
 from lagrange_casadi import (
     Mechanism,
@@ -46,13 +46,9 @@ def rotor(inertia=0.5, stop=2.0):
 
 
 def slider_crank(motion, friction=0.0, **posture):
-    m = Mechanism("slider_crank")
-    crank, rod = m.link("crank", length=0.1, mass=1.0), m.link("rod", length=0.3, mass=1.0)
-    block = m.point_mass("block", 2.0)
-    pins_of(m, O=(m.ground, crank), A=(crank.tip, rod), B=(rod.tip, block))
-    guide = m.prismatic("guide", m.ground, block, axis=(1, 0))
+    m = crank_slider(lengths=(0.1, 0.3))
     if friction:
-        m.friction("rub", guide, mu=friction)
+        m.friction("rub", m.joints["guide"], mu=friction)
     return Scene(m, motion, t=(0.0, 1.0, 101), posture=posture or {"rod": 0.0})
 
 
@@ -160,25 +156,6 @@ def test_a_punch_slows_a_motor_as_a_textbook_prints():
     assert found.speed[10] == pytest.approx(117.81, abs=0.01)
     assert found.speed[-1] == pytest.approx(124.41, abs=0.01)
     assert np.ptp(found.speed) / found.speed[[0, 10]].mean() == pytest.approx(0.0545, abs=1e-4)
-
-
-def test_an_engine_and_its_machine_have_the_energy_that_a_textbook_prints():
-    """Scilab's companion (FOSSEE) to a Theory of Machines, chapter 6, illustration 10: 15000 +
-    8000 sin(2 x) against 15000 - 6000 cos(x) at 200 rpm; it prints 15,124 J for 15125.
-    """
-    found = flywheel(
-        rotor(),
-        fluctuation=0.02,
-        drive=forward.expression(
-            lambda t, x, w: 15000.0 + 8000.0 * ca.sin(2.0 * x) - 1e-3 * (w - math.tau / 0.3)
-        ),
-        load=forward.expression(lambda t, x, w: 15000.0 - 6000.0 * ca.cos(x)),
-        start=(0.0, 200.0 * math.tau / 60.0),
-        count=41,
-        wanted=["effort"],
-    )
-    assert found.energy == pytest.approx(15125.0, rel=1e-10)
-    assert found.inertia == pytest.approx(found.textbook - 0.5, rel=0.01)
 
 
 def test_friction_stops_a_block_where_it_must_and_holds_it():

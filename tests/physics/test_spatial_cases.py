@@ -1,6 +1,4 @@
-"""The cases in space against numbers from elsewhere, closed forms, statics and energies that are
-worked out here.
-"""
+"""Mechanisms in space against numbers from elsewhere, closed forms and statics."""
 
 from __future__ import annotations
 
@@ -50,37 +48,6 @@ def test_a_shaft_out_of_phase_pulsates():
     assert np.ptp(fast) > 4 * np.ptp(slow.effort("bearing"))
 
 
-FORCES = ("axial", "shear_y", "shear_z", "torsion", "bending_y", "bending_z")
-
-
-def test_an_arm_by_stored_numbers():
-    """What Pinocchio 4.1.0 gave for the case at t = 0.7 s: efforts, then link 2 at half its
-    length.
-    """
-    scene = load_case("arm6").scene
-    solution = evaluate(scene, t=(0.7, 0.7, 1))
-    law, half = solution.section("link2").law, np.array([[0.5]])
-    found = [solution.effort(name)[0] for name in scene.motion]
-    found += [law.at(force, half)[0, 0] for force in FORCES]
-    assert found == pytest.approx(STORED, abs=1e-12 * np.abs(STORED).max())
-
-
-STORED = (
-    -13.366571991228078,
-    -81.8860337066446,
-    -35.95540567458077,
-    0.5185214952163023,
-    -5.1743306998229075,
-    -0.0006327755976294354,
-    -43.15448736579151,
-    109.5231675289179,
-    18.896270642899925,
-    5.9552533950632105,
-    -11.7118547489456,
-    56.52568637869752,
-)
-
-
 def test_a_slider_beside_its_guide_hangs_on_its_pin():
     """A cylindrical guide bears no moment about its line: the pin bears that of the weight."""
     m, side, mass = SpatialMechanism("beside"), 0.04, 3.0
@@ -94,18 +61,3 @@ def test_a_slider_beside_its_guide_hangs_on_its_pin():
     solution = evaluate(Scene(m, law, t=(0, 1, 9), posture=posture))
     assert solution.certified
     assert solution.reaction("B").mx == pytest.approx(-mass * 9.81 * side, rel=1e-12)
-
-
-def test_four_feet_bear_the_weight():
-    """At rest the normal forces add up to the weight, alike on both sides."""
-    case = load_case("quadruped").scene
-    at_rest = dict.fromkeys(case.motion, polynomial(0.0))
-    scene = Scene(case.mechanism, at_rest, t=(0, 0, 1), drives=list(case.drives))
-    solution = evaluate(scene, wanted=["effort", "output"], backend="vm")
-    normal = {
-        leg: solution.series[f"output:{leg}_foot_normal"][0] for leg in ("FL", "FR", "RL", "RR")
-    }
-    assert sum(normal.values()) == pytest.approx((8.0 + 2.0 + 4 * 1.7) * 9.81, rel=1e-12)
-    assert normal["FL"] == pytest.approx(normal["FR"], rel=1e-12)
-    assert solution.effort("RL_knee")[0] == pytest.approx(solution.effort("RR_knee")[0], rel=1e-11)
-    assert not any("foot" in note for note in solution.notes)
