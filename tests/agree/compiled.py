@@ -31,6 +31,8 @@ TRIED = """  {
   }
 """
 
+UNPREPARED = "status = @_prepare(&model, &parameters);"
+PREPARED = "status = @_prepare(&model, &parameters); @_motion(&model, 0.01, &inputs); "
 EVALUATED = "status = @_evaluate(&model, &inputs, &outputs);"
 
 
@@ -48,7 +50,7 @@ def cc(command, folder, *sources, output="program"):
 def compilers():
     """Those that there are, with the warnings that must not come."""
     strict = ["-pedantic", "-Wall", "-Wextra", "-Werror", "-Wconversion"]
-    found = [("gcc", ["gcc", "-std=c99", *strict]), ("clang", ["clang", "-std=c99", *strict])]
+    found = [("cc", ["cc", "-std=c99", *strict]), ("clang", ["clang", "-std=c99", *strict])]
     as_cpp = ["-pedantic", "-Wall", "-Wextra", "-Werror"]
     found += [
         ("g++", ["g++", "-x", "c++", "-std=c++11", *as_cpp]),
@@ -64,6 +66,18 @@ def present(command):
         )
     except OSError:
         return False
+
+
+def assert_clean(folder, prefix):
+    """No compiler that there is warns of an exported folder. The first one looks into what is
+    optimized too, and leaves SOURCE.o.
+    """
+    for label, command in compilers():
+        own = [] if "++" in label else ["selftest.c", "example.c"]
+        how = ["-O2", "-c"] if label == "cc" else ["-fsyntax-only", "-c"]
+        for source in [f"{prefix}.c", *own] if present(command[0]) else []:
+            result = cc([*command, *how], folder, source, output=f"{source}.o")
+            assert result.returncode == 0, f"{label} {source}: {result.stderr}"
 
 
 def told(folder, made, *tried):

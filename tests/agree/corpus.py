@@ -29,7 +29,6 @@ from typing import Any
 
 import exported
 import numpy as np
-import pasted
 
 import lagrange_casadi as lc
 
@@ -51,6 +50,11 @@ unit: rounding, or the error of a search for a peak.
 
 FORCES = ("effort", "reaction", "section", "multiplier", "friction", "output")
 BUILT = "-O0"  # in a third of the time; no bit depends on it
+RUBBED = """from spatial_bridge import declared
+from spatial_friction import rubbing
+drawn, t, rubs = rubbing({!r})
+scene = declared(drawn, t, rubs=rubs)
+"""
 PLANAR, RUBBING, FAMILY, ANYHOW, RUBBING_IN_SPACE = 150, 40, 4, 34, 24
 """Random mechanisms of each kind: 300 in all."""
 
@@ -60,8 +64,6 @@ def declarations() -> Iterator[tuple[str, str]]:
     import every_way
     import random_friction
     import random_mechanisms
-    import spatial_anyhow
-    import spatial_bridge
     import spatial_friction
     import spatial_mechanisms
 
@@ -78,17 +80,13 @@ def declarations() -> Iterator[tuple[str, str]]:
         parameters = made.drawn.keywords.get("parameters")
         keywords = {"t": made.drawn.grid, "parameters": parameters}
         yield f"rubbing_{seed}", f"{made.source}keywords = {keywords!r}\n"
-    families = spatial_mechanisms.FAMILIES
-    seeds = [(name, seed) for name in families for seed in range(FAMILY)]
+    seeds = [(name, seed) for name in spatial_mechanisms.FAMILIES for seed in range(FAMILY)]
     for name, seed in [*seeds, *(("anyhow", seed) for seed in range(ANYHOW))]:
-        drawn = spatial_bridge.plain((families | {"anyhow": spatial_anyhow.anyhow})[name](seed))
-        declare = partial(spatial_bridge.declared, drawn)
-        yield f"{name}_{seed}", pasted.paste(spatial_bridge, declare)
-    found = map(spatial_friction.rubbing, spatial_friction.CASES)
-    rubbing = ((drawn, t, rubs) for drawn, t, rubs in found if rubs)
-    for k, (drawn, t, rubs) in zip(range(RUBBING_IN_SPACE), rubbing, strict=False):
-        declare = partial(spatial_bridge.declared, drawn, t, rubs=rubs)
-        yield f"rubbing_in_space_{k}", pasted.paste(spatial_bridge, declare)
+        drawn = f"from every_way import spatial\nscene = spatial({name!r}, {seed})\n"
+        yield f"{name}_{seed}", drawn
+    rubbing = [case for case in spatial_friction.CASES if spatial_friction.rubbing(case)[2]]
+    for k, case in enumerate(rubbing[:RUBBING_IN_SPACE]):
+        yield f"rubbing_in_space_{k}", RUBBED.format(case)
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 import math
 import re
+from functools import partial
 
 
 def truncated(x):
@@ -109,26 +110,20 @@ def blocks(text):
         units = {variable for variable, type_ in parts if type_ in made}
         space = {}
         exec(python(lines, functions, units), space)
-        inputs = [variable for variable, _ in parts]
         variables = maker([*parts, (name, "LREAL")], made)
-        make = as_function if kind == "FUNCTION" else as_block
-        (functions if kind == "FUNCTION" else made)[name] = make(
-            name, variables, space["run"], functions, inputs
-        )
+        unit = partial(Unit, variables, space["run"], functions)
+        if kind == "FUNCTION":
+            functions[name] = partial(called, unit, name, [variable for variable, _ in parts])
+        else:
+            made[name] = unit
     return made
 
 
-def as_function(name, variables, body, functions, inputs):
-    def call(*given):
-        unit = Unit(variables, body, functions)
-        unit(**dict(zip(inputs, given, strict=True)))
-        return getattr(unit, name)
-
-    return call
-
-
-def as_block(name, variables, body, functions, inputs):
-    return lambda: Unit(variables, body, functions)
+def called(make, name, inputs, *given):
+    """The value of a function."""
+    unit = make()
+    unit(**dict(zip(inputs, given, strict=True)))
+    return getattr(unit, name)
 
 
 def maker(parts, made):

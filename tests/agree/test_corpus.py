@@ -1,12 +1,7 @@
 """The frozen corpus notices a change of one part in 1e9, and reports what is allowed in vain."""
 
 import corpus
-import pasted
 import pytest
-import spatial_bridge
-from spatial_anyhow import anyhow
-
-from lagrange_casadi import evaluate
 
 pytestmark = pytest.mark.quick
 
@@ -60,21 +55,6 @@ def test_a_difference_is_allowed_for_a_reason():
     )
     with pytest.raises(ValueError, match=r"one/\* has no reason"):
         corpus.allowances("one/*\n")
-
-
-def test_a_pasted_declaration_makes_the_same_scene():
-    """Of one in space that has couplings, loads along links and laws of functions."""
-    drawn = spatial_bridge.plain(anyhow(0))
-    text = pasted.paste(spatial_bridge, lambda: spatial_bridge.declared(drawn))
-    assert "line_load" in text
-    assert "constraint" in text
-    scene = corpus.Mechanism(text).scene
-    once, again = (
-        evaluate(one, backend="vm", certificate=False).series
-        for one in (scene, spatial_bridge.declared(drawn))
-    )
-    assert [*once] == [*again]
-    assert all((once[name] == again[name]).all() for name in once)
 
 
 def test_what_is_no_number_stays_none():

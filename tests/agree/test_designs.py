@@ -8,16 +8,14 @@ from design_rows import around
 from internals import (
     DesignEngine,
     EvaluationMethod,
-    Status,
     library,
 )
 from mechanisms import four_bar, slider_crank
 from stepped import iterated
 
-from lagrange_casadi import Mechanism, Scene, evaluate, load_case, motion, prepare
+from lagrange_casadi import Mechanism, Scene, evaluate, load_case, motion
 from lagrange_casadi.errors import DeclarationError
 
-INSTANTS = 128
 FIELDS = ("status", "value", "t", "xi", "mean", "rms")
 
 
@@ -48,23 +46,6 @@ def test_a_row_has_the_same_bytes_whatever_stands_beside_it(made, method, monkey
     for threads in (1, 2, 3, 7):
         other = cut.evaluate(p, threads=threads)
         assert all(getattr(other, f).tobytes() == getattr(whole, f).tobytes() for f in FIELDS)
-
-
-@pytest.mark.quick
-@pytest.mark.parametrize(("backend", "precision"), [("lanes", "single"), ("c", "double")])
-def test_a_design_without_a_result_has_no_number_and_all_others_have(backend, precision):
-    scene = slider_crank()
-    p = around(scene, 5)
-    p[2, 1] = 0.05
-    designs = prepare(scene, backend=backend, precision=precision)
-    for _ in range(2):  # the second time where numbers were
-        found, good = designs.designs(p, histories=True), np.arange(5) != 2
-        assert ((found.status == Status.OK) == good).all()
-        for rows in (found.value, found.t, found.mean, found.rms, found.series):
-            assert np.isfinite(rows[good]).all()
-            assert np.isnan(rows[2]).all()
-        along = np.array([name.startswith("section:") for name in designs.quantities])
-        assert (np.isfinite(found.xi) == good[:, None] & along).all()
 
 
 def test_a_speed_that_is_a_parameter_keeps_its_phase():

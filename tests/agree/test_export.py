@@ -7,7 +7,7 @@ import subprocess
 
 import numpy as np
 import pytest
-from compiled import EVALUATED, cc, compilers, present, told
+from compiled import EVALUATED, PREPARED, UNPREPARED, assert_clean, cc, told
 from conftest import CASES, NAMES
 from every_way import laws
 from mechanisms import sampled_cam, slider_crank, spline_arm, truss_platform
@@ -47,13 +47,6 @@ def self_test(folder, prefix, *flags):
     return ran.returncode == 0, ran.stdout + ran.stderr
 
 
-def symbols(folder, prefix):
-    assert cc(["cc", "-std=c99", "-O2", "-c"], folder, f"{prefix}.c", output="x.o").returncode == 0
-    command = ["nm", folder / "x.o"]
-    listed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
-    return [line.split()[-2:] for line in listed.splitlines()]
-
-
 @pytest.mark.sampled(31)
 @pytest.mark.parametrize(("name", "way"), sorted(EXPORTED))
 def test_it_is_clean_and_passes_its_own_test(name, way, tmp_path):
@@ -61,15 +54,13 @@ def test_it_is_clean_and_passes_its_own_test(name, way, tmp_path):
     between calls, and of libraries only functions of the precision are asked for.
     """
     made = export(SCENES[name](), tmp_path, **ARITHMETIC[way])
-    for label, command in compilers():
-        own = [] if "++" in label else ["selftest.c", "example.c"]
-        for source in [f"{made.prefix}.c", *own] if present(command[0]) else []:
-            result = cc([*command, "-O2", "-c"], tmp_path, source, output="x.o")
-            assert result.returncode == 0, f"{label} {source}: {result.stderr}"
+    assert_clean(tmp_path, made.prefix)
     passes, says = self_test(tmp_path, made.prefix, *SANITIZED)
     assert passes, says
     assert "0 wrong" in says
-    found = symbols(tmp_path, made.prefix)
+    command = ["nm", tmp_path / f"{made.prefix}.c.o"]
+    listed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    found = [line.split()[-2:] for line in listed.splitlines()]
     assert all(name.startswith(f"{made.prefix}_") for kind, name in found if kind in "TDRBC")
     assert not [name for kind, name in found if kind in "DdBbC"], "no state"
     needed = {name for kind, name in found if kind == "U"}
@@ -98,11 +89,7 @@ def test_its_own_test_can_fail(tmp_path):
         assert says in said
 
 
-UNPREPARED = "status = @_prepare(&model, &parameters);"
 UNTIMELY = "status = @_motion(&model, NAN, &inputs); "
-PREPARED = "status = @_prepare(&model, &parameters); @_motion(&model, 0.01, &inputs); "
-
-
 FAILURES = [
     ("model.seal = 0; inputs.O = 0; " + EVALUATED, "the model was not prepared"),
     ("parameters.l = -1; " + UNPREPARED, "a parameter is not finite, or out of its range"),

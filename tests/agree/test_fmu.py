@@ -137,19 +137,6 @@ def test_single_precision_keeps_phases(unit):
         assert np.abs(found[name] - expected).max() < 2e-5 * np.abs(expected).max(), name
 
 
-@pytest.mark.parametrize("name", ["slider_crank", "windy", "free"])
-def test_the_motion_is_inside_by_time(unit, name):
-    scene, path = unit(name, fmu="time")
-    solution, names = evaluate(scene), variables(path, "output")
-    assert variables(path, "input") == []
-    span = {"start_time": solution.t[0], "stop_time": solution.t[-1]}
-    step = solution.t[1] - solution.t[0]
-    found = fmpy.simulate_fmu(
-        str(path), **span, output_interval=step, fmi_type="ModelExchange", output=names
-    )
-    assert_alike(found, solution, names)
-
-
 def test_the_motion_is_inside_by_the_angle_of_a_crank(unit, tmp_path):
     """Rates and accelerations follow from the angle alone, of turns before and after the scene's
     too; a coordinate that turns back says no time.

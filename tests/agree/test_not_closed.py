@@ -1,9 +1,8 @@
 """A closed form that nobody verified does not close its loop: every way refuses the result."""
 
-import subprocess
-
 import numpy as np
 import pytest
+from compiled import EVALUATED, PREPARED, told
 from internals import DesignEngine, EvaluationMethod, Status, blocks, loops
 from mechanisms import pins_of
 
@@ -35,7 +34,6 @@ def mistaken(monkeypatch):
 @pytest.mark.parametrize(
     "method",
     [
-        EvaluationMethod("vm"),
         EvaluationMethod("c"),
         EvaluationMethod("lanes"),
         EvaluationMethod("lanes", precision="single"),
@@ -44,13 +42,13 @@ def mistaken(monkeypatch):
 def test_what_does_not_close_a_loop_is_refused(method, monkeypatch, fresh_cache):
     """By every backend, also where only the effort is wanted, and in sweeps."""
     scene = mistaken(monkeypatch)
-    told = {"backend": method.backend, "precision": method.precision}
-    for wanted in (["all"], ["effort"]):
+    compiled = {"backend": method.backend, "precision": method.precision}
+    for wanted, way in (("all", compiled), ("effort", compiled), ("all", {"backend": "vm"})):
         with pytest.raises(
             AssemblyError,
             match=r"of the loop closed by constraint 'height' does not close it at t = 0 s",
         ):
-            evaluate(scene, wanted=wanted, parameters={"station": 0.25}, **told)
+            evaluate(scene, wanted=[wanted], parameters={"station": 0.25}, **way)
     designs = DesignEngine.of(scene, ["effort"], method=method)
     outcome = designs.evaluate(np.array([[1.0, 0.25], [1.0, 0.5]]))
     assert outcome.status.tolist() == [Status.NOT_CLOSED, Status.OK]
@@ -58,18 +56,7 @@ def test_what_does_not_close_a_loop_is_refused(method, monkeypatch, fresh_cache)
 
 
 def test_exported_c_refuses_what_does_not_close_a_loop(monkeypatch, fresh_cache, tmp_path):
-    export(mistaken(monkeypatch), tmp_path / "c")
-    (tmp_path / "c" / "look.c").write_text(
-        '#include <stdio.h>\n#include "mistaken.h"\nint main(void) {\n  mistaken_model model;\n'
-        "  mistaken_parameters p = mistaken_defaults;\n  mistaken_inputs in;\n"
-        "  mistaken_outputs out;\n  p.station = 0.25;\n  mistaken_prepare(&model, &p);\n "
-        ' mistaken_motion(&model, 0.0, &in);\n  printf("%s",'
-        " mistaken_message(mistaken_evaluate(&model, &in, &out)));\n  return 0;\n}\n"
-    )
-    subprocess.run(
-        ["cc", "look.c", "mistaken.c", "-lm", "-o", "look"], cwd=tmp_path / "c", check=True
-    )
-    told = subprocess.run(
-        ["./look"], cwd=tmp_path / "c", capture_output=True, text=True, check=True
-    ).stdout
-    assert told == "the solution of a loop does not satisfy its equations"
+    folder = tmp_path / "c"
+    made = export(mistaken(monkeypatch), folder)
+    ((_, _, words),) = told(folder, made, "parameters.station = 0.25; " + PREPARED + EVALUATED)
+    assert words == "the solution of a loop does not satisfy its equations"
