@@ -115,7 +115,7 @@ def test_rounding_is_not_taken_for_what_does_not_repeat():
     assert evaluate(case("cardan_shaft"), **asked).certified
 
 
-@pytest.mark.parametrize("turns", [-100_000, 1000, 100_000])
+@pytest.mark.parametrize("turns", [-1000, 100_000])
 def test_after_many_turns_all_is_as_before(turns):
     """The angle as it is decides: nothing is lost of it but its own last digits."""
     scene = case("slider_crank")

@@ -80,11 +80,11 @@ def test_truth_is_found_without_noise(make, quantities, curved):
 
 
 def test_errors_are_as_large_as_stated():
-    """In 100 draws of noise, deviations over the covariance are those of chi-squared."""
+    """In 60 draws of noise, deviations over the covariance are those of chi-squared."""
     scene, names = two_links(), ("effort:A", "effort:B")
     exact = record(scene, ARM, *names)
     generator, squares, within = np.random.default_rng(1), [], []
-    for _ in range(100):
+    for _ in range(60):
         columns = dict(exact.columns)
         for name in names:
             columns[name] = columns[name] + 0.3 * generator.standard_normal(exact.t.size)
@@ -95,7 +95,7 @@ def test_errors_are_as_large_as_stated():
         squares.append(away @ np.linalg.solve(result.covariance, away))
         assert abs(result.noise["effort:A"] / 0.3 - 1.0) < 0.2
     assert 0.92 <= np.mean(within) <= 0.98
-    assert 3.0 <= np.mean(squares) <= 5.0  # 4 degrees of freedom: 4 +- 0.28
+    assert 3.0 <= np.mean(squares) <= 5.0  # 4 degrees of freedom: 4 +- 0.37
 
 
 def test_outliers_count_little_in_hubers_loss():
