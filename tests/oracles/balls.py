@@ -1,4 +1,4 @@
-"""Mechanisms in space whose bodies hang on balls that are in gimbal lock at an instant."""
+"""A mechanism in space whose body hangs on balls, one of them in gimbal lock at an instant."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ import math
 import numpy as np
 from spatial_bodies import GROUND, Joint, Load, Mechanism
 from spatial_draft import Drawn, Law, frame, rigid, rod
-from spatial_mechanisms import FAMILIES
+
+LOCK = 0.2
+"""The instant [s]."""
 
 
 def locked(drawn: Drawn, name: str, t: float) -> Drawn:
@@ -29,16 +31,9 @@ def locked(drawn: Drawn, name: str, t: float) -> Drawn:
     return dataclasses.replace(drawn, mechanism=dataclasses.replace(drawn.mechanism, joints=joints))
 
 
-def suspension(seed: int, t: float) -> Drawn:
-    """A wheel's hub on five bars, with a free joint to the ground."""
-    return locked(FAMILIES["suspension"](seed), "travel", t)
-
-
-def platform(seed: int, t: float, reverse: bool = False) -> Drawn:
+def platform(seed: int) -> Drawn:
     """A plate on three legs of two links each, whose feet turn as they are told; all that holds it
     are balls (3-RRS).
-
-    In ``reverse`` the balls' parent is the plate.
     """
     rng = np.random.default_rng(seed)
     at = np.array([0.0, 0.0, 0.7]) + rng.normal(size=3) * 0.02
@@ -72,9 +67,8 @@ def platform(seed: int, t: float, reverse: bool = False) -> Drawn:
                 orientation=R.T @ S,
             ),
         ]
-        ends = [(upper.name, (upper.length, 0.0, 0.0)), ("plate", 0.2 * out)]
-        (parent, there), (child, here) = reversed(ends) if reverse else ends
-        joints.append(Joint(f"S{k}", "spherical", parent, child, there, here))
+        ends = (upper.length, 0.0, 0.0), 0.2 * out
+        joints.append(Joint(f"S{k}", "spherical", upper.name, "plate", *ends))
         laws["O" + str(k), 0] = Law(0.0, 0.0, rng.uniform(0.1, 0.25), rng.uniform(3, 6), 0.0)
     one = Mechanism(
         [plate, *bodies],
@@ -82,7 +76,7 @@ def platform(seed: int, t: float, reverse: bool = False) -> Drawn:
         loads=[Load("plate", (0.1, 0, 0), rng.normal(size=3) * 20, (1, 0, 0))],
         gravity=(0, 0, -9.81),
     )
-    return locked(Drawn(one, laws, guess, span=0.4), "S0", t)
+    return locked(Drawn(one, laws, guess, span=2 * LOCK), "S0", LOCK)
 
 
 def _ways(foot, knee, top):

@@ -1,7 +1,4 @@
-"""What the spatial oracle is told of a mechanism: plain data of its own.
-
-Numbers may be doubles, strings or mpmath's.
-"""
+"""What the spatial oracle is told of a mechanism: plain data of its own."""
 
 from __future__ import annotations
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Mapping, Sequence
-from types import MappingProxyType
+from collections.abc import Sequence
 from typing import Any
 
 import casadi as ca
@@ -22,7 +21,6 @@ _SIZE = 0.3
 NO_TURN = np.eye(3)
 BESIDE = (0.3, 3.0, 0.0)
 """In a body's own axes, the direction by which its y axis is told."""
-NO_BEAMS: Mapping[str, Any] = MappingProxyType({})
 NAMES = {
     "cylindrical": ("turn", "slide"),
     "universal": ("turn_1", "turn_2"),
@@ -60,14 +58,13 @@ def declared(
     drawn: Drawn,
     t: float = 0.0,
     rubs: Sequence[Rub] = (),
-    beams: Mapping[str, Any] = NO_BEAMS,
+    beside: bool = False,
     **options,
 ) -> Scene:
     """A scene of what was drawn, with friction where it rubs, its loops assembled as the oracle has
     them at an instant.
 
-    Rods may have ``beams``, by their names; a bar that has one is told by places, and so is its y
-    axis.
+    Bars are told by places, and so are their y axes, where these are told by what is ``beside``.
     """
     one = drawn.mechanism
     m = SpatialMechanism("drawn")
@@ -75,12 +72,10 @@ def declared(
     placed = {
         body for joint in one.joints if drawn.is_hard(joint) for body in (joint.parent, joint.child)
     }
-    placed |= find_two_force_links(drawn) & {*beams}
+    placed |= find_two_force_links(drawn) if beside else set()
     parts = {GROUND: m.ground}
     for b in one.bodies:
-        parts[b.name] = _body(
-            m, b, drawn.guess[b.name] if b.name in placed else None, beams.get(b.name)
-        )
+        parts[b.name] = _body(m, b, drawn.guess[b.name] if b.name in placed else None)
 
     def at(body, point):
         return parts[body].at(*map(float, point))
@@ -166,6 +161,18 @@ def find_two_force_links(drawn: Drawn) -> set[str]:
     return {name for name in drawn.rods if ends[name] == ["spherical"] * 2}
 
 
+def declared_axes(drawn: Drawn, body: str, pose) -> np.ndarray:
+    """The axes of a body as columns: of a bar y is the part across it of the direction beside,
+    which the ground carries.
+    """
+    if body not in find_two_force_links(drawn):
+        return pose.R
+    x, beside = pose.R[:, 0], drawn.guess[body][1] @ BESIDE
+    y = beside - x * (x @ beside)
+    y /= np.linalg.norm(y)
+    return np.column_stack([x, y, np.cross(x, y)])
+
+
 def postures(drawn: Drawn, t: float) -> dict[str, float]:
     """The coordinates at an instant, by the package's names, as they follow from the oracle's
     poses.
@@ -193,7 +200,7 @@ def named(drawn, one):
     return found
 
 
-def _body(m, body, pose=None, beam=None):
+def _body(m, body, pose=None):
     if isinstance(body, Rigid):
         rows = np.array(body.inertia, float)
         centre = np.array(body.centre, float)
@@ -226,13 +233,8 @@ def _body(m, body, pose=None, beam=None):
         matter = density.thick(
             matter, **{name: density.polynomial(a, b - a) for name, (a, b) in ends.items()}
         )
-    made = {} if beam is None else {"beam": beam}
-    return m.link(
-        body.name,
-        density=matter,
-        **made,
-        **({"length": length} if pose is None else _lying(*pose, length)),
-    )
+    lies = {"length": length} if pose is None else _lying(*pose, length)
+    return m.link(body.name, density=matter, **lies)
 
 
 def _lying(r, R, length):

@@ -68,8 +68,7 @@ class Sum:
 class Drawn:
     """A mechanism, its laws by (joint, index), a guess at t = 0, and what bears efforts.
 
-    It moves from 0 to ``span``, and is followed there in ``steps``. Numbers of the mechanism are
-    doubles, or of mpmath where a loop closes only by exact ones. So many spins are ``idle``:
+    It moves from 0 to ``span``, and is followed there in ``steps``. So many spins are ``idle``:
     nothing holds them. ``hard`` are bodies that are told by places: of the posture that is guessed,
     in which all coordinates are zero.
     """

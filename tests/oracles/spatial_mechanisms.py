@@ -13,8 +13,8 @@ import itertools
 import math
 from collections.abc import Callable, Sequence
 
-import mpmath
 import numpy as np
+from spatial_algebra import turn
 from spatial_bodies import AXES, GROUND, KINDS, Joint, Load, Mechanism, Rigid
 from spatial_draft import (
     Drawn,
@@ -34,9 +34,7 @@ from spatial_draft import (
 from spatial_motion import OpenLoopError
 
 STEADY = 0.02
-_EXACT = mpmath.MPContext()
-_EXACT.dps = 70
-_Z = (0, 0, 1)
+_X, _Y, _Z = np.eye(3)
 
 
 def steady(draw: Callable[..., Drawn], name: str = "", *told) -> Callable[[int], Drawn]:
@@ -188,7 +186,7 @@ def stewart(rng) -> Drawn:
     turns = [swing(rng, x, 0.1) for x in tilt]
     laws = {("pose", k): law for k, law in enumerate([*places, *turns])}
     x, y, z, a, b, c = (law.at(0.0)[0] for law in laws.values())
-    R = _about(0, a) @ _about(1, b) @ _about(2, c)
+    R = turn(_X, a) @ turn(_Y, b) @ turn(_Z, c)
     for i in range(6):
         base, top = (_corner(rng, i, *ring) for ring in ((0.5, 0.2), (0.3, 0.8)))
         way = np.array([x, y, z]) + R @ top - base
@@ -223,26 +221,8 @@ def _corner(rng, i, radius, spread):
     return np.array([radius * math.cos(angle), radius * math.sin(angle), rng.uniform(-0.02, 0.02)])
 
 
-def _about(k, angle):
-    c, s = math.cos(angle), math.sin(angle)
-    R, (i, j) = np.eye(3), ((k + 1) % 3, (k + 2) % 3)
-    R[i, i], R[j, j], R[i, j], R[j, i] = c, c, -s, s
-    return R
-
-
-def _plane(rng):
-    """A rotation in many digits, for loops that close only by exact numbers."""
-    w, x, y, z = (_EXACT.mpf(int(q)) for q in rng.integers(-9, 10, 4) + np.array([0, 0, 0, 20]))
-    rows = [
-        [w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z],
-    ]
-    return np.array(rows) / (w * w + x * x + y * y + z * z)
-
-
 def _planar(rng, slides):
-    R, at = _plane(rng), rng.normal(size=3)
+    R, at = orientation(rng), rng.normal(size=3)
     r, l, s = (x * rng.uniform(0.9, 1.1) for x in (0.1, 0.35, 0.25))
     x, y = (0.3 * rng.uniform(0.9, 1.1), 0.05 if slides else 0.0)
     crank, coupler = rod(rng, "crank", r, slender=True), rod(rng, "coupler", l, slender=True)
@@ -263,7 +243,7 @@ def _planar(rng, slides):
         guess = {("Q", 0): math.atan2(b[1], b[0] - x)}
         far, Q = R @ [x, 0, 0], {"kind": "revolute", "axis": R[:, 2]}
     joints = [
-        Joint("O", "revolute", GROUND, "crank", at + R @ [0, 0, 0], axis=R[:, 2], orientation=R),
+        Joint("O", "revolute", GROUND, "crank", at, axis=R[:, 2], orientation=R),
         Joint("A", "revolute", "crank", "coupler", (r, 0, 0), axis=_Z),
         Joint(
             "B",
@@ -290,15 +270,10 @@ def _ring(rng, lengths, twists, angles, law):
     """A ring of links, each with its axes about z at its base and turned by its twist about x at
     its tip; the last is fixed.
     """
-    turned = [
-        np.array([[1, 0, 0], [0, _EXACT.cos(t), -_EXACT.sin(t)], [0, _EXACT.sin(t), _EXACT.cos(t)]])
-        for t in twists
-    ]
-    R, at, last = _plane(rng), rng.normal(size=3), len(lengths) - 1
-    names, joints = [f"l{i}" for i in range(last)], []
-    joints = [
-        Joint("j0", "revolute", GROUND, names[0], at + R @ [0, 0, 0], axis=R[:, 2], orientation=R)
-    ]
+    turned = [turn(_X, twist) for twist in twists]
+    R, at, last = orientation(rng), rng.normal(size=3), len(lengths) - 1
+    names = [f"l{i}" for i in range(last)]
+    joints = [Joint("j0", "revolute", GROUND, names[0], at, axis=R[:, 2], orientation=R)]
     for i, (one, other) in enumerate(itertools.pairwise(names)):
         joints.append(
             Joint(
@@ -336,14 +311,12 @@ def _ring(rng, lengths, twists, angles, law):
 @steady
 def bennett(rng) -> Drawn:
     """Bennett's loop of four revolute joints: three reactions are open."""
-    a, twist = _EXACT.mpf(rng.uniform(0.3, 0.6)), _EXACT.mpf(rng.uniform(0.5, 0.9))
-    other = _EXACT.mpf(rng.uniform(1.1, 1.5))
-    b = a * _EXACT.sin(other) / _EXACT.sin(twist)
+    a, twist, other = (rng.uniform(*ends) for ends in ((0.3, 0.6), (0.5, 0.9), (1.1, 1.5)))
+    b = a * math.sin(other) / math.sin(twist)
     law = Law(rng.uniform(0.6, 2.0), rng.uniform(1, 3), 0.05, 5.0, 0.0)
     first = law.at(0.0)[0]
     second = 2 * math.atan(
-        float(_EXACT.sin((other + twist) / 2) / _EXACT.sin((other - twist) / 2))
-        / math.tan(first / 2)
+        math.sin((other + twist) / 2) / math.sin((other - twist) / 2) / math.tan(first / 2)
     )
     return _ring(
         rng, [a, b, a, b], [twist, other, twist, other], [first, second, -first, -second], law
@@ -355,7 +328,7 @@ def bricard(rng) -> Drawn:
     """Bricard's loop of six revolute joints at right angles, links of one length: one reaction is
     open.
     """
-    length, right = _EXACT.mpf(rng.uniform(0.4, 1.0)), _EXACT.pi / 2
+    length, right = rng.uniform(0.4, 1.0), math.pi / 2
     law = Law(rng.uniform(1.3, 1.7), rng.uniform(-1, 1), 0.02, 5.0, 0.0)
     first = law.at(0.0)[0]
     second = -math.acos(-math.cos(first) / (1 + math.cos(first)))

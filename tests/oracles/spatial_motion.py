@@ -313,9 +313,7 @@ def coordinates(joint: Joint, motion: Motion, poses) -> list:
     elif len(turning) == 2:
         first, second = (e[k] for k in turning)
         found[turning[0]] = angle_about(first, second, turned @ second)
-        found[turning[1]] = angle_about(
-            turned @ second, _turned(first, found[turning[0]], first), turned @ first
-        )
+        found[turning[1]] = angle_about(turned @ second, first, turned @ first)
     elif len(turning) == 3:
         x, y, z = (e[k] for k in turning)
         m = np.array([x, y, z]) @ turned @ np.array([x, y, z]).T
@@ -323,14 +321,6 @@ def coordinates(joint: Joint, motion: Motion, poses) -> list:
         found[turning[1]] = math.asin(max(-1.0, min(1.0, m[0, 2])))
         found[turning[2]] = math.atan2(-m[0, 1], m[0, 0])
     return [float(x) for x in found]
-
-
-def _turned(axis, angle, a):
-    return (
-        a * math.cos(angle)
-        + np.cross(axis, a) * math.sin(angle)
-        + axis * (axis @ a) * (1 - math.cos(angle))
-    )
 
 
 def solve_motion(motion: Motion, drives, guess):

@@ -11,8 +11,8 @@ ground, their torque about the ground's point.
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -46,25 +46,13 @@ class Instant:
     data: dict
 
 
-@dataclass(frozen=True)
-class Entry:
-    """One entry."""
-
-    name: str
-
-    @cached_property
-    def data(self) -> dict:
-        return json.loads((FOLDER / f"{self.name}.json").read_text())
-
-    @property
-    def count(self) -> int:
-        return len(self.data["instants"])
-
-    def instant(self, k: int) -> Instant:
-        """The mechanism at an instant: where an orientation is driven, it is the one at coordinates
-        zero.
-        """
-        data, parts = self.data["instants"][k], self.data["mechanism"]
+def instants(name: str) -> Iterator[Instant]:
+    """The mechanism of an entry at each instant: where an orientation is driven, it is the one at
+    coordinates zero.
+    """
+    entry = json.loads((FOLDER / f"{name}.json").read_text())
+    parts = entry["mechanism"]
+    for data in entry["instants"]:
         driven = data.get("orientations", {})
         turned = {name: {"orientation": R} for name, R in driven.items()}
         kinds = {"Rigid": Rigid, "Rod": Rod}
@@ -74,7 +62,7 @@ class Entry:
             numbers(parts["gravity"]),
             [Load(**told(load)) for load in parts.get("loads", [])],
         )
-        return Instant(
+        yield Instant(
             mechanism,
             {(joint, axis): tuple(numbers(law)) for joint, axis, law in data["drives"]},
             {name: (numbers(q["r"]), numbers(q["R"])) for name, q in data["poses"].items()},

@@ -2,6 +2,7 @@
 
 import functools
 
+from balls import platform
 from spatial_anyhow import anyhow
 from spatial_bridge import declared, plain
 from spatial_draft import turning
@@ -11,14 +12,14 @@ from spatial_wheels import wheel
 from lagrange_casadi import evaluate
 
 RATIOS = 5
+DRAWS = FAMILIES | {"anyhow": anyhow, "wheel": wheel, "locked": platform}
 
 
 @functools.cache
 def scene_of(name, seed):
     """What was drawn, and its scene."""
-    drawn = plain((FAMILIES | {"anyhow": anyhow, "wheel": wheel})[name](seed))
-    drawn = turning(drawn, seed)
-    return drawn, declared(drawn, xi=(0, 1, RATIOS))
+    drawn = turning(plain(DRAWS[name](seed)), seed)
+    return drawn, declared(drawn, beside=True, xi=(0, 1, RATIOS))
 
 
 @functools.cache

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from spatial_oracle import solve
-from spatial_reference import NAMES, Entry, numbers
+from spatial_reference import NAMES, instants, numbers
 
 COMPUTED = [n for n in NAMES if n.split("_")[0] not in ("sdfast", "opensim", "adams")]
 
@@ -61,9 +61,7 @@ def differences(instant, found, weighed=False):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_the_numbers_are_met(name):
-    entry = Entry(name)
-    for k in range(entry.count):
-        instant = entry.instant(k)
+    for k, instant in enumerate(instants(name)):
         found = solve(instant.mechanism, instant.drives, instant.guess, instant.pushed)
         gaps = differences(instant, found, weighed=name not in COMPUTED)
         assert max(gaps.values()) < 2e-14, (k, gaps)
@@ -72,9 +70,8 @@ def test_the_numbers_are_met(name):
 @pytest.mark.parametrize("name", [n for n in NAMES if n.startswith(("sdfast", "opensim"))])
 def test_published_reactions_in_the_childs_axes(name):
     """SD/FAST's are printed to six decimals; OpenSim's are doubles."""
-    entry, accuracy = Entry(name), 5e-7 if name.startswith("sdfast") else 2e-11
-    for k in range(entry.count):
-        instant = entry.instant(k)
+    accuracy = 5e-7 if name.startswith("sdfast") else 2e-11
+    for instant in instants(name):
         found = solve(instant.mechanism, instant.drives, instant.guess, instant.pushed)
         assert all(abs(effort) < 1e-10 for effort in found.efforts.values())
         for joint, given in instant.data["published_child_axes"].items():
