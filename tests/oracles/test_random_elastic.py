@@ -8,10 +8,8 @@ import numpy as np
 import pytest
 from elastic_mechanisms import work
 from random_mechanisms import draw
-from spatial_bridge import declared, plain
-from spatial_mechanisms import FAMILIES
 
-from lagrange_casadi import Mechanism, SpatialMechanism, beams, evaluate
+from lagrange_casadi import Mechanism, beams, evaluate
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -36,21 +34,8 @@ def made(monkeypatch):
             **given if "centre" in given else {"beam": beams.Beam(next(shapes), STEEL), **given},
         )
 
-    for kind in (Mechanism, SpatialMechanism):
-        monkeypatch.setattr(
-            kind, "link", functools.partialmethod(functools.partial(with_beam, kind.link))
-        )
-
-
-def planar(seed):
-    drawn = draw(seed)
-    start, stop, count = drawn.grid
-    given = {"parameters": drawn.keywords["parameters"]} if "parameters" in drawn.keywords else {}
-    return drawn.scene(), {"t": (start, stop, min(count, 5)), **given}
-
-
-def spatial(family, seed):
-    return declared(plain(FAMILIES[family](seed))), {"t": (0.0, 0.05, 3)}
+    beams_of = functools.partialmethod(functools.partial(with_beam, Mechanism.link))
+    monkeypatch.setattr(Mechanism, "link", beams_of)
 
 
 def least(scene, given):
@@ -74,15 +59,11 @@ def least(scene, given):
     return len(solution.elasticity.completed), len(told)
 
 
-LONG = [pytest.param(seed, marks=pytest.mark.long) for seed in (50, 82, 97, 102)]
-
-
-@pytest.mark.parametrize("seed", [2, *LONG])
+@pytest.mark.parametrize(
+    "seed", [2, *(pytest.param(seed, marks=pytest.mark.long) for seed in (50, 82, 97, 102))]
+)
 def test_random_mechanisms(made, seed):
-    assert all(least(*planar(seed)))
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("family", ["planar_four_bar", "bennett", "bricard"])
-def test_random_loops_in_space(made, family):
-    assert all(least(*spatial(family, 0)))
+    drawn = draw(seed)
+    start, stop, count = drawn.grid
+    given = {"parameters": drawn.keywords.get("parameters"), "t": (start, stop, min(count, 5))}
+    assert all(least(drawn.scene(), given))

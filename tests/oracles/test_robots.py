@@ -87,39 +87,11 @@ def geared(more=""):
     )
 
 
-def test_rotors_load_joints_as_bodies_that_turn_behind_gears(arm):
-    """Pinocchio has a body for each rotor, which turns in the parent about the joint's axis; its
-    effort, times the ratio, is among that of the joint. The reaction shows the spin's couples.
-    """
-    pinocchio = pytest.importorskip("pinocchio")
-    text = urdf()
-    bare = pinocchio.buildModelFromXML(text)
-    model, rows = pinocchio.buildModelFromXML(text), {}
-    for name, (inertia, ratio) in ROTORS.items():
-        k, axis = bare.getJointId(name), np.array(AXES[name])
-        turn = pinocchio.JointModelRevoluteUnaligned(axis)
-        added = model.addJoint(model.parents[k], turn, model.jointPlacements[k], f"r_{name}")
-        model.appendBodyToJoint(
-            added,
-            pinocchio.Inertia(0.0, np.zeros(3), inertia * np.outer(axis, axis)),
-            pinocchio.SE3.Identity(),
-        )
-        rows[f"r_{name}"] = tuple(ratio * x for x in MOVES[name])
-    # The rotor at rest is among the parent's own inertia.
-    for name, (inertia, _) in ROTORS.items():
-        k = bare.getJointId(name)
-        if (parent := bare.parents[k]) == 0:
-            continue
-        axis = bare.jointPlacements[k].rotation @ np.array(AXES[name])
-        at = model.inertias[parent]
-        less = at.inertia - inertia * np.outer(axis, axis)
-        model.inertias[parent] = pinocchio.Inertia(at.mass, at.lever, less)
-    found = dict(zip(model.names[1:], moved(pinocchio, model, **rows), strict=True))
-    expected = [found[name] + ROTORS[name][1] * found[f"r_{name}"] for name in MOVES]
-    solution = evaluate(arm(urdf(more=geared())))
-    assert solution.certified
-    np.testing.assert_allclose(efforts(solution), expected, rtol=0, atol=1e-12 * 60)
-    assert np.abs(expected - moved(pinocchio, bare)).min() > 0.05
+def test_rotors_are_those_of_transmissions(arm):
+    """What they do is drawn elsewhere: bodies that turn behind gears (test_spatial_evaluate)."""
+    drives = arm(urdf(more=geared())).mechanism.drives
+    told = {name: drives[f"{name}_drive"] for name in ROTORS}
+    assert {name: (one.rotor_inertia, one.ratio) for name, one in told.items()} == ROTORS
 
 
 def test_armature_damping_and_dry_friction_are_those_of_pinocchio(arm):
@@ -188,16 +160,9 @@ MJCF = """<mujoco><worldbody><body name="a">
 <geom size="0.1" pos="0.1 0.2 0"/></body></body></worldbody></mujoco>"""
 
 
-def test_armature_is_that_of_mujoco(arm):
-    mujoco = pytest.importorskip("mujoco")
-    model = mujoco.MjModel.from_xml_string(MJCF)
-    data = mujoco.MjData(model)
-    data.qpos[:], data.qvel[:], data.qacc[:] = np.array([MOVES["q1"], MOVES["q2"]]).T
-    mujoco.mj_inverse(model, data)
-    solution = evaluate(arm(MJCF, "arm.xml"))
-    np.testing.assert_allclose(efforts(solution, ("q1", "q2")), data.qfrc_inverse, rtol=1e-11)
-    # A drive has one limit for both ways: the lesser of the two.
-    assert solution.drives_used()["q1_drive"].effort.limit == 30.0
+def test_a_drive_has_the_lesser_of_two_limits(arm):
+    pytest.importorskip("mujoco")
+    assert arm(MJCF, "arm.xml").mechanism.drives["q1_drive"].effort == 30.0
 
 
 LEGS = {"FL": (0.2, 1), "FR": (0.2, -1), "RL": (-0.2, 1), "RR": (-0.2, -1)}
