@@ -1,4 +1,4 @@
-"""Precisions and their roundings, and the linear equations of the oracles."""
+"""Precisions and their roundings, and the tolerance and the quadrature of the oracles."""
 
 from __future__ import annotations
 
@@ -13,10 +13,3 @@ GAUSS = np.polynomial.legendre.leggauss(12)
 DTYPES = {"double": np.dtype(float), "single": np.dtype(np.float32)}
 ROUNDING = {"double": 2.0**-53, "single": 2.0**-24}
 """Kinds of numbers of each precision, and the relative size of a rounding of theirs."""
-
-
-def least_squares(matrix, right, least):
-    """Least squares, and of many solutions the shortest; singular values below ``least`` of the
-    largest are none.
-    """
-    return np.linalg.lstsq(matrix, right, rcond=least)[0]

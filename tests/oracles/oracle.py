@@ -18,7 +18,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from arithmetic import GAUSS, TOLERANCE, least_squares
+from arithmetic import GAUSS, TOLERANCE
 from jets import Jet
 from spread import forces
 
@@ -187,7 +187,7 @@ class Oracle:
             # Near the end the slope is as good as before.
             if left is None or left > _SAME_SLOPE:
                 slope = self.slope(q, drives)
-            step = least_squares(slope, -self.gaps(q, rest, drives)[0], _LEAST)
+            step = np.linalg.lstsq(slope, -self.gaps(q, rest, drives)[0], _LEAST)[0]
             q, before = q + step, left
             left, size = np.max(np.abs(step)), 1 + np.max(np.abs(q))
             if left < TOLERANCE * size or (
@@ -199,8 +199,8 @@ class Oracle:
         if not left < 1000 * TOLERANCE * size:
             raise OpenLoopError("the oracle does not close its loops")
         slope = self.slope(q, drives)
-        rate = least_squares(slope, -rates, _LEAST)
-        acceleration = least_squares(slope, -self.gaps(q, rate, drives)[2], _LEAST)
+        rate = np.linalg.lstsq(slope, -rates, _LEAST)[0]
+        acceleration = np.linalg.lstsq(slope, -self.gaps(q, rate, drives)[2], _LEAST)[0]
         jets = [Jet(*x) for x in zip(q, rate, acceleration, strict=True)]
         result = Result({n: tuple(jets[3 * i : 3 * i + 3]) for i, n in enumerate(names)})
         scaled = self.scaled(slope)
@@ -344,7 +344,7 @@ class Oracle:
 
         def solved(parts):
             left = right - self._on_bodies(frames, parts)[keep]
-            found = least_squares(matrix, left, 1e-11)
+            found = np.linalg.lstsq(matrix, left, 1e-11)[0]
             return found if least is None else found + least @ found
 
         found, pressed = self._pressed(solved, labels, place)

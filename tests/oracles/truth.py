@@ -209,10 +209,14 @@ def _gap(true, mine, angle):
     return abs(float(gap - 2 * MP.pi * MP.nint(gap / (2 * MP.pi)) if angle else gap))
 
 
-COMPARISONS = {ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE}
-PERIODIC = {ca.OP_FMOD, ca.OP_REMAINDER}
-WHOLE = {ca.OP_FLOOR, ca.OP_CEIL}
-DECIDING = COMPARISONS | PERIODIC | WHOLE | {ca.OP_SIGN, ca.OP_ATAN2, ca.OP_COPYSIGN}
+STEPS = {
+    **dict.fromkeys((ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE), lambda *_: 1),
+    **dict.fromkeys((ca.OP_FLOOR, ca.OP_CEIL, ca.OP_SIGN), lambda *_: 1),
+    **dict.fromkeys((ca.OP_FMOD, ca.OP_REMAINDER), lambda x, period: abs(period)),
+    ca.OP_ATAN2: lambda *_: 2 * MP.pi,
+    ca.OP_COPYSIGN: lambda x, sign: 2 * abs(x),
+}
+"""Operations that jump, and of what their jumps are multiples."""
 
 
 def _numbered(arithmetic, apply):
@@ -220,7 +224,7 @@ def _numbered(arithmetic, apply):
     count = itertools.count()
 
     def rule(code, operation):
-        return lambda *values: apply(next(count), code, values, operation(*values))
+        return lambda *values: apply(next(count), code, operation, values)
 
     return replace(
         arithmetic,
@@ -231,19 +235,22 @@ def _numbered(arithmetic, apply):
 
 
 def _listening(arithmetic, decisions):
-    """What decides is noted: number, code, operands, result."""
+    """What may jump is noted: number, code, operation, operands."""
 
-    def apply(k, code, values, result):
-        if code in DECIDING:
-            decisions.append((k, code, values, result))
-        return result
+    def apply(k, code, operation, values):
+        if code in STEPS:
+            decisions.append((k, code, operation, values))
+        return operation(*values)
 
     return _numbered(arithmetic, apply)
 
 
 def _taking(arithmetic, taken):
     """Results by number in place of what an operation gives."""
-    return _numbered(arithmetic, lambda k, code, values, result: taken.get(k, result))
+    return _numbered(
+        arithmetic,
+        lambda k, code, operation, values: taken[k] if k in taken else operation(*values),
+    )
 
 
 def _others(decisions):
@@ -252,7 +259,7 @@ def _others(decisions):
     """
     sizes = {}
     for at_instant in decisions:
-        for k, code, values, _ in at_instant:
+        for k, code, _, values in at_instant:
             compared = values[1:] if code == ca.OP_COPYSIGN else values
             sizes[k] = max(sizes.get(k, MP.mpf(0)), *map(abs, compared))
     for at_instant in decisions:
@@ -271,23 +278,11 @@ def _others(decisions):
         ]
 
 
-def _otherwise(code, values, result, near):
+def _otherwise(code, operation, values, near):
     """The results of an operation beyond a jump, where that is near."""
-    x = values[0]
-    if code in COMPARISONS:
-        return [1 - result] if abs(x - values[1]) <= near else []
-    if code == ca.OP_SIGN:
-        return [sign for sign in (-1, 1) if sign != result] if abs(x) <= near else []
-    if code == ca.OP_COPYSIGN:
-        return [-result] if abs(values[1]) <= near else []
-    if code in WHOLE:
-        return [
-            other
-            for other in (result - 1, result + 1)
-            if abs(x - MP.nint(x)) <= near and abs(other - x) <= 1 + near
-        ]
-    period = abs(values[1]) if code in PERIODIC else 2 * MP.pi
-    edges = (0, period) if code == ca.OP_FMOD else (period / 2,)
-    if min(abs(abs(result) - edge) for edge in edges) > (near if code in PERIODIC else NEAR):
-        return []
-    return [other for other in (result - period, result + period) if abs(other) <= period + near]
+    result, step, k = operation(*values), STEPS[code](*values), int(code == ca.OP_COPYSIGN)
+    found = set()
+    for moved in (values[k] - near, values[k] + near):
+        there = operation(*values[:k], moved, *values[k + 1 :])
+        found.add(result + step * MP.nint((there - result) / step) if step else result)
+    return found - {result}
