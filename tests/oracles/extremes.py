@@ -16,7 +16,6 @@ from mechanisms import links_of, pins_of
 from truth import true_errors, truth
 
 from lagrange_casadi import Mechanism, Scene, evaluate
-from lagrange_casadi.density import tabulated
 from lagrange_casadi.motion import harmonic, polynomial
 
 PRECISIONS = ("double", "single")
@@ -76,16 +75,6 @@ class Extreme:
         """
         condition = np.max(solution.certificate.get("condition", 1.0))
         return ROUNDING[solution.provenance.precision] * float(condition) ** 2 * self.lost
-
-
-@dataclass(frozen=True, eq=False)
-class Singular:
-    """A scene that is singular where its crank has the direction ``centre``."""
-
-    name: str
-    scene: Callable[[], Scene]
-    values: Mapping[str, float]
-    centre: float
 
 
 def _declared(name):
@@ -153,43 +142,6 @@ def four_bar(pin=Mechanism.revolute):
     pin(m, "B", b.tip, c.tip)
     m.revolute("C", m.ground.at(number("cx", 0.3), number("cy", 0.05)), c)
     return Scene(m, {"O": motion}, posture={"b": 0.9, "c": 1.5})
-
-
-@functools.cache
-def lever():
-    """A pin that slides along a lever, and a pendulum that hangs on a place of it: a station that
-    moves, and one that does not.
-    """
-    m, number, motion = _declared("lever")
-    crank, arm, bob = links_of(
-        m,
-        crank=(number("r", 0.1), number("m1", 0.3, "kg")),
-        arm=(number("l", 0.6), number("m2", 0.5, "kg")),
-        bob=(number("b", 0.2), number("mb", 0.3, "kg")),
-    )
-    pin = m.point_mass("pin", number("m3", 0.1, "kg"))
-    pins_of(
-        m, O=(m.ground.at(0.0, number("h", 0.25)), crank), A=(crank.tip, pin), C=(m.ground, arm)
-    )
-    m.slot("slot", arm.base, pin, axis=(1, 0))
-    m.revolute("D", arm.at(number("s", 0.45)), bob)
-    return Scene(m, {"O": motion, "D": polynomial(0.5, 3.0, 2.0)}, posture={"arm": 1.5})
-
-
-@functools.cache
-def tapered():
-    """A rod whose density is a table that ends in nothing."""
-    m, number, motion = _declared("tapered")
-    crank = m.link("crank", length=number("r", 0.1), mass=number("m1", 0.1, "kg"))
-    rod = m.link(
-        "rod",
-        length=number("l", 0.2),
-        density=tabulated([0, 1e-3, 0.5, 0.999, 1], [2.0, 1.0, 3.0, 0.5, 0.0]),
-    )
-    slider = m.point_mass("slider", number("m3", 0.1, "kg"))
-    pins_of(m, O=(m.ground, crank), A=(crank.tip, rod), B=(rod.tip, slider))
-    m.prismatic("guide", m.ground, slider, axis=(1, 0))
-    return Scene(m, {"O": motion}, posture={"rod": 0.0})
 
 
 @functools.cache
@@ -293,10 +245,6 @@ def _times():
 
 
 EXTREMES = (
-    Extreme("slider-crank as it is", slider_crank),
-    Extreme("four-bar as it is", four_bar),
-    Extreme("lever with load points as it is", lever),
-    Extreme("rod of a table of densities", tapered),
     Extreme("slider-crank: r/l = 1e-6", slider_crank, {"r": 0.2e-6}),
     Extreme("slider-crank: r/l = 1 - 1e-3 through 90 deg", slider_crank, *_90_TO_3),
     Extreme("slider-crank: r/l = 1 - 1e-6 through 90 deg", slider_crank, *_90_TO_6, single=_DEAD),
@@ -378,18 +326,6 @@ EXTREMES = (
     Extreme("slider-crank: crank of 1e-310 m", slider_crank, {"r": 1e-310}),
     Extreme("slider-crank: 1e-310 rad/s", slider_crank, {"rate": 1e-310, "change": 0.0}),
     Extreme("slider-crank: t from 0 to 1e-310 s", slider_crank, {}, (0.0, 1e-310, 3)),
-)
-
-SINGULAR = (
-    Singular("slider-crank of r = l", slider_crank, {"r": 0.2}, math.pi / 2),
-    Singular("parallelogram", four_bar, {"la": 0.1, "lb": 0.3, "lc": 0.1, "cy": 0.0}, 0.0),
-    Singular(
-        "parallelogram at its other change point",
-        four_bar,
-        {"la": 0.1, "lb": 0.3, "lc": 0.1, "cy": 0.0},
-        math.pi,
-    ),
-    Singular("coupler and rocker in line", four_bar, {"lb": 0.25, "lc": 0.15, "cy": 0.0}, math.pi),
 )
 
 

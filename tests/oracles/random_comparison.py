@@ -152,7 +152,6 @@ class Comparison:
                 f" {off:.3g}"
             )
             return None
-        self.notes.append(f"another assembly than the posture's, off by {off:.3g}")
         other = follow(self.d, float(self.solution.t[-1]), 0.1, t, self._unwound(t, poses))
         return other if other.times else None
 
@@ -229,7 +228,6 @@ class Comparison:
         if t > path.passes:
             # Either way on is a motion: the solution's own is looked at, if it is one.
             near = self._unwound(t, self.poses(i, near))
-            self.notes.append("goes past a dead centre without a word")
         exact = model.solve(self.d.drives(t), near)
         if exact.steadiness < _UNJUDGED or exact.vague:
             return

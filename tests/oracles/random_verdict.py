@@ -4,9 +4,7 @@ in words, or neither.
 
 from __future__ import annotations
 
-import contextlib
 import math
-import signal
 import traceback
 import warnings
 from dataclasses import dataclass, field
@@ -21,18 +19,14 @@ from lagrange_casadi.errors import CertificateWarning, LagrangeCasadiError
 from lagrange_casadi.peaks import forces
 
 
-class TooLongError(BaseException):
-    """The evaluation took more of the processor than its limit."""
-
-
 @dataclass
 class Verdict:
-    """``kind`` is right, refused, wrong, broken (an exception that is not ours) or slow; ``why``
-    says it in a line.
+    """``kind`` is right, refused, wrong, or broken (an exception that is not ours); ``why`` says it
+    in a line.
 
     ``regular`` tells of the whole motion that its loops close far from any dead centre, so that a
     refusal wants a reason. ``notes`` are doubts about a right result: condemned by its certificate,
-    unique forces withheld, another assembly than in the posture.
+    unique forces withheld.
     """
 
     seed: int
@@ -41,16 +35,15 @@ class Verdict:
     regular: bool
     notes: list[str] = field(default_factory=list)
     details: list[str] = field(default_factory=list)
-    solution: object = None
 
 
-def judge(drawn: Drawn, seconds: float = 120.0, *, peaks: bool = False, **method) -> Verdict:
+def judge(drawn: Drawn, *, peaks: bool = False, **method) -> Verdict:
     """Evaluate a random mechanism, and compare with the oracle; its ``peaks`` between instants
     too.
     """
     said, scene = {"seed": drawn.seed, "regular": is_regular(drawn)}, drawn.scene()
     try:
-        with _within(seconds), warnings.catch_warnings():
+        with warnings.catch_warnings():
             warnings.simplefilter(
                 "ignore", CertificateWarning
             )  # what the certificate says is among the notes
@@ -59,8 +52,6 @@ def judge(drawn: Drawn, seconds: float = 120.0, *, peaks: bool = False, **method
             found = refine(scene, solution, forces(solution)) if peaks else []
     except LagrangeCasadiError as error:
         return Verdict(kind="refused", why=f"{type(error).__name__}: {error}", **said)
-    except TooLongError:
-        return Verdict(kind="slow", why=f"no result after {seconds:g} s of the processor", **said)
     except Exception as error:  # whatever it is, it is not ours
         return Verdict(
             kind="broken",
@@ -96,14 +87,8 @@ def compare(drawn: Drawn, solution, peaks=()) -> Verdict:
     found = Comparison(drawn, solution)
     found.look(peaks)
     kind = "wrong" if found.faults else "right"
-    return Verdict(
-        kind=kind,
-        why=(found.faults or [""])[0],
-        notes=found.notes,
-        details=found.faults,
-        solution=solution,
-        **said,
-    )
+    why = (found.faults or [""])[0]
+    return Verdict(kind=kind, why=why, notes=found.notes, details=found.faults, **said)
 
 
 def peaks_off(scene, solution, dense, names) -> list[str]:
@@ -125,17 +110,3 @@ def peaks_off(scene, solution, dense, names) -> list[str]:
         if not least - 1e-9 * size <= abs(peak.value) <= many * 1.01 + 1e-2 * size:
             off.append(f"{peak}, {many} at one of many instants")
     return off
-
-
-@contextlib.contextmanager
-def _within(seconds: float):
-    def stop(*_):
-        raise TooLongError
-
-    before = signal.signal(signal.SIGPROF, stop)
-    signal.setitimer(signal.ITIMER_PROF, seconds)
-    try:
-        yield
-    finally:
-        signal.setitimer(signal.ITIMER_PROF, 0.0)
-        signal.signal(signal.SIGPROF, before)

@@ -92,7 +92,8 @@ def lengths_of(r, kind):
         l = r.uniform(0.5, 1.0) * a if r.random() < 0.3 else a + r.uniform(0.0, 0.2)
         return (a, l, a - l), math.pi / 2
     if kind == "kite":
-        return (a, a * r.uniform(0.4, 2.0), 0.0, a), 0.0
+        side = a * r.uniform(0.4, 2.0)
+        return (a, side, side, a), 0.0
     if kind == "parallelogram":
         return (a, b, a, b), r.choice([0.0, math.pi])
     # Crank and ground stretched are coupler and rocker stretched, or folded are they folded.
@@ -105,8 +106,6 @@ def lengths_of(r, kind):
 def drawn(r, kind):
     """A design: its lengths, its motion (start, rate, curve), and what it is about to do."""
     lengths, centre = lengths_of(r, kind)
-    if kind == "kite":
-        lengths = (lengths[0], lengths[1], lengths[1], lengths[0])
     step = math.radians(math.exp(r.uniform(math.log(0.1), math.log(30.0))))
     which = int(r.integers(1, COUNT - 2))
     beside = r.choice([-1, 1]) * (

@@ -23,7 +23,7 @@ LOADS = {
     "rail": [(("block", 0.3, 0.0), 1.0, -4.0, 0.0)],
     "shaper": [(("rail", 0.31, 0.0), 20.0, 3.0, 0.0)],
 }
-RATIOS = np.append(np.linspace(0.0, 1.0, 27), (0.123, 0.4567, 0.777))
+RATIOS = np.append(np.linspace(0.0, 1.0, 9), (0.123, 0.4567, 0.777))
 
 
 def unique(scene, parameters=None, **method):

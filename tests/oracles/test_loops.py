@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from balance import assert_balanced
 from mechanisms import ladder, links_of, pins_of
-from random_mechanisms import draw
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
 from lagrange_casadi.elements import cylinder
@@ -18,16 +17,6 @@ pytestmark = pytest.mark.usefixtures("interpreted")
 
 def iterated(scene):
     return derive(scene).newton is not None
-
-
-CLOSED = ("bushes", "plate", "bent", "cam", "cylinder", "damper", "torsion", "oldham")
-"""Kinds of random mechanisms that are built on linkages of dyads alone."""
-
-
-@pytest.mark.parametrize("kind", CLOSED)
-def test_every_dyad_has_a_closed_form(kind):
-    """RRR, RRP and RPR, told in any order, and a loop of slides."""
-    assert not any(iterated(draw(seed, kind).scene()) for seed in range(5))
 
 
 def test_a_ladder_against_a_wall():

@@ -8,7 +8,7 @@ from truth import truth
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate
 from lagrange_casadi.motion import polynomial
 
-MASSES = [1.0, 1e5, 1e10]
+MASSES = [1.0, 1e10]
 PINS = ("effort:O", *(f"reaction:{pin}:{member}" for pin in "OAB" for member in ("fx", "fy")))
 ROUNDINGS = 16.0
 """Of its own peak, that a force may be off."""

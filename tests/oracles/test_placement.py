@@ -198,7 +198,7 @@ def test_what_is_apart_and_what_closes_it(name):
     assert far.size == pytest.approx(size * (UNIT if gap.unit == "m" else 1.0), rel=1e-9)
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(11)
 @pytest.mark.parametrize("name", NAMES)
 def test_a_case_stands_as_it_is_evaluated(name):
     scene = load_case(CASES / name).scene

@@ -61,7 +61,7 @@ def test_right_or_refused(seed):
     assert worst is None or worst < 1e-10, f"{worst}\n{made.source}"
 
 
-DENSE = 4001
+DENSE = 2001
 
 
 def keeps_peaks(made):

@@ -92,7 +92,7 @@ def turned_four_bar(seed, noise):
     return Scene(m, laws, t=(0.0, 0.6, 7), posture=rough, wanted=["effort"])
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(3))
 def test_planar_loops_in_any_plane_are_on_the_branch_of_exact_axes(seed):
     noise = 1e-8
     found, exact = (evaluate(turned_four_bar(seed, off), backend="vm") for off in (noise, 0.0))
