@@ -34,4 +34,5 @@ from lagrange_casadi.results.verification.certificate import certify
 from lagrange_casadi.results.verification.reference import reference
 from lagrange_casadi.studies.designs.engine import DesignEngine
 from lagrange_casadi.studies.designs.outcome import Outcome
+from lagrange_casadi.studies.peaks_between import rates
 from lagrange_casadi.views.shapes.readable import scale_for

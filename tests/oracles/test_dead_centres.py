@@ -107,7 +107,7 @@ def drawn(r, kind):
     """A design: its lengths, its motion (start, rate, curve), and what it is about to do."""
     lengths, centre = lengths_of(r, kind)
     step = math.radians(math.exp(r.uniform(math.log(0.1), math.log(30.0))))
-    which = int(r.integers(1, COUNT - 2))
+    which = int(r.integers(1, COUNT - 1))
     beside = r.choice([-1, 1]) * (
         min(10 ** r.uniform(-10, -2), step) if r.random() < 0.6 else step * r.uniform(0.0, 1.0)
     )

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from internals import Output, certify
 from reports import held
+from spatial_oracle import SECTION
 
 from lagrange_casadi import (
     Scene,
@@ -77,6 +78,32 @@ def test_a_bar_under_its_own_weight(beside, upright, height, hard):
     expected = BENT[height if upright == "h" else width]
     assert solution.certified
     assert abs(solution.stress("rod").peak("normal").value) == pytest.approx(expected, rel=1e-9)
+
+
+def lopsided(h, w):
+    """A section of the same size as a rectangle, whose main axes lean."""
+    sides = {"top": h / 2, "side": w / 2, "iyz": 0.3 * (h * w) ** 2 / 12}
+    return beams.given(
+        h * w, w * h**3 / 12, h * w**3 / 12, **sides, torsion=1e-9, torsion_modulus=1e-6
+    )
+
+
+@pytest.mark.parametrize("shape", [beams.rectangle, lopsided])
+def test_stresses_about_both_axes_make_up_the_forces(shape):
+    solution = evaluate(bar((0.0, 1.0, 2.0), shape=shape, swing=0.3, push=-200.0))
+    stress, law = solution.stress("rod"), solution.section("rod").law
+    forces = np.array([law.on_grid(name, np.array([0.25]))[:, 0] for name in SECTION])
+    cross = stress.member.cross.properties(0, 0.25)
+    normal, along_y, along_z = stress.at(0.25)
+    fibres = {fibre.name: k for k, fibre in enumerate(cross.fibres)}
+    places = np.array([(1.0, fibre.y, fibre.z) for fibre in cross.fibres])
+    even, a, b = np.linalg.lstsq(places, normal, rcond=None)[0]
+    found = [even * cross.area, a * cross.iyz + b * cross.iy, -(a * cross.iz + b * cross.iyz)]
+    for own, force in zip(found, forces[[0, 4, 5]], strict=True):
+        np.testing.assert_allclose(own, force, rtol=0, atol=1e-12 * np.abs(forces).max())
+    if shape is beams.rectangle:
+        middle = np.array([along_y, along_z])[:, fibres["centre"]]
+        np.testing.assert_allclose(middle, 1.5 * forces[1:3] / cross.area, rtol=1e-12)
 
 
 def evaluated(scene, folder):
