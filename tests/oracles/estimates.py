@@ -127,7 +127,6 @@ def main():
     parser.add_argument(
         "--method", choices=METHODS, action="append", help="only these; default: all"
     )
-    parser.add_argument("--kind", action="append", help="only these; default: all")
     told = parser.parse_args()
     print(
         f"| {'kind, method' if told.scenes else 'method'} | quantities | least | 5 % | median | 95"
@@ -137,7 +136,7 @@ def main():
     for method in told.method or METHODS:
         option, every = f"`{OPTIONS.get(method, f'--{method}')}`", []
         if told.scenes:
-            for kind in told.kind or KINDS:
+            for kind in KINDS:
                 found = []
                 for seed in range(told.scenes):
                     scene, given = random(kind, seed)

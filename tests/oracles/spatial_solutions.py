@@ -11,7 +11,6 @@ from spatial_wheels import wheel
 
 from lagrange_casadi import evaluate
 
-RATIOS = 5
 DRAWS = FAMILIES | {"anyhow": anyhow, "wheel": wheel, "locked": platform}
 
 
@@ -19,7 +18,7 @@ DRAWS = FAMILIES | {"anyhow": anyhow, "wheel": wheel, "locked": platform}
 def scene_of(name, seed):
     """What was drawn, and its scene."""
     drawn = turning(plain(DRAWS[name](seed)), seed)
-    return drawn, declared(drawn, beside=True, xi=(0, 1, RATIOS))
+    return drawn, declared(drawn, beside=True, xi=(0, 1, 5))
 
 
 @functools.cache
