@@ -39,6 +39,11 @@ FLAGS = (
     ),
 )
 PATIENCE = 20.0
+COPIED = (
+    "if (navigator.clipboard) navigator.clipboard.writeText = async (text) => { window.copied ="
+    " text; };"
+)
+"""What a page copies is in ``window.copied``: here is no clipboard."""
 
 
 def found() -> str | None:
@@ -85,6 +90,7 @@ class Browser:
             for room in ("Page", "Runtime", "Log", "Network"):
                 self.call(f"{room}.enable")
             self.size(width, height)
+            self.call("Page.addScriptToEvaluateOnNewDocument", source=COPIED)
         except BaseException:
             self.close()
             raise

@@ -20,7 +20,6 @@ from hypothesis import settings
 # would mostly wait for each other. NumPy reads it when it is imported, so this comes before.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-import sweeps
 from internals import backends, compiler, cycle_table, grids
 
 from lagrange_casadi import evaluate, load_case
@@ -278,15 +277,3 @@ def here(tmp_path, monkeypatch):
     """An empty folder that is the working directory."""
     monkeypatch.chdir(tmp_path)
     return tmp_path
-
-
-@pytest.fixture
-def engine(monkeypatch):
-    """An engine of plain formulas in place of a compiled one."""
-    return sweeps.use(monkeypatch)
-
-
-@pytest.fixture
-def whole(engine, tmp_path):
-    """The bytes of an uninterrupted sweep."""
-    return sweeps.run(tmp_path / "whole.h5")

@@ -7,19 +7,26 @@ import contextlib
 import h5py
 from internals import opening
 
+LISTS = ("DIMENSION_LIST", "REFERENCE_LIST")
+"""What HDF5 keeps of axes: references, which are places in the file."""
 
-def unseal(path):
-    """Take the seal off a file; what it is of."""
-    kind, content = opening.kind_of(path), path.read_bytes()
-    assert kind
-    path.write_bytes(content[: -opening.SIZE])
-    return kind
+
+def attributes(file):
+    """Yield every attribute of a file but HDF5's own: its place, name and value."""
+    places = ["/"]
+    file.visit(places.append)
+    for place in places:
+        for name, value in file[place].attrs.items():
+            if name not in (*LISTS, "CLASS", "NAME"):
+                yield place, name, value
 
 
 @contextlib.contextmanager
 def forging(path):
     """A file to change."""
-    kind = unseal(path)
+    kind, content = opening.kind_of(path), path.read_bytes()
+    assert kind
+    path.write_bytes(content[: -opening.SIZE])
     with h5py.File(path, "r+") as file:
         yield file
     with path.open("ab") as file:
@@ -30,10 +37,3 @@ def edit(path, change):
     """Change a file by a function of it."""
     with forging(path) as file:
         change(file)
-
-
-def flip(path, place, mask=1):
-    """Flip bits of one byte, and leave the seal as it is."""
-    content = bytearray(path.read_bytes())
-    content[place] ^= mask
-    path.write_bytes(content)

@@ -21,6 +21,7 @@ from pathlib import Path
 
 import h5py
 from damaging import damaged
+from forging import attributes
 from internals import opening
 
 import lagrange_casadi.cli  # noqa: F401
@@ -29,9 +30,6 @@ from lagrange_casadi.errors import LagrangeCasadiError
 SECONDS, MEMORY = 10.0, 8 << 30
 FORK = multiprocessing.get_context("fork")
 found_in = importlib.import_module("lagrange_casadi.cli.check").found_in
-
-LISTS = ("DIMENSION_LIST", "REFERENCE_LIST")
-"""What HDF5 keeps of axes: references, which are places in the file."""
 
 _MADE_BY = {"schema_version", "versions", "backend", "precision", "compiler", "flags", "rung"}
 ONCE = {
@@ -55,22 +53,19 @@ were changed, so a forged seal hides that. Versions of a schema that are read ar
 
 def contents(path: Path, once: Container[str]) -> str:
     """A digest of all that a file says, but for attributes that are told ``once``."""
-    said: list[str] = []
+    digest = hashlib.sha256()
 
     def visit(place: str, item: object) -> None:
-        attributes = {
-            name: repr(value)
-            for name, value in item.attrs.items()
-            if name not in LISTS and name not in once
-        }
-        said.append(
-            f"{place} {attributes} {item[()].tobytes() if isinstance(item, h5py.Dataset) else ''}"
-        )
+        digest.update(place.encode(errors="replace"))
+        if isinstance(item, h5py.Dataset):
+            digest.update(item[()].tobytes())
 
     with h5py.File(path) as file:
-        visit("/", file)
         file.visititems(visit)
-    return hashlib.sha256("\n".join(said).encode(errors="replace")).hexdigest()
+        for place, name, value in attributes(file):
+            if name not in once:
+                digest.update(f"{place} {name} {value!r}".encode(errors="replace"))
+    return digest.hexdigest()
 
 
 def read_file(path: Path, original: str, once: Container[str], out: Connection) -> None:

@@ -5,8 +5,8 @@ behind.
 from __future__ import annotations
 
 import contextlib
+import functools
 import subprocess
-import threading
 import time
 from pathlib import Path
 from types import SimpleNamespace
@@ -15,20 +15,17 @@ import mechanisms
 import numpy as np
 from internals import DesignEngine, Outcome, Provenance
 
-from lagrange_casadi import sweep
+from lagrange_casadi import Mechanism, Scene
+from lagrange_casadi.motion import polynomial
 from lagrange_casadi.version import __version__
 
 CASE = Path(__file__).parents[2] / "cases" / "slider_crank"
 ASKED = "sweep CASE --t 0:0.08:21 --want effort --want section:rod"
 BENDING = "peak:section:rod:bending"
-GRID = {"l": (0.15, 0.4, 60), "r": (0.05, 0.1, 7)}
 
 
 class Formula:
-    """Numbers that tell the design and the column apart; some have no result.
-
-    ``pause`` [s] a design.
-    """
+    """Numbers that tell the design and the column apart; some have no result."""
 
     quantities = (
         "effort:O",
@@ -40,15 +37,12 @@ class Formula:
     )
     efforts = ("effort:O",)
     indeterminate, sampled = (), False
-    cost, capacity = 1 / 15, 0
+    cost, capacity, count = 1 / 15, 0, 7
+    laws = ("n0", "n1", "n2", "f0", "f1", "f2", "m0")
+    columns = ("effort:O", *(f"section:rod:law:{name}" for name in laws))
     provenance = Provenance(
         "formula", "double", "", "", "(default)", {"lagrange_casadi": __version__}
     )
-
-    def __init__(self, count=7, pause=0.0):
-        laws = ("n0", "n1", "n2", "f0", "f1", "f2", "m0")
-        self.columns = ("effort:O", *(f"section:rod:law:{name}" for name in laws))
-        self.count, self.pause, self.threads, self.calls = count, pause, [], []
 
     def of(self, program, timing, *_):
         """The engine of a program."""
@@ -59,9 +53,6 @@ class Formula:
         return {}
 
     def evaluate(self, p, *, threads=None, histories=False):
-        self.threads.append(threads)
-        self.calls.append((len(p), threading.get_ident()))
-        time.sleep(self.pause * len(p))
         # Not by a product of matrices, whose rounding depends on how many rows there are.
         seed = sum(
             factor * column for factor, column in zip((1.0, 2.0, 5.0, 7.0, 11.0), p.T, strict=True)
@@ -81,16 +72,27 @@ class Formula:
         return Outcome(status, value, t, np.abs(xi), numbers(1, 5), numbers(1, 6), series)
 
 
-def use(monkeypatch, **keywords):
+def use(monkeypatch):
     """Let sweeps use one :class:`Formula`, which is given back."""
-    engine = Formula(**keywords)
+    engine = Formula()
     monkeypatch.setattr(DesignEngine, "compiled", engine.of)
     return engine
 
 
-def scene(**keywords):
+@functools.cache
+def scene():
     """The paper's mechanism, whose parameters are r, l, m1, m2 and m3."""
-    return mechanisms.slider_crank(**{"t": (0, 0.08, 7), **keywords})
+    return mechanisms.slider_crank(t=(0, 0.08, 7))
+
+
+@functools.cache
+def turning(*wanted, mass=1.0):
+    """A scene of a rod that turns by a radian in a time that may be chosen."""
+    m = Mechanism("turning")
+    duration = m.parameter("T", 1.0, "s", low=0.01)
+    m.revolute("O", m.ground, m.link("rod", length=0.3, mass=mass))
+    law = polynomial(0.0, 1.0, duration)
+    return Scene(m, {"O": law}, t=(0, duration, 5), wanted=wanted or ("effort",))
 
 
 @contextlib.contextmanager
@@ -112,11 +114,6 @@ def wait_for(condition, seconds=60.0):
     while not condition():
         assert time.monotonic() < until, "it never came"
         time.sleep(0.002)
-
-
-def run(path, grid=None, **keywords):
-    """The bytes of a sweep's file."""
-    return sweep(scene(), GRID if grid is None else grid, out=path, **keywords).path.read_bytes()
 
 
 class StopError(Exception):

@@ -18,25 +18,13 @@ import pytest
 import sweeps
 from commands import command
 from damaging import damaged
-from forging import forging
+from forging import LISTS, attributes, forging
 from places import TESTS
-from resealing import LISTS, ONCE
+from resealing import ONCE
 
-from lagrange_casadi import (
-    Mechanism,
-    Scene,
-    Sweep,
-    check,
-    evaluate,
-    load,
-    optimise,
-    read_designs,
-    save,
-    sweep,
-)
+from lagrange_casadi import Sweep, check, evaluate, load, optimise, read_designs, save, sweep
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import LagrangeCasadiError, StoreError
-from lagrange_casadi.motion import polynomial
 
 pytestmark = pytest.mark.filterwarnings("ignore::RuntimeWarning")  # of numbers beyond numbers
 
@@ -47,19 +35,8 @@ ENDINGS = {"refused", "found", "accepted unchanged"}
 
 def searched(out, **keywords):
     """A search of few designs."""
-    m = Mechanism("turning")
-    duration = m.parameter("T", 1.0, "s", low=0.01)
-    m.revolute("O", m.ground, m.link("rod", length=0.3, mass=1.0))
-    scene = Scene(m, {"O": polynomial(0.0, 1.0, duration)}, t=(0, duration, 11), wanted=["effort"])
-    return optimise(
-        scene,
-        minimise="peak:effort:O",
-        over={"T": (0.5, 2.0)},
-        starts=3,
-        screen=8,
-        out=out,
-        **keywords,
-    )
+    over, words = {"T": (0.5, 2.0)}, {"starts": 3, "screen": 8, **keywords}
+    return optimise(sweeps.turning(), minimise="peak:effort:O", over=over, out=out, **words)
 
 
 def source(kind, folder, slider_crank, monkeypatch):
@@ -153,21 +130,6 @@ def test_damage_that_is_sealed_anew_is_noticed(tmp_path, slider_crank, monkeypat
     assert not [word for word in found if word not in ENDINGS and not word.endswith(" told")]
 
 
-def attributes(file):
-    """All attributes of a file, by place and name."""
-    found = {}
-    with h5py.File(file) as whole:
-        places = ["/"]
-        whole.visit(places.append)
-        for place in places:
-            found |= {
-                (place, name): value
-                for name, value in whole[place].attrs.items()
-                if name not in (*LISTS, "CLASS", "NAME")
-            }
-    return found
-
-
 def another(value):
     """A value that is not this one."""
     if isinstance(value, str):
@@ -178,21 +140,17 @@ def another(value):
     return not value if isinstance(value, np.bool_) else value + 1 if np.isfinite(value) else 1.0
 
 
-SCHEMAS = {"run": "", "sweep": "-sweep", "search": "-optimum"}
-
-
-@pytest.mark.parametrize("kind", SCHEMAS)
+@pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("count", [FEW, pytest.param(None, marks=pytest.mark.long)])
 def test_every_attribute_is_compared_with_something(
     tmp_path, slider_crank, monkeypatch, kind, count
 ):
     """Each alone is changed; those that may be believed are listed, with the reason."""
     file, believed = source(kind, tmp_path, slider_crank, monkeypatch), []
-    with h5py.File(file) as told:
-        once = ONCE[told.attrs["schema"]]
+    with h5py.File(file) as h:
+        told = [found for found in attributes(h) if found[1] not in ONCE[h.attrs["schema"]]]
     whole = file.read_bytes()
-    told = [place for place in attributes(file).items() if place[0][1] not in once]
-    for (place, name), value in told if count is None else random.Random(1).sample(told, count):
+    for place, name, value in told if count is None else random.Random(1).sample(told, count):
         file.write_bytes(whole)
         with forging(file) as forged:
             forged[place].attrs[name] = another(value)

@@ -11,7 +11,7 @@ import pytest
 import sweeps
 import xarray
 from conftest import ROOT
-from forging import edit, flip
+from forging import edit
 
 from lagrange_casadi import Sweep, check, evaluate, load, save
 from lagrange_casadi.errors import BusyError, DeclarationError, PathError, StoreError
@@ -26,13 +26,6 @@ def file(solution, tmp_path):
     path = tmp_path / "result.h5"
     save(solution, path)
     return path
-
-
-def test_the_same_run_gives_the_same_bytes(slider_crank, tmp_path):
-    for name in ("one.h5", "two.h5"):
-        save(evaluate(slider_crank.scene, t=(0, 0.08, 11)), tmp_path / name)
-    assert (tmp_path / "one.h5").read_bytes() == (tmp_path / "two.h5").read_bytes()
-    assert str(tmp_path).encode() not in (tmp_path / "one.h5").read_bytes()
 
 
 @pytest.mark.parametrize("engine", ["h5netcdf", "netcdf4"])
@@ -178,7 +171,9 @@ def test_the_documentation_verifies_a_file(solution, tmp_path, monkeypatch):
     save(solution.during(slice(0, 5)), tmp_path / "press.h5")
     monkeypatch.chdir(tmp_path)
     exec(compile(block, "schema.md", "exec"), {})
-    flip(tmp_path / "press.h5", 5000)
+    content = bytearray((tmp_path / "press.h5").read_bytes())
+    content[5000] ^= 1
+    (tmp_path / "press.h5").write_bytes(content)
     with pytest.raises(AssertionError):
         exec(compile(block, "schema.md", "exec"), {})
 

@@ -18,19 +18,9 @@ import sweeps
 from commands import command
 from matplotlib.figure import Figure
 from mechanisms import pendulum
+from sweeps import turning
 
-from lagrange_casadi import (
-    Mechanism,
-    Scene,
-    evaluate,
-    export,
-    motion,
-    optimise,
-    read,
-    save,
-    save_model,
-    sweep,
-)
+from lagrange_casadi import evaluate, export, motion, optimise, read, save, save_model, sweep
 from lagrange_casadi.errors import LagrangeCasadiError
 
 GROWS = ("replace", "rename", "mkdir")
@@ -104,17 +94,8 @@ def contents(folder):
     }
 
 
-def arm(wanted=("effort",), mass=1.0):
-    """A rod that turns in a time that may be chosen."""
-    m = Mechanism("turning")
-    duration = m.parameter("T", 1.0, "s", low=0.01)
-    m.revolute("O", m.ground, m.link("rod", length=0.3, mass=mass))
-    law = motion.polynomial(0.0, 1.0, duration)
-    return Scene(m, {"O": law}, t=(0, duration, 5), wanted=wanted)
-
-
 def saved(folder, later):
-    save(evaluate(arm(mass=1.0 + later), backend="vm"), folder / "x.h5")
+    save(evaluate(turning(mass=1.0 + later), backend="vm"), folder / "x.h5")
 
 
 def swept(folder, later):
@@ -128,18 +109,17 @@ def searched(folder, later):
     over, words = {"T": (0.5, 2.0)}, {"starts": 2, "screen": 4}
     if later:
         out = {"out": folder / "x.h5", "resume": True}
-        optimise(arm(), minimise="peak:effort:O", over=over, **words, **out)
+        optimise(turning(), minimise="peak:effort:O", over=over, **words, **out)
 
 
 def exported(folder, later):
-    export(arm(["effort", *(["motion"] * later)]), folder / "c")
+    export(turning("effort", *(["motion"] * later)), folder / "c")
 
 
 def drawn(folder, later):
     """Other figures than before, none of which takes long."""
-    wanted = ["reaction"] if later else ["effort"]
     path = folder.parent / f"{later}.h5"
-    save(evaluate(arm(wanted), backend="vm"), path)
+    save(evaluate(turning("reaction" if later else "effort"), backend="vm"), path)
     with contextlib.redirect_stderr(io.StringIO()) as said:
         status = command("plot", path, "--out", folder / "figures")
     if status:
@@ -202,8 +182,9 @@ LINES = {
 
 @pytest.mark.parametrize("line", LINES)
 def test_a_file_that_cannot_grow_is_one_line_and_the_next_command_goes_on(here, capsys, line):
-    grid = "sweep CASE --t 0:0.08:5 --grid l=0.2:0.4:40 --want effort --out before.h5"
-    assert command(grid) == 0
+    if "before.h5" in line:
+        grid = "sweep CASE --t 0:0.08:5 --grid l=0.2:0.4:40 --want effort --out before.h5"
+        assert command(grid) == 0
     assert command(line) == 0
     whole = contents(here)
     for limit in LINES[line]:

@@ -13,7 +13,6 @@ from dataclasses import replace
 from importlib import resources
 
 import alive
-import browser
 import numpy as np
 import pytest
 from commands import command
@@ -30,26 +29,20 @@ from lagrange_casadi.motion import polynomial
 pytestmark = alive.NEEDS_BROWSER
 
 
-@pytest.fixture(scope="module")
-def page(tmp_path_factory):
-    """A browser, and how to open a solution's report in it."""
-    folder = tmp_path_factory.mktemp("reports")
-    with browser.Browser() as one:
-        one.prefer(prefers_reduced_motion="reduce", prefers_color_scheme="light")
+chromium = alive.chromium
 
-        def opened(solution):
-            path = folder / "report.html"
-            solution.report(path)
-            one.size(1400, 900)
-            one.open(path)
-            one.run(
-                "navigator.clipboard.writeText = (text) => { window.copied = text; return"
-                " Promise.resolve(); }"
-            )
-            assert one.complaints == []
-            return one
 
-        yield opened
+@pytest.fixture
+def page(chromium, tmp_path):
+    """A function that opens a solution's report in a browser."""
+
+    def opened(solution):
+        solution.report(tmp_path / "report.html")
+        chromium.open(tmp_path / "report.html")
+        assert chromium.complaints == []
+        return chromium
+
+    return opened
 
 
 def quiet(one):
@@ -99,16 +92,16 @@ def number(text):
     return factor * float(f"{mantissa}e{(exponent or '0').translate(PLAIN)}")
 
 
-@pytest.mark.parametrize("unit", ["N", "N m", "Pa", "m", "kg"])
-def test_pages_write_numbers_as_figures_do(page, unit):
+def test_pages_write_numbers_as_figures_do(chromium):
     """With a prefix by the size, to as many digits; but for a point between the parts of a unit."""
     values = [0.0] + [v * 10.0**k for v in (1, -2.5, 3.14159, -9.9996) for k in range(-3, 3)]
     source = (resources.files("lagrange_casadi") / "views/report/assets/units.js").read_text()
-    written = f"{json.dumps(values)}.map((value) => shown(value, '{unit}', 4))"
-    assert page(press()).run(f"(() => {{ {source}; return {written}; }})()") == [
-        scale_for(unit, abs(value)).said(value).replace("N m", "N·m").replace(" ", "\u00a0")
-        for value in values
-    ]
+    for unit in ("N", "N m", "Pa", "m", "kg"):
+        written = f"{json.dumps(values)}.map((value) => shown(value, '{unit}', 4))"
+        assert chromium.run(f"(() => {{ {source}; return {written}; }})()") == [
+            scale_for(unit, abs(value)).said(value).replace("N m", "N·m").replace(" ", "\u00a0")
+            for value in values
+        ]
 
 
 @pytest.mark.parametrize("name", ["slider_crank", "rssr"])
@@ -325,9 +318,6 @@ def test_charts_are_saved_as_pictures_and_numbers(page):
     np.testing.assert_allclose(maps[:, 1:], exact, atol=1e-12 * np.abs(exact).max())
 
 
-chromium = alive.chromium
-
-
 def peaks(one):
     """The largest values of a page by their names, as text."""
     return {row["name"]: row["largest in size"] for row in copied(one, "Peaks")}
@@ -352,25 +342,16 @@ def live(tmp_path_factory):
     return path
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def crank(chromium, live):
-    """The page as it is."""
-
-    def opened():
-        chromium.open(live)
-        chromium.run(
-            "navigator.clipboard.writeText = (text) => { window.copied = text; return"
-            " Promise.resolve(); }"
-        )
-        alive.wait(chromium, "document.querySelectorAll('.sliders label').length === 5")
-        return chromium
-
-    return opened
+    """A browser that shows the page as it is."""
+    chromium.open(live)
+    alive.wait(chromium, "document.querySelectorAll('.sliders label').length === 5")
+    return chromium
 
 
 def test_sliders_change_all_that_is_read_and_back_again(crank):
-    one = crank()
-    file = peaks(one)
+    one, file = crank, peaks(crank)
     badge = "document.querySelector('.badge').textContent"
     assert one.run(badge) == "✓ certified"
     put(one, "l", 0.3125)
@@ -398,7 +379,7 @@ def test_sliders_change_all_that_is_read_and_back_again(crank):
 
 
 def test_a_design_that_cannot_be_assembled_says_so_in_place_of_numbers(crank):
-    one = crank()
+    one = crank
     put(one, "l", 0.05)
     told = one.run("document.querySelector('.alive .alarm').textContent")
     assert told.startswith(
@@ -450,24 +431,17 @@ def pin_pulled(one, way, by):
 VALUE = "page.contents.parameters.find((one) => one.name === '{}').value"
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def held_crank(chromium, live):
-    """A live page of which inner parts can be read, at an instant; and where a joint is on it."""
-
-    def opened(instant):
-        alive.opened(chromium, live.with_name("opened.html"), live.read_text())
-        chromium.run(
-            f"page.player.seek({instant}); navigator.clipboard.writeText = (text) =>"
-            " { window.copied = text; return Promise.resolve(); }"
-        )
-        return chromium
-
-    return opened
+    """A browser that shows a live page of which inner parts can be read."""
+    alive.opened(chromium, live.with_name("opened.html"), live.read_text())
+    return chromium
 
 
 def test_a_joint_is_dragged_and_the_parameters_of_its_place_follow(held_crank):
     """The crank's pin along the crank: r, forces, and what is copied; Escape goes back."""
-    one, angle = held_crank(4), 25 * np.pi * 0.008 + np.pi / 200
+    one, angle = held_crank, 25 * np.pi * 0.008 + np.pi / 200
+    one.run("page.player.seek(4)")
     way = np.array([np.cos(angle), np.sin(angle)])
     scale, end = pin_pulled(one, way, 0.03)
     r = one.run(VALUE.format("r"))
@@ -491,7 +465,8 @@ def test_a_joint_is_dragged_and_the_parameters_of_its_place_follow(held_crank):
 
 def test_a_drag_keeps_to_bounds_and_draws_the_gap_of_what_does_not_close(held_crank):
     """The crank outgrows its rod: the gap is that of a drawing; what is ticked follows too."""
-    one, angle = held_crank(30), 25 * np.pi * 0.06 + np.pi / 200
+    one, angle = held_crank, 25 * np.pi * 0.06 + np.pi / 200
+    one.run("page.player.seek(30)")
     for _ in range(5):
         one.run("document.querySelector('.views [title^=Farther]').click()")
     way = np.array([np.cos(angle), np.sin(angle)])

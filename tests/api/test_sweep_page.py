@@ -9,7 +9,6 @@ import shutil
 import time
 
 import alive
-import browser
 import numpy as np
 import pytest
 from reports import CASES, held
@@ -32,24 +31,23 @@ def file(tmp_path_factory):
     return path
 
 
+chromium = alive.chromium
+
+
 @pytest.fixture(scope="module")
-def page(file):
+def written(file):
     """Its page, with the mechanism in motion where ziglang is there."""
     path = file.with_suffix(".html")
     case = ["--case", str(CASES / "slider_crank")] if alive.THERE else []
     assert main(["report", str(file), *case, "--out", str(path)]) == 0
-    with browser.Browser(1500, 1000) as one:
-        one.prefer(prefers_reduced_motion="reduce", prefers_color_scheme="light")
+    return path
 
-        def opened():
-            one.open(path)
-            one.run(
-                "navigator.clipboard.writeText = (text) => { window.copied = text; return"
-                " Promise.resolve(); }"
-            )
-            return one
 
-        yield opened
+@pytest.fixture
+def page(chromium, written):
+    """A browser that shows the page."""
+    chromium.open(written)
+    return chromium
 
 
 def rows(one):
@@ -70,7 +68,7 @@ def only(one, conditions):
 
 
 def test_the_table_is_the_files_to_the_last_digit(page, file):
-    one, sweep = page(), Sweep.open(file)
+    one, sweep = page, Sweep.open(file)
     found = rows(one)
     names = [
         *sweep.parameters,
@@ -92,7 +90,7 @@ def test_the_table_is_the_files_to_the_last_digit(page, file):
 
 
 def test_conditions_are_those_of_the_command_line(page, file):
-    one, sweep = page(), Sweep.open(file)
+    one, sweep = page, Sweep.open(file)
     assert only(one, "status=0")[1] == "unknown column status"
     assert only(one, "l=30deg")[1] == "deg is an angle; expected a length [m] after l"
     for where in ("l>0.15", "l>=20 cm, r<=7e1mm", "peak:effort:O<3000 N·mm, m3=100 g", "m3!=0.1"):
@@ -112,7 +110,7 @@ def test_conditions_are_those_of_the_command_line(page, file):
 
 @alive.NEEDS_ENGINE
 def test_a_design_that_is_pressed_moves(page, file):
-    one, sweep = page(), Sweep.open(file)
+    one, sweep = page, Sweep.open(file)
     front = best(sweep, minimise=("peak:effort:O", "peak:section:rod:bending"))
     head = "document.querySelector('h3').textContent"
     assert one.run(head).startswith(f"design {front[0].number}: ")

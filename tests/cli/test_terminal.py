@@ -13,7 +13,7 @@ from pathlib import Path
 import h5py
 import pytest
 from commands import command
-from forging import forging
+from forging import attributes, forging
 
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import LagrangeCasadiError
@@ -52,14 +52,9 @@ def words(tree):
             yield from words(below)
 
 
-def attributes(file):
-    """Every attribute of a file that is text: what bears it, its name, its value."""
-    places = ["/"]
-    file.visit(places.append)
-    for place in places:
-        for name, value in file[place].attrs.items():
-            if isinstance(value, str) and name not in ("CLASS", "NAME"):
-                yield file[place], name, value
+def told_by(file):
+    """Attributes of a file that are texts: place, name and value."""
+    return [found for found in attributes(file) if isinstance(found[2], str)]
 
 
 def is_tree(text):
@@ -69,7 +64,7 @@ def is_tree(text):
 def texts(path):
     """Every word that stands in a file's attributes."""
     with h5py.File(path) as file:
-        found = [value for _, _, value in attributes(file)]
+        found = [value for _, _, value in told_by(file)]
     each = (words(json.loads(value)) if is_tree(value) else [value] for value in found)
     return sorted({word for some in each for word in some} - {""})
 
@@ -77,11 +72,11 @@ def texts(path):
 def respell(path, word, other):
     """Replace a word wherever it stands by itself in attributes of a file."""
     with forging(path) as file:
-        for item, name, value in list(attributes(file)):
+        for place, name, value in told_by(file):
             if is_tree(value):
-                item.attrs[name] = value.replace(json.dumps(word), json.dumps(other))
+                file[place].attrs[name] = value.replace(json.dumps(word), json.dumps(other))
             elif value == word:
-                item.attrs[name] = other.encode(errors="ignore").decode()
+                file[place].attrs[name] = other.encode(errors="ignore").decode()
 
 
 ASKED = "CASE --t 0:0.08:5 --want effort --backend c --out"
