@@ -19,15 +19,6 @@ def scene():
 """
 
 
-def test_a_folder_or_a_file(tmp_path):
-    (tmp_path / "arm").mkdir()
-    (tmp_path / "arm" / "case.py").write_text(GOOD)
-    (tmp_path / "single.py").write_text(GOOD)
-    assert load_case(tmp_path / "arm").name == "arm"
-    assert load_case(tmp_path / "single.py").name == "single"
-    assert load_case(tmp_path / "arm").figures == ()
-
-
 @pytest.mark.parametrize(
     ("given", "name"),
     [
@@ -68,12 +59,6 @@ SLIPS = {
     "import lagrange_casadi; lagrange_casadi.evalute": r"'evalute' \(did you mean 'evaluate'",
 }
 STRANGE = ("casadi.SX.sym('x')", "1j", "b'1'", "len", "numpy.ones(2)", "{(1, 2): 3}", "{1}")
-
-
-def test_the_paper_says_what_it_wants_drawn(slider_crank):
-    assert [spec.name[:5] for spec in slider_crank.figures[:9]] == [
-        f"fig{n:02}" for n in range(6, 15)
-    ]
 
 
 @pytest.mark.parametrize(

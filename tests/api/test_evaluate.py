@@ -205,7 +205,7 @@ def test_values_that_have_no_result_are_refused_as_evaluate_does(values, error, 
     np.testing.assert_array_equal(f()["effort:O"], before)
 
 
-HUGE, AT_REST = (0, 60.0, 10**12), {"rpm": 0.0}
+AT_REST = {"rpm": 0.0}
 REFUSED = [
     *(({"t": None, **words}, error, says) for words, error, says in WRONG),
     ({"over": ("O", 0, 1)}, DeclarationError, "over: expected (joint, start, stop, count), got"),

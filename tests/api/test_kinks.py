@@ -158,11 +158,6 @@ def jump(t, k):
     return ca.atan2(k * ca.sin(7 * t), 1 - k + k * ca.cos(7 * t))
 
 
-def lifted(**told):
-    """A cam's lift that is bent."""
-    return cam(lambda x, k: 0.1 * bend(x, k), **told)
-
-
 PLACES = {
     functools.partial(slide, bend): "the motion of joint 'way': its slope jumps",
     functools.partial(slide, jump): "the motion of joint 'way': its value jumps",
@@ -176,6 +171,7 @@ PLACES = {
 SCENES = pytest.mark.parametrize("scene", PLACES)
 
 
+@pytest.mark.sampled(2)
 @SCENES
 def test_parameters_with_a_corner_are_refused_by_every_way(scene, tmp_path):
     """And others beside them have their results."""
@@ -197,6 +193,7 @@ def test_parameters_with_a_corner_are_refused_by_every_way(scene, tmp_path):
     assert (sweep(made, {"k": [0.0, 1.0]}, wanted=["effort"])["status"] != 0).tolist() == [0, 1]
 
 
+@pytest.mark.sampled(2)
 @SCENES
 def test_a_scene_whose_defaults_have_a_corner_serves_for_values_that_have_none(scene, tmp_path):
     made = scene(default=1.0)

@@ -324,9 +324,9 @@ def test_units_of_a_file_are_those_of_a_motion_too(here):
         same(read_samples(file, value=value), expected, AT)
     file.write_text(file.read_text().replace("t [ms],q [deg]", "t,q\nms,deg"))
     same(read_samples(file), expected, AT)
-    counts, options = np.round(1000 / 360 * HIP), {"ratio": 0.1, "stretch": 1.5}
+    counts, options = np.round(1000 / 360 * HIP), {"ratio": 0.1, "offset": 0.2, "stretch": 1.5}
     write(file, ["t", "a [counts]"], np.column_stack([TIMES, counts]))
-    exact = curve(1.5 * TIMES, 0.1 * math.tau / 1000 * counts)
+    exact = curve(1.5 * TIMES, 0.2 + 0.1 * math.tau / 1000 * counts)
     same(read_motion(file, counts_per_turn={"a": 1000}, **options)["a"], exact, 1.5 * AT)
     same(read_samples(file, value="a", counts_per_turn=1000, **options), exact, 1.5 * AT)
 
@@ -344,20 +344,3 @@ def test_scaled_samples_end_and_are_scaled_together():
     ):
         with pytest.raises(DeclarationError, match=says):
             law()
-
-
-def test_a_scene_moves_by_a_recording_scaled_by_parameters(here):
-    """A length does not turn a joint."""
-    t = np.linspace(0.0, 1.0, 60)
-    path = write(here / "axis.csv", ["t", "X [mm]"], np.column_stack([t, 50.0 * t**3]))
-    m, arm = Mechanism("slide"), Mechanism("arm")
-    names = ("ratio", "offset", "stretch")
-    given = {name: m.parameter(name, float(name != "offset")) for name in names}
-    m.prismatic("X", m.ground, m.point_mass("p", 2.0), axis=(1, 0))
-    scene, values = Scene(m, {"X": read_samples(path, **given)}, t=(0, 2, 21)), (3.0, 0.2, 2.0)
-    found = evaluate(scene, parameters=dict(zip(names, values, strict=True)))
-    assert found.motion("X").value == pytest.approx(0.2 + 0.15 * (found.t / 2) ** 3, abs=1e-11)
-    assert found.effort("X") == pytest.approx(2.0 * 0.15 * 6 * found.t / 8, abs=1e-8)
-    arm.revolute("X", arm.ground, arm.link("upper", length=0.4, mass=1.0))
-    with pytest.raises(DeclarationError, match="'X': the law is in m, but the coordinate is"):
-        evaluate(Scene(arm, read_motion(path), t=(0, 1, 11)))

@@ -40,24 +40,6 @@ def test_names_lead_to_arrays(solution, spatial):
 
 
 @pytest.mark.parametrize(
-    ("name", "unit"),
-    [
-        ("effort:O", "N m"),
-        ("motion:O", "rad"),
-        ("motion:guide_rate", "m/s"),
-        ("motion:O_acceleration", "rad/s^2"),
-        ("reaction:guide:fx", "N"),
-        ("section:rod:axial", "N"),
-        ("section:rod:bending", "N m"),
-        ("section:rod:law:m0", "N m"),
-        ("section:rod:law:n1", "m/s^2"),
-    ],
-)
-def test_units(solution, name, unit):
-    assert solution.unit(name) == unit
-
-
-@pytest.mark.parametrize(
     ("asked", "says"),
     [
         (lambda s: s["effort:O"], r"a Solution takes no brackets: expected \.array\('effort:O'\)"),
@@ -65,6 +47,7 @@ def test_units(solution, name, unit):
         (lambda s: s.reaction("gide"), r"joint with a reaction 'gide' \(did you mean 'guide'\?\)"),
         (lambda s: s.effort("A"), "unknown drive 'A'; valid: O"),
         (lambda s: s.peak("section:rod:torsion"), "unknown quantity 'section:rod:torsion'"),
+        (lambda s: s.peak("reaction:Q:resultant"), "unknown quantity 'reaction:Q:resultant'"),
         (lambda s: s.array("reaction:O:fz"), "unknown quantity 'reaction:O:fz'"),
         (lambda s: s.output("x"), "valid: none are declared"),
     ],

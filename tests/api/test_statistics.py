@@ -6,10 +6,8 @@ from dataclasses import replace
 import casadi as ca
 import numpy as np
 import pytest
-from mechanisms import slider_crank
 
 from lagrange_casadi import Mechanism, Scene, evaluate, load_case
-from lagrange_casadi.errors import UnknownNameError
 from lagrange_casadi.motion import polynomial
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
@@ -41,19 +39,6 @@ def test_section_forces_are_never_beyond_their_smallest_and_largest(case):
                     for side in ("base", "tip")
                 ]
                 assert min(abs(side - extreme.value) for side in sides) <= 1e-12 * size
-
-
-def test_resultants(solution):
-    reaction = solution.reaction("guide")
-    np.testing.assert_array_equal(reaction.resultant, np.hypot(reaction.fx, reaction.fy))
-    np.testing.assert_array_equal(solution.array("reaction:guide:resultant"), reaction.resultant)
-    assert solution.unit("reaction:guide:resultant") == "N"
-    assert solution.peak("reaction:guide:resultant").value == reaction.resultant.max()
-    assert "reaction:guide:resultant" not in list(solution.names())
-    with pytest.raises(UnknownNameError, match="unknown quantity 'reaction:nowhere:resultant'"):
-        solution.peak("reaction:nowhere:resultant")
-    with pytest.raises(UnknownNameError, match="unknown quantity 'reaction:guide:resultant'"):
-        evaluate(slider_crank(), wanted=["effort"]).statistics("reaction:guide:resultant")
 
 
 def test_to_pandas(solution):

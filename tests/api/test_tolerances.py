@@ -73,18 +73,6 @@ def test_tolerances_are_read_with_their_units(name, value, found):
 
 
 @pytest.mark.parametrize(
-    "value",
-    ["0.1deg", "x", "", "-1mm", 0.0, math.nan, math.inf, True, None, "1 furlong", "mm", "%"],
-)
-def test_what_is_no_tolerance_of_a_length(value):
-    with pytest.raises(
-        DeclarationError,
-        match="tolerance of 'l': expected a number above 0 in m, or a text such as",
-    ):
-        tolerances(rotor(), {"l": value})
-
-
-@pytest.mark.parametrize(
     ("given", "words", "error", "says"),
     [
         ({"k": 0.1}, {}, UnknownNameError, "unknown parameter 'k'"),
@@ -92,6 +80,13 @@ def test_what_is_no_tolerance_of_a_length(value):
         ({}, {}, DeclarationError, "expected tolerances by parameter"),
         ({"l": 0.001}, {"samples": 1}, DeclarationError, "samples: expected a whole number"),
         ({"l": 0.001}, {"scene": None}, DeclarationError, "expected a Scene"),
+        *(
+            ({"l": value}, {}, DeclarationError, "'l': expected a number above 0 in m, or a text")
+            for value in (
+                *("0.1deg", "x", "", "-1mm", "1 furlong", "mm", "%"),
+                *(0.0, math.nan, math.inf, True, None),
+            )
+        ),
     ],
 )
 def test_mistakes(given, words, error, says):

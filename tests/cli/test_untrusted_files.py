@@ -35,68 +35,57 @@ HUGE = (
 NUMBERS = ("inf", "nan", "-1", "1e308", "1e-320", "1" * 400, "x", "")
 
 
-class Hostile:
-    """A folder with a model that its author wants to do harm with."""
+def part(chance, places):
+    """A part of a model that does harm."""
+    where, number = chance.choice(places), chance.choice(NUMBERS)
+    mesh = f'<mesh file="{chance.choice(places)}"/>'
+    body = f'<inertial pos="0 0 0" mass="{number}" diaginertia="{number} 1 1"/>'
+    parts = [
+        f'<include file="{where}"/>',
+        f'<asset><model name="q" file="{where}"/></asset><worldbody>{ATTACH}</worldbody>',
+        f'<compiler meshdir="{where}"/><asset>{mesh}</asset>',
+        f'<asset><hfield name="h" file="{where}" size="1 1 1 1"/></asset>',
+        f'<asset><texture name="t" type="2d" file="{where}"/></asset>',
+        chance.choice(HUGE),
+        f'<worldbody><body><joint axis="{number} 0 1"/>{body}</body></worldbody>',
+        f'<option gravity="0 0 {number}"/>',
+        "<worldbody>" + "<body>" * 150 + "</body>" * 150 + "</worldbody>",
+        "<worldbody>" + "<frame>" * 9000 + "</frame>" * 9000 + "</worldbody>",
+        f'<default><geom size="{number}"/></default>',
+        f"<!DOCTYPE x [<!ENTITY a SYSTEM '{where}'>]>",
+    ]
+    return chance.choice(parts)
 
-    def __init__(self, seed, folder):
-        self.chance, self.folder = random.Random(seed), folder / "model"
-        (self.folder / "sub").mkdir(parents=True)
-        (folder / "secret.xml").write_text(f"<mujoco><worldbody>{SECRET}</worldbody></mujoco>")
-        (self.folder / "to_secret.xml").symlink_to(folder / "secret.xml")
-        (self.folder / "to_all").symlink_to(folder)
-        (self.folder / "loop").symlink_to("loop")
-        os.mkfifo(self.folder / "fifo.xml")
-        places = ["../secret.xml", str(folder / "secret.xml"), "to_secret.xml", "fifo.xml", "loop"]
-        places += ["to_all/secret.xml", "sub/part.xml", "part.xml", "model.xml", "/dev/zero"]
-        self.places = [
-            *places,
-            "sub/../../secret.xml",
-            "/proc/self/environ",
-            "a" * 5000,
-            "sub",
-            ".",
-        ]
-        for name in ("sub/part.xml", "part.xml", "model.xml"):
-            (self.folder / name).write_text(self.model(4))
-        self.file = self.folder / "model.xml"
 
-    def model(self, deep):
-        parts = [self.part(deep) for _ in range(self.chance.randrange(1, 4))]
+def hostile(seed, folder):
+    """Write models that do harm; return the folder that they may read."""
+    chance, model = random.Random(seed), folder / "model"
+    (model / "sub").mkdir(parents=True)
+    (folder / "secret.xml").write_text(f"<mujoco><worldbody>{SECRET}</worldbody></mujoco>")
+    links = {"to_secret.xml": folder / "secret.xml", "to_all": folder, "loop": "loop"}
+    for name, to in links.items():
+        (model / name).symlink_to(to)
+    os.mkfifo(model / "fifo.xml")
+    places = ["../secret.xml", str(folder / "secret.xml"), "to_secret.xml", "fifo.xml", "loop"]
+    places += ["to_all/secret.xml", "sub/part.xml", "part.xml", "model.xml", "/dev/zero"]
+    places += ["sub/../../secret.xml", "/proc/self/environ", "a" * 5000, "sub", "."]
+    for name in ("sub/part.xml", "part.xml", "model.xml"):
+        parts = [part(chance, places) for _ in range(chance.randrange(1, 4))]
         more = f"<worldbody>{BODY.format('arm', '')}</worldbody>"
-        return f"<mujoco>{''.join(parts)}{more}</mujoco>"
-
-    def part(self, deep):
-        where = self.chance.choice(self.places)
-        number = self.chance.choice(NUMBERS)
-        mesh = f'<mesh file="{self.chance.choice(self.places)}"/>'
-        body = f'<inertial pos="0 0 0" mass="{number}" diaginertia="{number} 1 1"/>'
-        parts = [
-            f'<include file="{where}"/>',
-            f'<asset><model name="q" file="{where}"/></asset><worldbody>{ATTACH}</worldbody>',
-            f'<compiler meshdir="{where}"/><asset>{mesh}</asset>',
-            f'<asset><hfield name="h" file="{where}" size="1 1 1 1"/></asset>',
-            f'<asset><texture name="t" type="2d" file="{where}"/></asset>',
-            self.chance.choice(HUGE),
-            f'<worldbody><body><joint axis="{number} 0 1"/>{body}</body></worldbody>',
-            f'<option gravity="0 0 {number}"/>',
-            "<worldbody>" + "<body>" * 150 + "</body>" * 150 + "</worldbody>",
-            "<worldbody>" + "<frame>" * 9000 + "</frame>" * 9000 + "</worldbody>",
-            f'<default><geom size="{number}"/></default>',
-            f"<!DOCTYPE x [<!ENTITY a SYSTEM '{where}'>]>",
-        ]
-        return self.chance.choice(parts)
+        (model / name).write_text(f"<mujoco>{''.join(parts)}{more}</mujoco>")
+    return model
 
 
 @pytest.mark.sampled(20)
 @pytest.mark.parametrize("seed", range(300))
 def test_hostile_models_end_in_one_line(seed, tmp_path, monkeypatch):
-    hostile = Hostile(seed, tmp_path)
+    file = hostile(seed, tmp_path) / "model.xml"
     empty = tmp_path / "temporary"
     empty.mkdir()
     monkeypatch.setattr(tempfile, "tempdir", str(empty))
     began = sum(os.times()[:4])
     try:
-        told = " ".join(read(hostile.file).mechanism.bodies)
+        told = " ".join(read(file).mechanism.bodies)
     except errors.LagrangeCasadiError as error:
         told = str(error)
     assert "\n" not in told
@@ -137,12 +126,12 @@ ONES = {
 @pytest.mark.parametrize("what", ONES)
 def test_what_is_refused(what, tmp_path):
     files, says = ONES[what]
-    hostile = Hostile(0, tmp_path)
+    folder = hostile(0, tmp_path)
     (tmp_path / "m.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n")
     for name, text in files.items():
-        (hostile.folder / name).write_text(text.replace("{}", str(tmp_path)))
+        (folder / name).write_text(text.replace("{}", str(tmp_path)))
     with pytest.raises(errors.ModelFileError) as error:
-        read(hostile.folder / "a.xml")
+        read(folder / "a.xml")
     assert says in str(error.value)
     assert "\n" not in str(error.value)
 

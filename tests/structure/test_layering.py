@@ -15,7 +15,6 @@ from places import TESTS
 import lagrange_casadi
 
 PACKAGE = Path(lagrange_casadi.__file__).parent
-CASE = Path(__file__).parents[2] / "cases" / "four_bar"
 DECLARED = ("version", "errors", "base", "model", "engine")
 """The packages up to where a scene is compiled. All others read what it is compiled to."""
 
