@@ -131,13 +131,7 @@ def test_the_slot_of_a_rigid_body_ends_too(axis):
     assert evaluate(replace(scene, t=(0.6, 0.8, 9)), wanted=["motion"]).notes == ()
 
 
-def test_axes_and_turns(spatial, slider_crank):
-    section = spatial.section("beam")
-    bent = np.hypot(section.bending_y, section.bending_z)
-    np.testing.assert_allclose(section.bending, bent, rtol=1e-14)
-    axes = evaluate(beams(), wanted=["motion"], certificate=False).pose("bead").axes
-    square = axes @ np.swapaxes(axes, 1, 2)
-    np.testing.assert_allclose(square, np.broadcast_to(np.eye(3), (61, 3, 3)), atol=1e-14)
+def test_angles_go_on_over_turns(slider_crank):
     turns = evaluate(slider_crank.scene, t=(0, 0.8, 2001), wanted=["motion"])
     crank = turns.pose("crank").angle
     np.testing.assert_allclose(crank, turns.motion("O").value, atol=1e-12)

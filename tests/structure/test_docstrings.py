@@ -9,6 +9,7 @@ from types import ModuleType
 
 import pytest
 from internals import deflection
+from source import PACKAGE, PATHS, nodes_of
 
 import lagrange_casadi
 from lagrange_casadi import (
@@ -25,15 +26,14 @@ from lagrange_casadi import (
     strength,
 )
 
-PACKAGE = Path(lagrange_casadi.__file__).parent
 FIRST = {"What", "Whether", "Of", "Those", "How", "Where", "Why", "Which", "Its", "Their", "Theirs"}
 FIRST |= {"From", "That", "Whatever", "Whoever"}
 """First words of a sentence without a subject."""
 
 
-def docstrings(tree: ast.Module) -> Iterator[ast.Constant]:
+def docstrings(path: Path) -> Iterator[ast.Constant]:
     """Docstrings of modules, classes and functions, and texts that stand below an assignment."""
-    for node in ast.walk(tree):
+    for node in nodes_of(path):
         body = getattr(node, "body", None)
         for entry in body if isinstance(body, list) else []:
             match entry:
@@ -44,8 +44,8 @@ def docstrings(tree: ast.Module) -> Iterator[ast.Constant]:
 @pytest.mark.quick
 def test_docstrings_begin_with_a_verb_or_a_noun():
     begun = []
-    for path in sorted(PACKAGE.rglob("*.py")):
-        for found in docstrings(ast.parse(path.read_text())):
+    for path in PATHS:
+        for found in docstrings(path):
             words = found.value.split()
             if words[0] in FIRST or words[:2] == ["The", "same"]:
                 begun.append(f"{path.relative_to(PACKAGE)}:{found.lineno}: {' '.join(words[:6])}")
@@ -55,11 +55,10 @@ def test_docstrings_begin_with_a_verb_or_a_noun():
 @pytest.mark.quick
 def test_modules_that_docstrings_name_are_there():
     """Sphinx looks for none of them, for they are no part of the interface."""
-    paths = sorted(PACKAGE.rglob("*.py"))
-    names = {"." + ".".join(p.relative_to(PACKAGE).with_suffix("").parts) for p in paths}
+    names = {"." + ".".join(p.relative_to(PACKAGE).with_suffix("").parts) for p in PATHS}
     gone = [
         f"{path.relative_to(PACKAGE)}: {found}"
-        for path in paths
+        for path in PATHS
         for found in re.findall(r":mod:`\.+([a-z_.]+)`", path.read_text())
         if not any(f"{name}.".endswith((f".{found}.", f".{found}.__init__.")) for name in names)
     ]

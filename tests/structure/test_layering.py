@@ -11,10 +11,8 @@ from pathlib import Path
 import pytest
 from internals import METHODS_METHODS as METHODS
 from places import TESTS
+from source import PACKAGE, PATHS, nodes_of
 
-import lagrange_casadi
-
-PACKAGE = Path(lagrange_casadi.__file__).parent
 DECLARED = ("version", "errors", "base", "model", "engine")
 """The packages up to where a scene is compiled. All others read what it is compiled to."""
 
@@ -35,26 +33,12 @@ def modules() -> dict[str, Path]:
     """The modules by their names within the package: all but the façade,
     which leads to every room.
     """
-    named = {
-        ".".join(path.relative_to(PACKAGE).with_suffix("").parts): path
-        for path in sorted(PACKAGE.rglob("*.py"))
-    }
+    named = {".".join(path.relative_to(PACKAGE).with_suffix("").parts): path for path in PATHS}
     return {
         name.removesuffix(".__init__"): path
         for name, path in named.items()
         if name not in ("__init__", "__main__")
     }
-
-
-@cache
-def tree_of(path: Path) -> ast.Module:
-    return ast.parse(path.read_text())
-
-
-@cache
-def nodes_of(path: Path) -> tuple[ast.AST, ...]:
-    """All nodes of a file, which many tests look at; to find them takes the time."""
-    return tuple(ast.walk(tree_of(path)))
 
 
 def room(module: str) -> str:
@@ -83,7 +67,7 @@ def test_what_is_compiled_is_not_declared_again():
     for name, path in modules().items():
         loads = [
             node
-            for node in nodes_of(path)
+            for node in (nodes_of(path) if "load_case(" in path.read_text() else ())
             if isinstance(node, ast.Assign) and "load_case(" in ast.unparse(node.value)
         ]
         handed = {ast.unparse(target) for node in loads for target in node.targets} | {"error"}

@@ -1,17 +1,13 @@
 """Identifiers of the package are words of the field: private words that were replaced stay away."""
 
-import ast
 import re
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-
-import lagrange_casadi
+from source import PACKAGE, PATHS, nodes_of
 
 pytestmark = pytest.mark.quick
-
-PACKAGE = Path(lagrange_casadi.__file__).parent
 
 PRIVATE = {
     *("rungs", "summit", "summits", "look", "looks", "loose", "ball", "balls", "rubbing", "rubs"),
@@ -27,9 +23,9 @@ files have as a word.
 """
 
 
-def names(tree: ast.AST) -> Iterator[str]:
+def names(path: Path) -> Iterator[str]:
     """What a module names: classes, functions, parameters, attributes, keywords and variables."""
-    for node in ast.walk(tree):
+    for node in nodes_of(path):
         for field in ("id", "attr", "arg", "name", "asname"):
             if isinstance(name := getattr(node, field, None), str):
                 yield name
@@ -42,8 +38,8 @@ def words(name: str) -> set[str]:
 def test_identifiers_are_in_the_words_of_the_field():
     private = [
         f"{path.relative_to(PACKAGE)}: {name}"
-        for path in sorted(PACKAGE.rglob("*.py"))
-        for name in sorted({path.stem, *names(ast.parse(path.read_text()))} - PUBLIC)
+        for path in PATHS
+        for name in sorted({path.stem, *names(path)} - PUBLIC)
         if words(name) & PRIVATE
     ]
     assert not private, "\n".join(private)
