@@ -2,6 +2,8 @@
 
 import shlex
 import signal
+import subprocess
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -18,6 +20,12 @@ def words(line):
 def command(line, *more):
     """The status of a command, which further words may follow."""
     return main([*words(line), *map(str, more)])
+
+
+def python(program, *words):
+    """What a program prints in a process of its own."""
+    asked = [sys.executable, "-c", program, *words]
+    return subprocess.run(asked, capture_output=True, text=True, check=True).stdout
 
 
 def missing(stated, printed):

@@ -5,7 +5,6 @@ its own, for a reader may crash or hang.
 whatever does not end in one line of the package's own error or in a case that works.
 """
 
-import ast
 import codecs
 import json
 import keyword
@@ -46,6 +45,13 @@ NAMES = [
     *(" ", "a:b", "a.b", "a/b", "effort:x", "-x", "_", "__", "m", "ca", *_WORDS),
 ]
 
+OURS = [
+    *("scene", "m", "ca", "motion", "polynomial", "harmonic", "expression", "samples", "evaluate"),
+    *("Mechanism", "SpatialMechanism", "Scene", "lagrange_casadi", "casadi", "t", "name", "length"),
+    *("mass", "link", "point_mass", "at", "tip", "ground", "revolute", "weld", "gear", "parameter"),
+]
+"""Names that written cases use themselves."""
+
 ENCODINGS = [
     *("rot13", "utf-16", "utf-7", "utf-32", "latin-1", "ascii", "hex", "zip", "idna", "cp037"),
     *("unicode_escape", "undefined", "none", "\u00e9", "x" * 5000, "shift_jis", "punycode"),
@@ -59,18 +65,6 @@ DOCTYPES = [
     "<![CDATA[",
     "&lt;&amp;&x;&#0;&#xD800;",
 ]
-
-
-def names_of_cases(folder):
-    """The names that the written cases of valid files use."""
-    found = set()
-    for file, text in SMALL.items():
-        if file.endswith(".xml"):  # MuJoCo may not be installed
-            continue
-        (path := folder / file).write_text(text)
-        for node in ast.walk(ast.parse(case_of(path))):
-            found |= {getattr(node, key, "") for key in ("id", "attr", "name", "arg")}
-    return sorted(one for one in found if isinstance(one, str) and one)
 
 
 def law(chance, depth=0):
@@ -113,7 +107,7 @@ def text_of(chance, depth=0):
     ][kind]
 
 
-def numbers(text, chance, told, _):
+def numbers(text, chance, told):
     """Some numbers in a text, hostile ones."""
     places = [*re.finditer(r"(?<![\w.])-?\d+(\.\d*)?(e-?\d+)?(?![\w.])", text)]
     for found in sorted(
@@ -136,12 +130,12 @@ def words(text, told):
     return [(one[1], one.span(1)) for one in re.finditer(pattern, text)]
 
 
-def renamed(text, chance, told, names):
+def renamed(text, chance, told):
     """A name of a text in all its places, or in one of them, another one."""
     if not (found := [one for one in words(text, told) if one[0]]):
         return text
     old, (start, stop) = chance.choice(found)
-    new = chance.choice(chance.choice(names))
+    new = chance.choice(chance.choice([NAMES, OURS]))
     if told == ".json":
         new = json.dumps(new)[1:-1]
     elif told != ".asmt" and chance.random() < 0.9:
@@ -158,7 +152,7 @@ def piece(text, chance):
     return places[start], places[min(start + chance.choice([1, 1, 2, 9]), len(places) - 1)]
 
 
-def nested(text, chance, told, _):
+def nested(text, chance, told):
     """An element inside itself many times."""
     start, stop = piece(text, chance)
     inner, many = text[start:stop], int(10 ** chance.uniform(1, 4.5))
@@ -179,7 +173,7 @@ def long(text, chance, *_):
     return text[:at] + fill * (int(10 ** chance.uniform(3, 6.3)) // len(fill)) + text[at:]
 
 
-def hostile_law(text, chance, told, names):
+def hostile_law(text, chance, told):
     """A law of a text, another one."""
     new = law(chance)
     new = json.dumps(new)[1:-1] if told == ".json" else new
@@ -187,7 +181,7 @@ def hostile_law(text, chance, told, names):
         r'(?<=": ")[^"]*\bt(ime)?\b[^"]*(?=")' if told == ".json" else r"(?<=\t)[^\t\n]*time[^\n]*"
     )
     if not (found := [*re.finditer(pattern, text)]):
-        return numbers(text, chance, told, names)
+        return numbers(text, chance, told)
     at = chance.choice(found)
     return text[: at.start()] + new + text[at.end() :]
 
@@ -207,23 +201,23 @@ def encoded(text, chance, *_):
 HARMS = [*[numbers] * 3, *[renamed] * 2, nested, long, *[hostile_law] * 3]
 
 
-def hostile(text, chance, told, names):
+def hostile(text, chance, told):
     """The content of a file that somebody made to do harm."""
     harms = HARMS if told in (".json", ".asmt") else [*HARMS, doctype, encoded]
     for _ in range(chance.choice([1, 1, 1, 2, 3])):
-        text = chance.choice(harms)(text, chance, told, names)
+        text = chance.choice(harms)(text, chance, told)
     if chance.random() < 0.05:
         return codecs.encode(text, chance.choice(ENCODINGS[1:6]), "replace")
     return text.encode(errors="surrogatepass")
 
 
-def drawn(seed, names):
+def drawn(seed):
     """A hostile file: its name and its content."""
     chance = random.Random(f"hostile {seed}")
     # Those of MuJoCo take longest.
     file = chance.choice([name for name in SMALL if not name.endswith(".xml")])
     file = "arm.xml" if seed % 25 == 0 else file
-    content = hostile(SMALL[file], chance, Path(file).suffix, names)
+    content = hostile(SMALL[file], chance, Path(file).suffix)
     return file, damaged(content, chance) if seed % 4 == 1 and len(content) > 200 else content
 
 
@@ -257,11 +251,10 @@ def attempt(path, evaluated):
 def run(first, count):
     """Draw and read so many files."""
     folder = Path.cwd()
-    names = NAMES, names_of_cases(folder)
     for seed in range(first, first + count):
         print(seed, flush=True)
         signal.alarm(WAITING)
-        file, content = drawn(seed, names)
+        file, content = drawn(seed)
         path = folder / f"hostile.{file}"
         path.write_bytes(content)
         signal.setitimer(signal.ITIMER_PROF, SECONDS)

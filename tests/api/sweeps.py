@@ -7,6 +7,7 @@ from __future__ import annotations
 import contextlib
 import functools
 import subprocess
+import sys
 import time
 from pathlib import Path
 from types import SimpleNamespace
@@ -106,6 +107,18 @@ def process(*command, **keywords):
     finally:
         started.kill()
         started.communicate()
+
+
+@contextlib.contextmanager
+def held(path, mode):
+    """A file that another program has open."""
+    program = (
+        f"import h5py, sys; h = h5py.File({str(path)!r}, {mode!r}); print('open', flush=True);"
+    )
+    asked = (sys.executable, "-c", f"{program} sys.stdin.read()")
+    with process(*asked, stdin=subprocess.PIPE) as holder:
+        assert holder.stdout.readline() == "open\n"
+        yield
 
 
 def wait_for(condition, seconds=60.0):

@@ -2,8 +2,6 @@
 
 import os
 import re
-import subprocess
-import sys
 
 import h5py
 import numpy as np
@@ -98,12 +96,7 @@ def test_nothing_is_replaced_that_was_not_read_and_found_to_be_a_run(
 @pytest.mark.parametrize("mode", ["r+", "a"])
 def test_a_run_that_another_program_writes_is_left_alone(solution, file, mode):
     before = file.stat().st_ino
-    program = (
-        f"import h5py, sys; h = h5py.File({str(file)!r}, {mode!r}); print('open', flush=True);"
-        " sys.stdin.read()"
-    )
-    with sweeps.process(sys.executable, "-c", program, stdin=subprocess.PIPE) as holder:
-        assert holder.stdout.readline() == "open\n"
+    with sweeps.held(file, mode):
         with pytest.raises(BusyError, match=r"result\.h5: another program has it open to write"):
             save(solution, file)
         with pytest.raises(StoreError, match=r"result\.h5: another program has it open to write"):

@@ -587,16 +587,9 @@ PARTS = [pytest.param(300 * k, marks=pytest.mark.long) for k in range(1, 10)]
 @pytest.mark.parametrize("first", [0, *PARTS])
 def test_hostile_files_are_read_or_refused(first, tmp_path):
     """In a program of its own, which says a line of whatever is neither."""
-    wrong, accepted, last = [], 0, first + (300 if first else 110)
-    while first < last:
-        program = [sys.executable, str(TESTS), "drawn_models", str(first), str(last - first)]
-        done = subprocess.run(program, cwd=tmp_path, capture_output=True, text=True, timeout=3000)
-        said = done.stdout.splitlines()
-        accepted += said.count("accepted")
-        wrong += [line for line in said if not line.isdigit() and line != "accepted"]
-        reached = [int(line) for line in said if line.isdigit()]
-        if done.returncode:
-            wrong.append(f"{reached[-1:]} ended with {done.returncode}: {done.stderr[-300:]}")
-        first = reached[-1] + 1 if reached else last
-    assert wrong == []
-    assert accepted > 5
+    program = [sys.executable, str(TESTS), "drawn_models", str(first), "300" if first else "110"]
+    done = subprocess.run(program, cwd=tmp_path, capture_output=True, text=True, timeout=3000)
+    said = done.stdout.splitlines()
+    assert [line for line in said if not line.isdigit() and line != "accepted"] == []
+    assert done.returncode == 0, f"{said[-1:]}: {done.stderr[-300:]}"
+    assert said.count("accepted") > 5

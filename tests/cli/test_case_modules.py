@@ -4,11 +4,11 @@ helpers. Whatever a case raises is one line.
 
 import copy
 import pickle
-import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
+from commands import python
 
 from lagrange_casadi import load_case
 from lagrange_casadi.errors import CaseError, PickleError
@@ -63,12 +63,6 @@ def length_of(case):
     return load_case(case).scene.mechanism.links["a"].length
 
 
-def fresh(program):
-    """What a program prints in a process of its own."""
-    command = [sys.executable, "-c", program]
-    return subprocess.run(command, capture_output=True, text=True, check=True).stdout
-
-
 def test_each_case_has_its_own_helpers(tmp_path):
     """Of one name, also in threads, and where one loads another; anew where one was changed; and
     the path is as it was.
@@ -93,7 +87,7 @@ def test_a_case_is_sent_to_another_process_and_loaded_anew_there(tmp_path):
     case = load_case(path)
     sent = pickle.dumps(case)
     text = f"import pickle; print(pickle.loads({sent!r}).scene.mechanism.links['a'].length)"
-    assert fresh(text) == "0.75\n"
+    assert python(text) == "0.75\n"
     assert pickle.loads(sent).path == case.path
     with pytest.raises(PickleError, match=r"^a Scene cannot be pickled, .* send a Case from load_"):
         pickle.dumps([case.scene])

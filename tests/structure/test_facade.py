@@ -4,25 +4,16 @@ it is asked for.
 
 import ast
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from commands import python
 
 import lagrange_casadi as lc
 
 pytestmark = pytest.mark.quick
 
 STUB = Path(lc.__file__).with_suffix(".pyi")
-
-
-def fresh(program):
-    """What a program prints as JSON, in a process of its own."""
-    done = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, check=True
-    )
-    return json.loads(done.stdout)
 
 
 def test_the_public_names_are_listed_and_nothing_else():
@@ -32,7 +23,7 @@ def test_the_public_names_are_listed_and_nothing_else():
     ]
     (listed,) = (ast.literal_eval(node.value) for node in tree.body if isinstance(node, ast.Assign))
     assert sorted(listed) == sorted(named) == dir(lc) == sorted(lc.__all__)
-    assert fresh("import json, lagrange_casadi as lc; print(json.dumps(dir(lc)))") == dir(lc)
+    assert python("import lagrange_casadi as lc; print(*dir(lc))").split() == dir(lc)
     with pytest.raises(AttributeError, match="nothing"):
         _ = lc.nothing
 
@@ -44,7 +35,7 @@ def test_each_name_is_there_after_a_bare_import():
     program = """
 import json, sys, lagrange_casadi as lc
 names = dir(lc)
-for name in (names, names[::-1])[int(sys.argv[1]) if sys.argv[1:] else 0]:
+for name in (names, names[::-1])[int(sys.argv[1])]:
     getattr(lc, name)
 import lagrange_casadi.cli, lagrange_casadi.interop.exports, lagrange_casadi.studies.sweep
 print(json.dumps({name: type(getattr(lc, name)).__name__ for name in names}))
@@ -57,18 +48,12 @@ print(json.dumps({name: type(getattr(lc, name)).__name__ for name in names}))
         for a in node.names
     }
     for order in ("0", "1"):
-        done = subprocess.run(
-            [sys.executable, "-c", program, order], capture_output=True, text=True, check=True
-        )
-        kinds = json.loads(done.stdout)
+        kinds = json.loads(python(program, order))
         assert {name for name, kind in kinds.items() if kind == "module"} == submodules
         assert all(
             kinds[name] == "function"
             for name in ("evaluate", "sweep", "optimise", "export", "table", "check", "size")
         )
-
-
-LOADED = "import json, sys\n{}\nprint(json.dumps(sorted(name for name in sys.modules)))"
 
 
 @pytest.mark.parametrize(
@@ -93,5 +78,5 @@ LOADED = "import json, sys\n{}\nprint(json.dumps(sorted(name for name in sys.mod
     ],
 )
 def test_what_is_not_asked_for_is_not_loaded(program, unneeded):
-    loaded = fresh(LOADED.format(program))
+    loaded = python(f"{program}\nimport sys; print(*sys.modules)").split()
     assert not set(loaded) & set(unneeded)
