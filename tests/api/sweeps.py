@@ -112,10 +112,8 @@ def process(*command, **keywords):
 @contextlib.contextmanager
 def held(path, mode):
     """A file that another program has open."""
-    program = (
-        f"import h5py, sys; h = h5py.File({str(path)!r}, {mode!r}); print('open', flush=True);"
-    )
-    asked = (sys.executable, "-c", f"{program} sys.stdin.read()")
+    program = "h = h5py.File(*sys.argv[1:]); print('open', flush=True); sys.stdin.read()"
+    asked = (sys.executable, "-c", f"import h5py, sys; {program}", str(path), mode)
     with process(*asked, stdin=subprocess.PIPE) as holder:
         assert holder.stdout.readline() == "open\n"
         yield

@@ -9,6 +9,7 @@ import xml.etree.ElementTree as ElementTree
 import casadi as ca
 import numpy as np
 import pytest
+from mechanisms import pins_of
 from PIL import Image
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, load_case
@@ -25,10 +26,8 @@ def four_bar(ground=0.3):
     crank, coupler, rocker = (
         m.link(name, length=l) for name, l in (("crank", 0.1), ("coupler", 0.3), ("rocker", 0.1))
     )
-    m.revolute("O", m.ground, crank)
-    m.revolute("A", crank.tip, coupler)
-    m.revolute("B", coupler.tip, rocker.tip)
-    m.revolute("C", m.ground.at(ground, 0.0), rocker)
+    ends = {"O": (m.ground, crank), "A": (crank.tip, coupler), "B": (coupler.tip, rocker.tip)}
+    pins_of(m, **ends, C=(m.ground.at(ground, 0.0), rocker))
     return m
 
 

@@ -16,7 +16,7 @@ from outside import doubled
 
 from lagrange_casadi import Mechanism, Scene, evaluate, export, prepare, sweep, table
 from lagrange_casadi.errors import AssemblyError, DeclarationError
-from lagrange_casadi.motion import expression, polynomial
+from lagrange_casadi.motion import expression
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -118,6 +118,7 @@ def test_waves_too_fast_to_be_followed_are_refused(monkeypatch):
 def test_it_says_by_how_much_and_where():
     says = "its slope jumps by 33.3 % where t = 0.7"
     assert says in kink(ca.if_else(X < 0.7, 3 * X, 2.1 + 2 * (X - 0.7)))
+    assert "as curve(x, y) in place of a table" in kink(table(X, TURN, np.sin(TURN)))
 
 
 @settings(max_examples=20, deadline=None)
@@ -207,15 +208,3 @@ def test_a_scene_whose_defaults_have_a_corner_serves_for_values_that_have_none(s
     export(made, tmp_path / "c", parameters={"k": 0.0}, wanted=["effort"])
     text = (tmp_path / "c" / "README.md").read_text()
     assert "corners" in text.lower()
-
-
-def test_a_table_of_points_is_refused_with_the_way_out():
-    m = Mechanism("cam")
-    wheel, follower = m.link("wheel", length=0.1, mass=1.0), m.point_mass("follower", 2.0)
-    turn = m.revolute("turn", m.ground, wheel.at(0.05))
-    way = m.prismatic("way", m.ground.at(0.0, 0.2), follower, axis=(0, 1))
-    lift = table(m.coordinate(turn), TURN, 0.02 * np.sin(TURN))
-    m.constraint("profile", m.coordinate(way) - lift)
-    says = r"constraint 'profile': its slope jumps by .* as curve\(x, y\) in place of a table"
-    with pytest.raises(DeclarationError, match=says):
-        evaluate(Scene(m, {"turn": polynomial(0.1, 30.0)}, t=(0.0, 0.2, 101)))

@@ -4,6 +4,7 @@ import model_parts
 import numpy as np
 import pytest
 from internals import case_of
+from mechanisms import pins_of
 from model_files import (
     inertial,
     joint,
@@ -218,10 +219,8 @@ def four_bar_efforts():
     crank = m.link("crank", length=0.2, mass=0.5, centre=(0.1, 0), inertia=0.01)
     coupler = m.link("coupler", length=0.5, mass=0.8, centre=(0.25, 0), inertia=0.01)
     rocker = m.link("rocker", length=0.4, mass=0.7, centre=(0.2, 0), inertia=0.01)
-    m.revolute("O", m.ground, crank)
-    m.revolute("A", crank.tip, coupler)
-    m.revolute("C", m.ground.at(0.5, 0), rocker)
-    m.revolute("B", coupler.tip, rocker.tip)
+    ends = {"O": (m.ground, crank), "A": (crank.tip, coupler), "C": (m.ground.at(0.5, 0), rocker)}
+    pins_of(m, **ends, B=(coupler.tip, rocker.tip))
     m.set_gravity(0.0, 0.0)
     posture = {"rocker": "90 deg", "coupler": "53 deg"}
     return efforts(Scene(m, SWING, t=(0.0, 1.0, 9), posture=posture), 9)

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from drawn_models import text_of
 from internals import case_of
+from mechanisms import pins_of
 from model_files import (
     SMALL,
     joint,
@@ -81,10 +82,7 @@ def knuckle():
     lengths = {"crank": 0.1, "rod": 0.3, "rocker": 0.25}
     crank, rod, rocker = (m.link(name, length=l, mass=1.0) for name, l in lengths.items())
     pin = m.point_mass("pin", 0.4)
-    m.revolute("O", m.ground, crank)
-    m.revolute("A", crank.tip, rod)
-    m.revolute("B", rod.tip, pin)
-    m.revolute("C", rocker.tip, pin)
+    pins_of(m, O=(m.ground, crank), A=(crank.tip, rod), B=(rod.tip, pin), C=(rocker.tip, pin))
     m.revolute("D", m.ground.at(0.3, 0.0), rocker)
     return Scene(m, {"O": polynomial(0.3, 2.0)}, posture={"rod": 0.8, "rocker": 1.7})
 

@@ -6,12 +6,11 @@ import math
 
 import numpy as np
 import pytest
-from conftest import CASES
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mechanisms import LENGTH, MASS, G, parallelogram, pendulum
 
-from lagrange_casadi import Scene, evaluate, load, load_case, motion, save
+from lagrange_casadi import Scene, evaluate, load, motion, save
 from lagrange_casadi.errors import AssemblyError, DeclarationError
 from lagrange_casadi.peaks import forces, refine, shortfall
 
@@ -43,20 +42,6 @@ def test_peaks_of_a_turning_pendulum_are_exact():
     assert axial.t == pytest.approx((1.5 * math.pi - 0.1) / speed, abs=1e-12 * step)
     assert axial.value > solution.peak("section:arm:axial").value * (1 + 1e-6)
     assert peaks["motion:pin"] == solution.peak("motion:pin")
-
-
-def test_a_pole_is_infinite():
-    """Across the blade the drive of the sleigh that the row replaces can do nothing."""
-    scene = load_case(CASES / "sleigh").scene
-    solution = vm(scene)
-    assert abs(solution.peak("effort:X").value) < 1e4
-    (peak,) = refine(scene, solution, ["effort:X"])
-    assert math.isinf(peak.value)
-    assert peak.t == pytest.approx(math.pi / 2 / 0.8, abs=1e-12)
-    # Of all quantities, sections would take nearly all the time.
-    efforts = [str(output) for output in solution.outputs if output.group == "effort"]
-    assert len(efforts) > 1
-    assert all(0 <= row.sampled_worst < 1 for row in shortfall(scene, [50], efforts))
 
 
 def test_the_shortfall_of_a_cosine():

@@ -18,6 +18,7 @@ import pytest
 from commands import command
 from drawn_scenes import every_kind
 from internals import placement, scale_for
+from mechanisms import pins_of
 from reports import HOSTILE, held, hostile, press, snowed, solved, wound
 from reports import page as page_of
 
@@ -502,10 +503,8 @@ def test_a_joint_on_ground_goes_where_it_is_dragged(chromium, tmp_path):
         m.link(name, length=length, mass=1.0)
         for name, length in (("crank", 0.1), ("coupler", 0.35), ("rocker", 0.25))
     )
-    m.revolute("O", m.ground, crank)
-    m.revolute("A", crank.tip, coupler)
-    m.revolute("B", coupler.tip, rocker.tip)
-    m.revolute("C", m.ground.at(x, y), rocker)
+    ends = {"O": (m.ground, crank), "A": (crank.tip, coupler), "B": (coupler.tip, rocker.tip)}
+    pins_of(m, **ends, C=(m.ground.at(x, y), rocker))
     motion = {"O": polynomial(0, 20 * np.pi)}
     Scene(m, motion=motion, t=(0, 0.1, 41), posture={"rocker": 1.5}).report(
         tmp_path / "held.html", live=True

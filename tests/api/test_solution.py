@@ -5,38 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from mechanisms import bracket, pins_of
-from spatial_scenes import beams
 
 from lagrange_casadi import Mechanism, Scene, evaluate, load, save
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import polynomial
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
-
-
-@pytest.fixture(scope="module")
-def spatial():
-    return evaluate(beams(), xi=(0, 1, 21), certificate=False)
-
-
-PLANAR = {"axial", "shear", "bending"}
-SPACE = PLANAR | {"torsion", "shear_y", "shear_z", "bending_y", "bending_z"}
-
-
-def test_names_lead_to_arrays(solution, spatial):
-    for one, link, forces in ((solution, "rod", PLANAR), (spatial, "beam", SPACE)):
-        for name in one.names():
-            section = name.startswith("section:") and ":law:" not in name
-            shape = (one.t.size, one.xi.size) if section else (one.t.size,)
-            assert one.array(name).shape in (shape, shape[:1]), name
-            assert np.isfinite(one.array(name)).all()
-        found = {name for name in one.names() if name.startswith(f"section:{link}:")}
-        assert {f"section:{link}:{force}" for force in forces} <= found
-    assert solution.reaction("guide").fy is solution.array("reaction:guide:fy")
-    assert solution.reaction("guide").mz is None
-    assert solution.section("rod").bending is solution.array("section:rod:bending")
-    assert solution.effort("O") is solution.array("effort:O")
-    assert solution.pose("slider").angle is None
 
 
 @pytest.mark.parametrize(

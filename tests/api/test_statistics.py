@@ -1,14 +1,11 @@
 """Means, smallest and largest values, resultants, and solutions as rows."""
 
-import math
 from dataclasses import replace
 
-import casadi as ca
 import numpy as np
 import pytest
 
-from lagrange_casadi import Mechanism, Scene, evaluate, load_case
-from lagrange_casadi.motion import polynomial
+from lagrange_casadi import evaluate, load_case
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
@@ -53,21 +50,3 @@ def test_to_pandas(solution):
         len(table.columns)
         == sum(1 for name in solution.names() if not name.startswith("section")) + 2 * 3 * 2
     )
-
-
-def test_a_sine_over_its_turn():
-    """Mean 1, rms sqrt(1 + 2), from -1 to 3; trapezia are exact for a periodic curve."""
-    m = Mechanism("pushed")
-    m.set_gravity(0.0, 0.0)
-    arm = m.link("arm", length=0.5, mass=1.0)
-    m.revolute("O", m.ground, arm)
-    m.torque("push", arm, -1.0 - 2.0 * ca.sin(math.tau * m.time))
-    scene = Scene(m, {"O": polynomial(0, 1.0)}, t=(0, 1, 41), wanted=["effort"])
-    found = evaluate(scene).statistics("effort:O")
-    assert found.mean == pytest.approx(1.0, abs=1e-14)
-    assert found.rms == pytest.approx(math.sqrt(3.0), rel=1e-14)
-    assert (found.smallest.value, found.smallest.t) == (pytest.approx(-1.0), 0.75)
-    assert (found.largest.value, found.largest.t) == (pytest.approx(3.0), 0.25)
-    assert found.peak == found.largest
-    one = evaluate(scene, t=(0.1, 0.1, 1)).statistics("effort:O")
-    assert one.mean == one.rms == one.smallest.value == one.largest.value
