@@ -186,6 +186,14 @@ def test_copies_of_cases_are_whole_and_come_before_those_of_the_package(here):
         load_case("x")
 
 
+def test_the_examples_of_the_help_run(here, capfd):
+    Path("cases").symlink_to(CASES)
+    assert command("sweep --help") == 0
+    examples = re.findall(r"^ *lagrange-casadi (.*)$", capfd.readouterr().out, re.MULTILINE)
+    assert [example.split()[0] for example in examples] == ["sweep", "best"]
+    assert [command(example) for example in examples] == [0, 0]
+
+
 COMPLETED = [
     ("bash", "lagrange-casadi r", "1", ["plain,report", "plain,run"]),
     ("bash", "lagrange-casadi run --prec", "2", ["plain,--precision"]),
