@@ -123,17 +123,3 @@ def test_a_notebook_shows_the_cell_and_the_message(monkeypatch):
         "line 4: m.link('a', length='5 kN')",
         "DeclarationError: link 'a': length: '5 kN' is a force; expected a length [m]",
     ]
-
-
-@pytest.mark.parametrize(
-    ("name", "says"),
-    [
-        (".", r"has no case\.py"),
-        ("nothing", "no such file"),
-        ("x.txt", r"a Python file ending in \.py"),
-    ],
-)
-def test_what_is_no_case(tmp_path, name, says):
-    (tmp_path / "x.txt").write_text("")
-    with pytest.raises(CaseError, match=says):
-        load_case(tmp_path / name)

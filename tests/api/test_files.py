@@ -7,7 +7,6 @@ import h5py
 import numpy as np
 import pytest
 import sweeps
-import xarray
 from conftest import ROOT
 from forging import edit
 
@@ -24,18 +23,6 @@ def file(solution, tmp_path):
     path = tmp_path / "result.h5"
     save(solution, path)
     return path
-
-
-@pytest.mark.parametrize("engine", ["h5netcdf", "netcdf4"])
-def test_xarray_opens_it(solution, file, engine):
-    with xarray.open_dataset(file, engine=engine, group="section/rod") as section:
-        assert section["bending"].dims == ("t", "xi")
-        assert section["bending"].attrs["units"] == "N m"
-        np.testing.assert_array_equal(section["bending"], solution.section("rod").bending)
-    with xarray.open_dataset(file, engine=engine, group="effort") as effort:
-        np.testing.assert_array_equal(effort["O"], solution.effort("O"))
-    with xarray.open_dataset(file, engine=engine) as root:
-        assert root["xi"].attrs["units"] == "1"
 
 
 @pytest.mark.parametrize(

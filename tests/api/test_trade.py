@@ -5,8 +5,6 @@ recommendations that hold.
 import errno
 import json
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +13,6 @@ from commands import command
 from matplotlib.figure import Figure
 
 from lagrange_casadi import evaluate, load_case, peaks
-from lagrange_casadi.studies.trade import METHODS, trade
 
 COUNT = 51
 ASKED = f"trade CASE --want effort --t 0:0.08:{COUNT}"
@@ -99,18 +96,3 @@ def test_both_files_or_none(here, monkeypatch, capfd):
     assert capfd.readouterr().err.startswith(told)
     refused = json.loads(Path("x.json").read_text())["refused"]
     assert "one driven joint" in refused["--backend c --table 0.001"]
-
-
-@pytest.mark.long
-def test_two_runs_on_a_busy_machine_recommend_the_same():
-    scene, endless = load_case("slider_crank").scene, "a = [1.0] * 10**6\nwhile True: a.sort()"
-    busy = [subprocess.Popen([sys.executable, "-c", endless]) for _ in range(3)]
-    try:
-        found = [trade(scene, methods=METHODS) for _ in range(2)]
-    finally:
-        for one in busy:
-            one.kill()
-            one.wait()
-    for accuracy in (1e-3, 1e-6, 1e-9, 1e-13):
-        for among in (found, [one.exported for one in found]):
-            assert len({one.fastest(accuracy).method for one in among}) == 1

@@ -418,6 +418,7 @@ SENTENCES = [
     ("run CASE --out .", 2, "expected a name that ends in .h5"),
     ("run CASE --figures raises.py", 2, "it is a file, not a folder"),
     ("run nothing", 2, "case nothing: no such file"),
+    ("run low.csv", 2, "expected a folder with a case.py, or a Python file ending in .py"),
     ("run raises.py", 2, "case raises.py, line 1: ZeroDivisionError: division by zero"),
     ("run empty.py", 2, "case empty.py: has no function scene()"),
     ("run", 2, "Missing argument 'CASE'"),
