@@ -13,7 +13,7 @@ import sweeps
 
 from lagrange_casadi import optimise, sweep
 from lagrange_casadi.cli import main
-from lagrange_casadi.errors import ClusterError, DeclarationError, StoppedError
+from lagrange_casadi.errors import ClusterError, StoppedError
 
 pytestmark = pytest.mark.usefixtures("released")
 
@@ -178,12 +178,6 @@ def test_what_is_stopped_or_lost_is_one_line_and_loses_nothing(slider_crank, who
             sweep(slider_crank, GRID, **ASKED, out=path, executor=executor, progress=progress)
     assert parts(path) > 0
     assert sweep(slider_crank, GRID, **ASKED, out=path, resume=True).path.read_bytes() == whole
-
-
-def test_what_calls_nothing_is_no_executor(slider_crank, tmp_path):
-    says = "^sweep: executor: expected an Executor, got 'x'$"
-    with pytest.raises(DeclarationError, match=says):
-        sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", executor="x")
 
 
 def test_what_is_no_scheduler_is_one_line(tmp_path, monkeypatch, capsys):

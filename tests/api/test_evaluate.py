@@ -98,9 +98,6 @@ def test_steps_are_of_iterated_loops_alone():
     assert gap["closed"] < 1e-15 < 1e-9 < gap["stepped"]
 
 
-TURN = math.tau
-
-
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("law", [motion.polynomial, uneven])
 @pytest.mark.parametrize("rpm", [600.0, 77.0])
@@ -108,9 +105,11 @@ def test_instants_over_a_drive_are_equal_steps_of_it(law, rpm):
     """What is found at them is what is found at the same times, and the mechanism is at the same
     angles at any speed.
     """
-    scene = press(law, over=("O", 0.5, 0.5 + 2 * TURN, 145))
+    scene = press(law, over=("O", 0.5, 0.5 + 2 * math.tau, 145))
     found = evaluate(scene, parameters={"rpm": rpm})
-    np.testing.assert_allclose(found.over.values, 0.5 + 2 * TURN * np.arange(145) / 144, rtol=1e-15)
+    np.testing.assert_allclose(
+        found.over.values, 0.5 + 2 * math.tau * np.arange(145) / 144, rtol=1e-15
+    )
     np.testing.assert_allclose(found.motion("O").value, found.over.values, rtol=0, atol=4e-15)
     assert (found.over.joint, found.certified) == ("O", True)
     assert (np.diff(found.t) > 0.0).all()
@@ -240,7 +239,7 @@ REFUSED = [
         "unknown driven joint in over 'guide'; valid: O",
     ),
     ({"over": ("O", 0, 1, 5), "t": (0, 1, 5)}, DeclarationError, "t and over exclude each other"),
-    ({"over": ("O", 0, TURN, 10**12)}, SizeError, "the outputs over time"),
+    ({"over": ("O", 0, math.tau, 10**12)}, SizeError, "the outputs over time"),
     (
         {"t": (0, 0, 9), "parameters": {"rpm": -60.0}},
         DeclarationError,
@@ -257,12 +256,16 @@ REFUSED = [
         "t: START and STOP must be finite, got 0 and inf; with the parameters rpm = 0",
     ),
     (
-        {"over": ("O", 0, TURN, 5), "parameters": AT_REST},
+        {"over": ("O", 0, math.tau, 5), "parameters": AT_REST},
         DeclarationError,
         "is at rest and does not go from 0 rad (0 deg) to 6.28319 rad (360 deg); with the",
     ),
     *(
-        ({"law": law, "over": ("O", 0, TURN, 5)}, DeclarationError, f"motion of joint 'O' {says}")
+        (
+            {"law": law, "over": ("O", 0, math.tau, 5)},
+            DeclarationError,
+            f"motion of joint 'O' {says}",
+        )
         for law, says in (
             (motion.harmonic(0, 1, 1), "does not go from 0 rad (0 deg) to 6.28319 rad (360 deg)"),
             (motion.samples([0, 1, 2, 3], [0, 1, 2, 3]), "does not go from 0 rad (0 deg)"),
@@ -281,7 +284,7 @@ def test_what_cannot_be_is_refused_in_a_line(words, error, says):
 
 
 def test_a_file_keeps_the_drives_coordinate(tmp_path):
-    path, solution = tmp_path / "x.h5", evaluate(slider_crank(), over=("O", 0, TURN, 31))
+    path, solution = tmp_path / "x.h5", evaluate(slider_crank(), over=("O", 0, math.tau, 31))
     save(solution, path)
     back = load(path)
     np.testing.assert_array_equal(back.over.values, solution.over.values)

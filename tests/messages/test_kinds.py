@@ -69,6 +69,10 @@ ONE = {"l": (0.2, 0.3)}
 WRONG = {
     "open": (lambda s: Sweep.open(None), "open: path: expected a path, got None"),
     "out": (lambda s: sweep(s, ONE, out=3), "sweep: out: expected a path, got 3"),
+    "executor": (
+        lambda s: sweep(s, {"l": [0.2]}, executor="x"),
+        "sweep: executor: expected an Executor, got 'x'",
+    ),
     "material": (lambda s: beams.material([]), "material: name: expected a text, got []"),
     "forty digits": (
         lambda s: optimise(s, minimise="l", over=ONE, screen=10**40),
