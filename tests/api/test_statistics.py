@@ -1,4 +1,4 @@
-"""Means, smallest and largest values, resultants, and solutions as rows."""
+"""Means, smallest and largest values, and solutions as rows."""
 
 from dataclasses import replace
 
@@ -50,3 +50,8 @@ def test_to_pandas(solution):
         len(table.columns)
         == sum(1 for name in solution.names() if not name.startswith("section")) + 2 * 3 * 2
     )
+
+
+def test_means_at_one_instant_are_its_value(solution):
+    one = solution.during(slice(100, 101)).statistics("effort:O")
+    assert one.mean == one.rms == one.smallest.value == one.largest.value > 0.0
