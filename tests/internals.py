@@ -29,10 +29,10 @@ from lagrange_casadi.results.elastic.deflection import deflection
 from lagrange_casadi.results.sensitivity.slopes import Slopes
 from lagrange_casadi.results.store import opening
 from lagrange_casadi.results.strength import fatigue
+from lagrange_casadi.results.strength.critical_plane import plane_score
 from lagrange_casadi.results.strength.member import Member
 from lagrange_casadi.results.verification.certificate import certify
 from lagrange_casadi.results.verification.reference import reference
 from lagrange_casadi.studies.designs.engine import DesignEngine
 from lagrange_casadi.studies.designs.outcome import Outcome
-from lagrange_casadi.studies.peaks_between import rates
 from lagrange_casadi.views.shapes.readable import scale_for

@@ -1,12 +1,14 @@
-"""A closed form that nobody verified does not close its loop: every way refuses the result."""
+"""No result leaves unchecked: neither a closed form that nobody verified and that does not close
+its loop, nor an output that is not finite.
+"""
 
 import numpy as np
 import pytest
 from compiled import EVALUATED, PREPARED, told
-from internals import DesignEngine, EvaluationMethod, Status, blocks, loops
+from internals import DesignEngine, EvaluationMethod, Status, blocks, loops, run
 from mechanisms import pins_of
 
-from lagrange_casadi import Mechanism, Scene, evaluate, export
+from lagrange_casadi import Mechanism, Scene, derive, evaluate, export
 from lagrange_casadi.errors import AssemblyError
 from lagrange_casadi.motion import polynomial
 
@@ -60,3 +62,21 @@ def test_exported_c_refuses_what_does_not_close_a_loop(monkeypatch, fresh_cache,
     made = export(mistaken(monkeypatch), folder)
     ((_, _, words),) = told(folder, made, "parameters.station = 0.25; " + PREPARED + EVALUATED)
     assert words == "the solution of a loop does not satisfy its equations"
+
+
+@pytest.mark.parametrize("backend", ["vm", "c", "lanes"])
+@pytest.mark.parametrize("many", [11, 67])
+def test_whichever_output_is_not_finite_is_seen(backend, many):
+    """Output k has no number at instant k, which stands in any place of a pack or beyond the last
+    one.
+    """
+    m = Mechanism("poles")
+    joint = m.revolute("O", m.ground, m.link("crank", length=0.1, mass=1.0))
+    for k in range(11):
+        m.output(f"x{k}", 1.0 / (m.coordinate(joint) - k), unit="")
+    times = (0.0, many - 1.0, many)
+    program = derive(Scene(m, {"O": polynomial(0.0, 1.0)}, t=times))
+    t = np.linspace(*times)
+    evaluated, _ = run(program, t, np.zeros(0), EvaluationMethod(backend))
+    expected = np.where(t < 11, Status.NOT_FINITE, Status.OK)
+    assert evaluated.status.tolist() == expected.tolist()

@@ -5,7 +5,7 @@ score.
 
 import numpy as np
 import pytest
-from internals import fatigue
+from internals import fatigue, plane_score
 
 from lagrange_casadi import beams
 
@@ -17,6 +17,7 @@ SCORES = {
     "use": fatigue.use_score(STEEL),
     "use, gerber": fatigue.use_score(STEEL, "gerber"),
     "use, soft": fatigue.use_score(STEEL.but(endurance=6e8)),
+    "plane": plane_score(),
 }
 
 
