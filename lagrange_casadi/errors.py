@@ -103,9 +103,16 @@ class LagrangeCasadiError(Exception):
     exit_status = 2
     placement: object = None
 
+    def __init_subclass__(cls, exit_status: int | None = None) -> None:
+        cls.exit_status = exit_status or cls.exit_status
+
     def __reduce__(self) -> tuple[object, ...]:
-        """Sent to another process, it goes without its placement, whose mechanism lives here."""
-        left = {name: value for name, value in vars(self).items() if name != "placement"}
+        """Sent to another process, it goes without its placement and its scene, whose mechanism
+        lives here.
+        """
+        left = {
+            name: value for name, value in vars(self).items() if name not in ("placement", "scene")
+        }
         return type(self).__new__, (type(self), *self.args), left
 
     def __str__(self) -> str:
@@ -195,6 +202,8 @@ class PostureError(DeclarationError):
     scene for which the posture was tried, if known.
     """
 
+    scene: object = None
+
     def __init__(
         self,
         message: str,
@@ -203,11 +212,6 @@ class PostureError(DeclarationError):
     ):
         super().__init__(message)
         self.assembly_modes, self.lacking = tuple(assembly_modes), lacking
-        self.scene: object = None
-
-    def __reduce__(self) -> tuple[object, ...]:
-        """Sent to another process, it goes without its scene, which lives in this one."""
-        return type(self), (str(self), self.assembly_modes, self.lacking)
 
 
 class MobilityError(DeclarationError):
@@ -226,78 +230,57 @@ class ModelFileError(LagrangeCasadiError):
     """A model file of another program cannot be read; the message names file, line and element."""
 
 
-class AssemblyError(LagrangeCasadiError):
+class AssemblyError(LagrangeCasadiError, exit_status=1):
     """A loop cannot be closed, or is singular, at some instant ``t`` of the motion [s], None at its
     start.
     """
 
-    exit_status = 1
     t: float | None = None
 
 
-class CompilerError(LagrangeCasadiError):
+class CompilerError(LagrangeCasadiError, exit_status=1):
     """No compiler where one is required, or the compiler refused the emitted C."""
-
-    exit_status = 1
 
 
 class PathError(LagrangeCasadiError):
     """A file is not where it is said to be, or cannot be put where it is wanted."""
 
 
-class StoreError(LagrangeCasadiError):
+class StoreError(LagrangeCasadiError, exit_status=1):
     """Writing a result file failed, or a file is not a whole one of this schema."""
 
-    exit_status = 1
 
-
-class SizeError(LagrangeCasadiError):
+class SizeError(LagrangeCasadiError, exit_status=1):
     """A result does not fit into memory."""
 
-    exit_status = 1
 
-
-class NoDesignError(LagrangeCasadiError):
+class NoDesignError(LagrangeCasadiError, exit_status=1):
     """No design of a sweep is what is looked for."""
 
-    exit_status = 1
 
-
-class AccuracyError(LagrangeCasadiError):
+class AccuracyError(LagrangeCasadiError, exit_status=1):
     """No way to evaluate reaches a wanted accuracy."""
 
-    exit_status = 1
 
-
-class BusyError(LagrangeCasadiError):
+class BusyError(LagrangeCasadiError, exit_status=1):
     """Another process is writing the same file."""
 
-    exit_status = 1
 
-
-class ClusterError(LagrangeCasadiError):
+class ClusterError(LagrangeCasadiError, exit_status=1):
     """A scheduler cannot be reached or was lost, or its workers cannot do what they are sent."""
 
-    exit_status = 1
 
-
-class MissingPackageError(LagrangeCasadiError, ImportError):
+class MissingPackageError(LagrangeCasadiError, ImportError, exit_status=1):
     """A package of this installation is not there, and what was asked for needs it."""
 
-    exit_status = 1
 
-
-class CertificateError(LagrangeCasadiError):
+class CertificateError(LagrangeCasadiError, exit_status=1):
     """A result fails the independent checks that come with it."""
-
-    exit_status = 1
 
 
 class CertificateWarning(UserWarning):
     """A solution fails the independent checks that come with it: it is given, and marked."""
 
 
-class StoppedError(LagrangeCasadiError):
+class StoppedError(LagrangeCasadiError, exit_status=130):
     """A command was stopped from outside, by Ctrl-C or a signal; finished parts are kept."""
-
-    exit_status = 130

@@ -11,6 +11,7 @@ is just what does not hold here: see :func:`closed`.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -22,7 +23,7 @@ import numpy as np
 from .arrays import Expression, Operand
 from .interpret import Arithmetic, codes
 from .lookups import Lookup
-from .scalars import added, as_expression, less, product
+from .scalars import added, applied, as_expression, less, product
 from .vocabulary import Precision
 
 DTYPES: dict[Precision, Any] = {"double": np.dtype(np.float64), "single": np.dtype(np.float32)}
@@ -34,8 +35,11 @@ ROUNDING: dict[Precision, float] = {
 SPLITTER: dict[Precision, float] = {"double": 134217729.0, "single": 4097.0}
 """The factor that splits a number into halves of its digits."""
 
-_TURN = (6.283185307179586, 2.4492935982947064e-16, -5.989539619436679e-33)
-"""2 pi as the sum of three doubles."""
+_TURN: dict[Precision, tuple[float, ...]] = {
+    "double": (6.283185307179586, 2.4492935982947064e-16, -5.989539619436679e-33),
+    "single": (6.2831854820251465, -1.7484555314695172e-07, -6.8604980400235275e-15),
+}
+"""2 pi as the sum of three numbers of a precision."""
 
 
 def closed(x: Expression) -> Expression:
@@ -112,7 +116,7 @@ class Pairs:
             ca.OP_ASSIGN: lambda x: x,
             ca.OP_CALL: self._looked_up,
         }
-        return {code: self._once(code) for code in _UNARY | _BINARY} | rules
+        return {code: self._once(code) for code in _PLAIN} | rules
 
     def constant(self, value: float) -> Pair:
         """A double, in as many parts as it takes."""
@@ -125,8 +129,8 @@ class Pairs:
     @property
     def turn(self) -> Pair:
         """2 pi, of which the double is but the nearest one."""
-        high, low, *_ = self._turn()
-        return Pair(ca.SX(high), ca.SX(low), _TURN[0])
+        high, low, _ = _TURN[self.precision]
+        return Pair(ca.SX(high), ca.SX(low), math.tau)
 
     def add(self, x: Pair, y: Pair) -> Pair:
         """Return x + y, to the last digits also where they nearly cancel."""
@@ -180,8 +184,8 @@ class Pairs:
 
     def reduced(self, x: Pair) -> Pair:
         """Return x less whole turns, between -pi and pi."""
-        revolutions = ca.floor(self._plus(self._times(x.high, self._rounded(1.0 / _TURN[0])), 0.5))
-        for part in self._turn():
+        revolutions = ca.floor(self._plus(self._times(x.high, self._rounded(1.0 / math.tau)), 0.5))
+        for part in _TURN[self.precision]:
             product, error = self._product(revolutions, ca.SX(part))
             x = self.add(x, Pair(self._negative(product), self._negative(error)))
         return x
@@ -226,16 +230,6 @@ class Pairs:
         rough, change = self._rounded(function(angle.high)), self._rounded(slope(angle.high))
         return Pair(*self._sum(rough, self._times(change, angle.low)))
 
-    def _turn(self) -> tuple[float, ...]:
-        if self.precision == "double":
-            return _TURN
-        kind = DTYPES[self.precision].type
-        parts, rest = [], _TURN[0]
-        for later in (_TURN[1], 0.0, 0.0):
-            parts.append(float(kind(rest)))
-            rest = (rest - parts[-1]) + later
-        return tuple(parts)
-
     def _product(self, a: Expression, b: Expression) -> tuple[Expression, Expression]:
         """Return a b and its error (Dekker)."""
         product = self._times(a, b)
@@ -263,9 +257,7 @@ class Pairs:
         """An operation on the nearest numbers: what it gives is rounded once,
         as are its arguments.
         """
-        if code in _UNARY:
-            return lambda x: Pair(self._rounded(ca.SX.unary(code, self._value(x))))
-        return lambda x, y: Pair(self._rounded(ca.SX.binary(code, self._value(x), self._value(y))))
+        return lambda *operands: Pair(self._rounded(applied(code, *map(self._value, operands))))
 
     def _plus(self, a: ca.SX, b: Expression) -> Expression:
         return self._closed(added(a, b))
@@ -329,5 +321,7 @@ def _zero_unless(where: ca.SX, x: ca.SX) -> ca.SX:
     return ca.SX.binary(ca.OP_IF_ELSE_ZERO, where, x)
 
 
-_UNARY = codes("exp log asin acos atan sinh cosh tanh asinh acosh atanh log1p expm1 erf sign not")
-_BINARY = codes("pow constpow atan2 hypot lt le eq ne and or")
+_PLAIN = codes(
+    "exp log asin acos atan sinh cosh tanh asinh acosh atanh log1p expm1 erf sign not"
+    " pow constpow atan2 hypot lt le eq ne and or"
+)

@@ -210,13 +210,9 @@ def written_out(expression: ca.SX) -> Expression:
     """
     symbols = ca.symvar(expression)
     function = ca.Function("expression", symbols, [expression])
-    if not any(_has_expression(called) for called in function.find_functions(0)):
+    if not any(called.is_a("SXFunction") for called in function.find_functions(0)):
         return expression
     return _written_out(function, symbols)[0]
-
-
-def _has_expression(function: ca.Function) -> bool:
-    return bool(function.is_a("SXFunction"))
 
 
 def _written_out(function: ca.Function, inputs: Sequence[ca.SX]) -> list[Operand]:
@@ -231,7 +227,7 @@ def _written_out(function: ca.Function, inputs: Sequence[ca.SX]) -> list[Operand
             _filled(called.sparsity_in(i), itertools.islice(values, called.nnz_in(i)))
             for i in range(called.n_in())
         ]
-        found = _written_out(called, given) if _has_expression(called) else called.call(given)
+        found = _written_out(called, given) if called.is_a("SXFunction") else called.call(given)
         every = [value for row in found for value in row.nonzeros()]
         return every if len(step.results) > 1 else every[0]
 

@@ -12,7 +12,6 @@ from collections.abc import Callable
 from typing import Any
 
 METHODS: dict[str, str] = {
-    "LagrangeCasadiError.drawn": "views.drawing:draw_error",
     "Mechanism._repr_html_": "views.drawing:face",
     "Mechanism.draw": "views.drawing:draw_mechanism",
     "Scene._repr_html_": "views.report:scene_summary",
@@ -31,8 +30,6 @@ METHODS: dict[str, str] = {
     "Spec.draw": "views.figures.solution_figures:drawn",
     "Sweep._repr_html_": "views.report.sweep_summary:summary",
     "Sweep.report": "views.report.of_sweep:write_sweep_report",
-    "figures.default_figures": "views.figures.solution_figures:default_figures",
-    "figures.draw": "views.figures.solution_figures:draw",
 }
 """Module and function of each method, by its name."""
 

@@ -172,7 +172,11 @@ def csv_text(rows: Iterable[Sequence[object]]) -> str:
 
 
 def aligned(
-    heads: Sequence[str], rows: Sequence[Sequence[str]], left: Collection[int] = (), width: int = 0
+    heads: Sequence[str],
+    rows: Sequence[Sequence[str]],
+    left: Collection[int] = (),
+    width: int = 0,
+    indent: str = "  ",
 ) -> Iterator[str]:
     """Rows of texts below their heads as lines, in columns of some ``width`` at least; those of
     ``left`` begin at the left. A column without any text has no head.
@@ -185,4 +189,4 @@ def aligned(
             f"{word:{'<' if k in left else '>'}{width}}"
             for k, (word, width) in enumerate(zip(row, widths, strict=True))
         ]
-        yield "  ".join(words).rstrip()
+        yield f"{indent}{'  '.join(words)}".rstrip()

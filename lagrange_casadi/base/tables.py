@@ -349,8 +349,9 @@ class Table(Brief):
         """The members of a load along a link that come once for each power of the place: its
         directions, that of the axis first.
         """
-        others = {row.member for row in (*_DISTRIBUTED, *_COUPLES)}
-        return tuple(member for member in self._members("spread") if member not in others)
+        return tuple(
+            dict.fromkeys(one.distributed for one in self.sections.values() if one.distributed)
+        )
 
     @cached_property
     def couples(self) -> tuple[str, ...]:

@@ -346,14 +346,12 @@ def _written(text: str, unit: str) -> tuple[float | None, str]:
         given = Unit.of(word)
     except NumberError as error:
         return None, f": {error}"
-    wanted = known(unit)
-    if wanted is None:
-        return None, ""
-    if given.powers != wanted.powers:
-        of = "" if unit == "1" else f" [{unit}]"
-        raise NumberError(f"{shown(text)} is {given.kind}; expected {wanted.kind}{of}")
-    with suppress(ArithmeticError):
-        return given.times(wanted, -1).number(digits), ""
+    if wanted := known(unit):
+        if given.powers != wanted.powers:
+            of = "" if unit == "1" else f" [{unit}]"
+            raise NumberError(f"{shown(text)} is {given.kind}; expected {wanted.kind}{of}")
+        with suppress(ArithmeticError):
+            return given.times(wanted, -1).number(digits), ""
     return None, ""
 
 
@@ -406,31 +404,6 @@ class Within(NamedTuple):
             if self.low > -math.inf
             else ""
         )
-
-
-def count(what: str, value: object, least: int = 1, most: float = math.inf) -> int:
-    """A whole number in a range.
-
-    Raises :class:`DeclarationError`, naming ``what``, for anything else.
-    """
-    if not is_whole(value) or abs(value) >= 2**63 or not least <= value <= most:
-        raise DeclarationError(
-            f"{what}: expected a whole number{Within(least, most).words}, got {shown(value)}"
-        )
-    return int(value)
-
-
-def within(what: str, value: object, low: float, high: float) -> float:
-    """A number from ``low`` to ``high``.
-
-    Raises :class:`DeclarationError`, naming ``what``, for anything else.
-    """
-    found = double(value)
-    if found is None or not low <= found <= high:
-        raise DeclarationError(
-            f"{what}: expected a number from {low:g} to {high:g}, got {shown(value)}"
-        )
-    return found
 
 
 def is_whole(value: object) -> TypeGuard[int]:

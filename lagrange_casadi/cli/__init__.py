@@ -9,6 +9,7 @@ import os
 import signal
 import sys
 import threading
+import traceback
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
@@ -207,7 +208,7 @@ class _Insistent:
             os.kill(os.getpid(), number)
             return
         self._noticed.set()
-        callers = list(_callers(frame))
+        callers = [one for one, _ in traceback.walk_stack(frame)]
         packages = {one.f_globals.get("__name__", "").partition(".")[0] for one in callers}
         if any(caller.f_code is _Insistent.__exit__.__code__ for caller in callers):
             return  # it has arrived
@@ -216,13 +217,6 @@ class _Insistent:
             return
         signal.setitimer(signal.ITIMER_REAL, 1.0)
         raise KeyboardInterrupt
-
-
-def _callers(frame: FrameType | None) -> Iterator[FrameType]:
-    """Give this frame and those that called it."""
-    while frame is not None:
-        yield frame
-        frame = frame.f_back
 
 
 def _fail(message: str, status: int) -> int:

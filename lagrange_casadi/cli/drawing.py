@@ -9,7 +9,6 @@ from contextlib import suppress
 from pathlib import Path
 
 from ..base.files import writing
-from ..base.methods import method
 from ..errors import LagrangeCasadiError, PostureError
 from ..model.scene import Scene
 from ..results.solution import Solution
@@ -28,7 +27,8 @@ def draw_with_progress(
     """Draw into a folder, with a page that shows all; what the solution lacks is said, the bar
     shows on a terminal only.
     """
-    default_figures, draw = method("figures.default_figures"), method("figures.draw")
+    from ..views.figures.solution_figures import default_figures, draw
+
     chosen = specs or default_figures(solution)
     skipped: list[str] = []
     drawn: list[Path] = []
@@ -81,9 +81,11 @@ def drawn(error: LagrangeCasadiError, asked: Mapping[str, object]) -> str:
     """
     if error.placement is None:
         return ""
+    from ..views.drawing import draw_error
+
     path = _beside("open.svg", asked)
     with suppress(LagrangeCasadiError):
-        method("LagrangeCasadiError.drawn")(error, path)
+        draw_error(error, path)
         return f"; {path} draws it"
     return ""
 

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -99,8 +98,7 @@ def drive(
             f"--plot: expected one drive, by --drive; there are {', '.join(chosen)}",
         )
     )
-    if plot is not None:
-        check_picture(plot)
+    check_picture(plot)
     solution = evaluate(scene, wanted=certified_outputs(scene.outputs), **given)
     lines = [
         (
@@ -160,12 +158,18 @@ def _choose(
         )
     per_unit = 1.0 if lead is None else math.tau / lead
 
-    beside_rotor = quantity("--inertia", inertia, "kg" if linear else "kg m^2")
+    beside = quantity("--inertia", inertia, "kg" if linear else "kg m^2")
 
     def asked(ratio: float, rotor: float) -> Duty:
-        total_inertia = rotor + beside_rotor
-        beside = partial(duty_of, solution, name, linear=linear, carried=carried)
-        return beside(ratio=ratio, efficiency=efficiency, inertia=total_inertia)
+        return duty_of(
+            solution,
+            name,
+            ratio=ratio,
+            efficiency=efficiency,
+            inertia=rotor + beside,
+            linear=linear,
+            carried=carried,
+        )
 
     return select(catalogue, asked, ratios=[per_unit * ratio for ratio in ratios or (1.0,)])
 

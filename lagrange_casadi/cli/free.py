@@ -95,8 +95,7 @@ def free(
             f"--cycle: expected a positive number of turns, got {cycle:g}",
         ),
     )
-    if plot is not None:
-        check_picture(plot)
+    check_picture(plot)
     loaded = load_case(case)
     out = target("--out", out, f"{loaded.name}_free.h5", HDF5)
     check_target(out)

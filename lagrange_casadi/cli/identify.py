@@ -80,10 +80,8 @@ def identify(
     loaded = load_case(case)
     out = target("--out", out, f"{loaded.name}_identified.h5", HDF5)
     check_target(out, IDENTIFICATION)
-    if figure is not None:
-        check_picture(figure)
-    if report is not None:
-        check_picture(report, ENDINGS)
+    check_picture(figure)
+    check_picture(report, ENDINGS)
 
     turns = _turns(counts_per_turn)
     read = partial(read_measurements, names=names, noise=noise, counts_per_turn=turns)
@@ -126,8 +124,7 @@ def _lines(found: Identification, second: Comparison | None) -> Iterator[str]:
         [one.words, f"{one.value:.6g}", f"{one.error:.3g}", f"{one.t:.3g}", one.unit]
         for one in found.base
     ]
-    for line in aligned(["combination", "value", "error", "t", ""], rows, left=(0, 4)):
-        yield f"  {line}"
+    yield from aligned(["combination", "value", "error", "t", ""], rows, left=(0, 4))
     for note in found.notes:
         yield f"  {note}"
     for title, compared in (("record", found.comparison), ("validation", second)):

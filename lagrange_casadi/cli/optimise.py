@@ -9,7 +9,7 @@ from typing import Any
 
 from ..base.files import writing
 from ..studies.case import load_case
-from ..studies.optimise import Front, Optimum
+from ..studies.optimise import Optimum
 from ..studies.optimise import optimise as search
 from ..views.figures.optimum_figure import draw_front, draw_optimum
 from ..views.shapes.picture_files import PICTURES
@@ -77,11 +77,8 @@ def optimise(
             bar.update()
 
         given |= {"over": over, "out": out, "executor": executor, "progress": progress}
-        found: Optimum | Front
-        if len(minimise) == 1:
-            found = search(loaded, minimise=minimise[0], **given)
-        else:
-            found = search(loaded, minimise=list(minimise), **given)
+        terms = minimise[0] if len(minimise) == 1 else list(minimise)
+        found = search(loaded, minimise=terms, **given)
     if found.stopped and hasattr(signal, "setitimer"):
         signal.setitimer(
             signal.ITIMER_REAL, 0.0

@@ -70,8 +70,7 @@ def front_lines(front: Front) -> Iterator[str]:
         yield "stopped: the front so far; --resume continues"
     heads = [f"{term} [{unit}]" for term, unit in zip(front.minimised, front.units, strict=True)]
     heads += [*(f"gain by {term.name}" for term in others), "at", ""]
-    lines = aligned(heads, [*map(_cells, front.points)], left=(len(heads) - 2, len(heads) - 1))
-    yield from (f"  {line}" for line in lines)
+    yield from aligned(heads, [*map(_cells, front.points)], left=(len(heads) - 2, len(heads) - 1))
     for point in front.points:
         for limit in point.optimum.limits:
             excess = limit.constraint.excess(limit.value)

@@ -222,17 +222,15 @@ def ratios(
     context: click.Context, option: click.Parameter, words: Sequence[str]
 ) -> tuple[float, ...]:
     """Numbers other than 0, of an option that is repeatable, with commas between several."""
-    found = []
-    for word in separated(context, option, words) or ():
-        try:
-            found.append(real(word))
-        except ValueError:
-            found.append(math.nan)
-        if not math.isfinite(found[-1]) or found[-1] == 0.0:
-            raise click.BadParameter(
-                f"expected numbers other than 0, as in 5 or 5,10,20, got '{word}'"
-            )
-    return tuple(found)
+    return tuple(map(_ratio, separated(context, option, words) or ()))
+
+
+@_reads("numbers other than 0, as in 5 or 5,10,20")
+def _ratio(text: str) -> float:
+    found = real(text)
+    if not math.isfinite(found) or found == 0.0:
+        raise ValueError(text)
+    return found
 
 
 def target(option: str, given: Path | None, usual: str, endings: Collection[str]) -> Path:

@@ -131,9 +131,11 @@ class Rows:
             if capacity is None or len(self.rows) <= capacity
             else self._first(capacity - 1)
         )
+        over = self.solution.over
+        at = [over.label if over else "t [s]", "xi/l"]
+        heads = ["", "peak", "", *at, "min", "max", "mean", "rms"]
         # Names and units begin at the left.
-        lines = aligned(self._heads(), [self._cells(row) for row in rows], left=(0, 2))
-        yield from (f"  {line}" for line in lines)
+        yield from aligned(heads, [self._cells(row) for row in rows], left=(0, 2))
         if len(rows) < len(self.rows):
             yield (
                 f"  {len(rows)} of {len(self.rows)} quantities, the largest of each kind;"
@@ -211,11 +213,6 @@ class Rows:
             planar_moment = output.member == "mz" and "moment" not in table.reactions
             return output.member not in table.reactions and not planar_moment
         return output.group == "section" and output.member.endswith(("_y", "_z"))
-
-    def _heads(self) -> list[str]:
-        over = self.solution.over
-        ends = ["min", "max", "mean", "rms"]
-        return ["", "peak", "", over.label if over else "t [s]", "xi/l", *ends]
 
     def _cells(self, row: Row) -> list[str]:
         peak, found, scale = row.peak, row.found, self._scales[row.unit]

@@ -245,7 +245,7 @@ def drive_lines(solution: Solution) -> Iterator[str]:
     if found := solution.drives_used():
         heads = ["drive", "effort", "", "of limit", "speed", "", "of limit"]
         rows = [[name, *cells(one.effort), *cells(one.speed)] for name, one in found.items()]
-        yield from (f"  {line}" for line in aligned(heads, rows, left=(0, 2, 5)))
+        yield from aligned(heads, rows, left=(0, 2, 5))
 
 
 _FROM = {"ends": "from the line between its ends", "base": "from its axis at the base"}

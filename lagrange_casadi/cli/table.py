@@ -178,7 +178,7 @@ def _show(sweep: Sweep, names: Sequence[str], rows: Iterable[tuple[int, Sequence
     were.
     """
     cells = [[str(number), *map(partial(_cell, sweep), names, values)] for number, values in rows]
-    echo(*aligned(["design", *_heads_of(sweep, names)], cells, width=_WIDTH))
+    echo(*aligned(["design", *_heads_of(sweep, names)], cells, width=_WIDTH, indent=""))
     return len(cells)
 
 

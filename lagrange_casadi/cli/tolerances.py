@@ -63,8 +63,7 @@ def _print(found: Spreads) -> None:
         " rest of what was drawn"
     )
     heads = ["peak of", "nominal", "+- worst", "sigma", "drawn", "least", "largest", "due to"]
-    lines = aligned(heads, [_cells(spread) for spread in found.peaks.values()], left=(0, 7))
-    echo(*(f"  {line}" for line in lines))
+    echo(*aligned(heads, [_cells(spread) for spread in found.peaks.values()], left=(0, 7)))
 
 
 def _cells(spread: Spread) -> list[str]:

@@ -95,7 +95,7 @@ def _print(found: Trade) -> None:
         ]
         for one in found.measurements
     ]
-    echo(*aligned([*heads, "worst quantity"], rows, left=(0, 1, 7)))
+    echo(*aligned([*heads, "worst quantity"], rows, left=(0, 1, 7), indent=""))
     for options, reason in found.refused.items():
         echo(f"  {options}: {reason}")
     if found.peaks:
@@ -119,7 +119,7 @@ def _print(found: Trade) -> None:
             ]
             for row in found.peaks
         ]
-        echo(*(f"  {line}" for line in aligned(heads, rows)))
+        echo(*aligned(heads, rows))
     if found.searches:
         echo(
             "peaks of designs, all of them; error of the worst quantity, and its bound, relative to"
@@ -129,5 +129,4 @@ def _print(found: Trade) -> None:
             [cost.peaks, f"{1e9 * cost.seconds:.4g}", f"{cost.error:.1e}", f"{cost.bound:.1e}"]
             for cost in found.searches
         ]
-        lines = aligned(["peaks", "ns/instant", "error", "bound"], rows, left=(0,))
-        echo(*(f"  {line}" for line in lines))
+        echo(*aligned(["peaks", "ns/instant", "error", "bound"], rows, left=(0,)))

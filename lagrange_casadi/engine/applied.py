@@ -22,7 +22,7 @@ from .pressing import way_of
 def applied_by(load: Load, resting: Grown) -> list[Applied]:
     """A load as forces and couples at points, by the state."""
     if isinstance(load, Force | Torque):
-        acts = _vector(resting, load.components)
+        acts = resting.vector_at_state(load.components)
         if load.turning:
             acts = resting.frames[load.point.body.name].rotation.apply(acts)
         if isinstance(load, Force):
@@ -153,14 +153,6 @@ def _bear(velocities: Velocities, motion: tuple[Vector, Vector], force: Vector) 
         velocities.vector(motion, force)
 
 
-def _vector(resting: Grown, components: Vector) -> Vector:
-    x, y, z = (
-        component if isinstance(component, float) else resting.at_state(component)
-        for component in components
-    )
-    return x, y, z
-
-
 def _along(load: LineLoad, resting: Grown) -> Applied:
     """A load along a link: its coefficients on the link's axes, and its resultant at the middle of
     the part on which it acts.
@@ -169,7 +161,9 @@ def _along(load: LineLoad, resting: Grown) -> Applied:
     to 1 say force and couple.
     """
     rotation, reach = resting.frames[load.link.name].rotation, load.reach
-    forces = [_vector(resting, (x, y, z)) for x, y, z in zip(load.x, load.y, load.z, strict=True)]
+    forces = [
+        resting.vector_at_state((x, y, z)) for x, y, z in zip(load.x, load.y, load.z, strict=True)
+    ]
     resolved = forces if load.turning else [rotation.resolve(one) for one in forces]
     whole, couple = ZERO, ZERO
     for power, (there, here) in enumerate(zip(forces, resolved, strict=True)):

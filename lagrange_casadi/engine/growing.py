@@ -124,6 +124,13 @@ class Grown:
                 ]
         return ca.substitute(ca.SX(expression), column(symbols), column(values))
 
+    def vector_at_state(self, vector: Vector) -> Vector:
+        """A vector of numbers, and of expressions of what the user measures, as
+        :meth:`at_state`.
+        """
+        x, y, z = (one if isinstance(one, float) else self.at_state(one) for one in vector)
+        return x, y, z
+
     def _counted_angle(self, of: Joint | Link, axis: Axis | None = None) -> Expression:
         """The symbol of an angle."""
         name = of.name if axis is None else axis.coordinate

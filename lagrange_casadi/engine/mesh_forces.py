@@ -29,13 +29,13 @@ def meshed_by(resting: Grown, transmission: Transmission, multiplier: ca.SX) -> 
     for mesh in transmission.meshes:
         frame = resting.frames[mesh.carrier.name]
         force, couple = (
-            _at_state(resting, vector) for vector in _summed(transmission, mesh, multiplier)
+            resting.vector_at_state(vector) for vector in _summed(transmission, mesh, multiplier)
         )
-        back = plus(times(-1, couple), cross(_at_state(resting, mesh.reach), force))
+        back = plus(times(-1, couple), cross(resting.vector_at_state(mesh.reach), force))
         yield Applied(
             transmission.name, mesh.first, frame.rotation.apply(force), frame.rotation.apply(couple)
         )
-        x, y, z = _at_state(resting, mesh.second.place)
+        x, y, z = resting.vector_at_state(mesh.second.place)
         second = Point(mesh.second.body, x, y, mesh.second.end, z)
         yield Applied(
             transmission.name,
@@ -43,11 +43,6 @@ def meshed_by(resting: Grown, transmission: Transmission, multiplier: ca.SX) -> 
             frame.rotation.apply(times(-1, force)),
             frame.rotation.apply(back),
         )
-
-
-def _at_state(resting: Grown, vector: Vector) -> Vector:
-    x, y, z = (value if isinstance(value, float) else resting.at_state(value) for value in vector)
-    return x, y, z
 
 
 def transmissions_of(mechanism: Mechanism) -> dict[str, Transmission]:

@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Annotated
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from ..base.arguments import Measured, public
 from ..base.arrays import Array
 from ..base.csv_table import Table, count_sizes, encoding_of, for_each
 from ..base.time_stamps import Clock
-from ..base.units import count, differs, known, quantity
+from ..base.units import Within, differs, known, quantity
 from ..errors import DeclarationError, PathError, UnknownNameError, one_line
 from .curves import Curve, curve
 from .declared_parts import Expression
@@ -66,7 +67,7 @@ def read_samples(
     time_unit: str | None = None,
     counts_per_turn: float | None = None,
     smoothing: float | str = 0.0,
-    points: int | None = None,
+    points: Annotated[int, Within(_LEAST)] | None = None,
     periodic: bool = False,
     period: Measured | None = None,
     advance: Measured = 0.0,
@@ -148,7 +149,7 @@ def read_motion(
     time_unit: str | None = None,
     counts_per_turn: float | Mapping[str, float] | None = None,
     smoothing: float | str | Mapping[str, float | str] = 0.0,
-    points: int | None = None,
+    points: Annotated[int, Within(_LEAST)] | None = None,
     periodic: bool = False,
     period: Measured | None = None,
     advance: Measured | Mapping[str, Measured] = 0.0,
@@ -384,7 +385,6 @@ def _law(
         level[-1] = level[0]
     found = _curve(recording.name, t, level, periodic, noise)
     if points is not None:
-        count(f"{recording.name}: points", points, _LEAST)
         even = np.linspace(t[0], t[-1], points)
         found = _curve(recording.name, even, np.asarray(found(even)), periodic, 0.0)
     off = float(np.abs(np.asarray(found(t)) - level).max())

@@ -14,7 +14,7 @@ from ..base.brief import listed
 from ..base.drawn import Drawing
 from ..base.methods import method
 from ..base.symbolic import Graphs, symbolic, symbolic_property
-from ..base.units import Number, quantity, within
+from ..base.units import Number, double, quantity
 from ..base.vocabulary import PRECISIONS, Precision
 from ..errors import DeclarationError, ParameterError, PickleError, UnknownNameError, shown
 from .declared_parts import Expression, Parameter
@@ -287,7 +287,11 @@ class Scene(Graphs):
         self.mechanism.freeze()
         Wanted.of(self.mechanism, self.wanted)
         checked_ratios(self.xi)
-        put("rounding", within("rounding", self.rounding, 0.0, 1e-3))
+        if (rounding := double(self.rounding)) is None or not 0.0 <= rounding <= 1e-3:
+            raise DeclarationError(
+                f"rounding: expected a number from 0 to 0.001, got {shown(self.rounding)}"
+            )
+        put("rounding", rounding)
         timing = self.timing()
         try:
             self.mechanism.values()

@@ -21,9 +21,8 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-import numpy.typing as npt
 
-from ...base.arrays import Array, Expression, Operand
+from ...base.arrays import Array, Expression, Operand, spread
 from ...base.compensated import Pair, Pairs
 from ...base.interpret import REMAINDERS, Arithmetic, codes, followable, interpret, numpy_arithmetic
 from ...base.lookups import Lookup
@@ -174,13 +173,10 @@ def turns_many(program: Program, t: Array, p: Array) -> bool:
     )
     if not all(followable(function) for function in functions):
         return False
-    return _largest(program, tuple(t[_sampled(t.size)].tolist()), tuple(p.tolist())) > FEW_TURNS
-
-
-@functools.lru_cache(maxsize=64)
-def _sampled(count: int) -> npt.NDArray[np.intp]:
-    """Numbers of some of so many instants, evenly apart."""
-    return np.linspace(0, count - 1, min(count, _SAMPLES)).astype(np.intp)
+    return (
+        _largest(program, tuple(t[spread(t.size, _SAMPLES)].tolist()), tuple(p.tolist()))
+        > FEW_TURNS
+    )
 
 
 @functools.lru_cache(maxsize=256)

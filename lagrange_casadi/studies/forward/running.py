@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 from ...base.arguments import Angle, Count, Measured, Outputs, Positive, public
-from ...base.units import quantity, within
+from ...base.units import Within, quantity
 from ...engine.free_equation import free_equation
 from ...errors import DeclarationError
 from ...model.scene import Scene
@@ -61,7 +62,7 @@ def free(
     count: Count = 721,
     parameters: Mapping[str, float] | None = None,
     wanted: Outputs | None = None,
-    accuracy: float = ACCURACY,
+    accuracy: Annotated[float, Within(1e-13, 1e-3)] = ACCURACY,
 ) -> FreeMotion:
     """Let a machine of one degree of freedom go: its motion, and all forces along it.
 
@@ -144,7 +145,7 @@ def flywheel(
     count: Count = 721,
     parameters: Mapping[str, float] | None = None,
     wanted: Outputs | None = None,
-    accuracy: float = ACCURACY,
+    accuracy: Annotated[float, Within(1e-13, 1e-3)] = ACCURACY,
 ) -> Flywheel:
     """Find the inertia of a flywheel on the drive that keeps a coefficient of fluctuation.
 
@@ -189,7 +190,6 @@ def _machine(
     parameters: Mapping[str, float] | None,
     accuracy: float,
 ) -> Machine:
-    within("accuracy", accuracy, 1e-13, 1e-3)
     values = scene.values(parameters)
     scene.checked(values)
     equation = free_equation(scene, law_of(drive, "drive"), law_of(load, "load"), values)

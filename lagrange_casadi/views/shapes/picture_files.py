@@ -25,10 +25,14 @@ gives the same bytes: programs, clocks.
 """
 
 
-def check_picture(path: str | os.PathLike[str], endings: Collection[str] = tuple(PICTURES)) -> None:
+def check_picture(
+    path: str | os.PathLike[str] | None, endings: Collection[str] = tuple(PICTURES)
+) -> None:
     """Raise :class:`.DeclarationError` for a name with none of some endings, and
-    :class:`.PathError`.
+    :class:`.PathError`; None is no picture.
     """
+    if path is None:
+        return
     target = Path(path)
     if target.suffix not in endings:
         raise DeclarationError(f"{target}: expected a name that ends in {', '.join(endings)}")
