@@ -14,7 +14,7 @@ import re
 import sys
 import traceback
 import warnings
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from pickle import PicklingError
 
 _LONG = 300
@@ -161,6 +161,15 @@ class UnknownNameError(DeclarationError, KeyError):
             f"{f'{place}: ' if place else ''}unknown {kind}{'s' if len(unknown) > 1 else ''}"
             f" {unknown_names}; {listed}"
         )
+
+
+def check_known(
+    kind: str, name: object, valid: Collection[str], listed_by: str = "", place: str = ""
+) -> None:
+    """Raise :class:`UnknownNameError` for a name, or those of several names, that are not valid."""
+    names = name if isinstance(name, Collection) and not isinstance(name, str) else [name]
+    if unknown := [str(one) for one in names if one not in valid]:
+        raise UnknownNameError(kind, unknown, valid, listed_by, place)
 
 
 class NoComponentError(UnknownNameError, AttributeError):

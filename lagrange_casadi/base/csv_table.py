@@ -20,7 +20,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from ..errors import DeclarationError, PathError, UnknownNameError, one_line
+from ..errors import DeclarationError, PathError, UnknownNameError, check_known, one_line
 from .arrays import Array
 from .numerals import plain
 from .streams import check_regular
@@ -362,8 +362,7 @@ def for_each(
     """
     if not isinstance(given, Mapping):
         return dict.fromkeys(names, given)
-    if unknown := [name for name in given if name not in names]:
-        raise UnknownNameError(what, unknown, names, place=place)
+    check_known(what, given, names, place=place)
     return {name: given.get(name, usual) for name in names}
 
 

@@ -15,7 +15,7 @@ from pathlib import Path
 from ..base.folders import filling
 from ..base.shipped_cases import shipped_cases
 from ..base.vocabulary import SIMPLE
-from ..errors import PathError, UnknownNameError
+from ..errors import PathError, check_known
 from .echo import echo
 from .options import refuse
 
@@ -144,8 +144,7 @@ def _copied(like: str, folder: Path) -> dict[str, bytes]:
     named after the folder, as far as that is a name.
     """
     found = shipped_cases()
-    if like not in found:
-        raise UnknownNameError("case", like, found)
+    check_known("case", like, found)
     files = {
         file.name: file.read_bytes()
         for file in sorted(found[like].iterdir())

@@ -13,7 +13,7 @@ import click
 
 from ..base.arrays import Array
 from ..base.units import quantity, typed
-from ..errors import NoDesignError, UnknownNameError
+from ..errors import NoDesignError, check_known
 from ..results.solution import Solution
 from ..results.verification.certificate import certified_outputs, refuse_failed, summary
 from ..studies.actuators.catalogue import read_motors
@@ -89,8 +89,7 @@ def drive(
     beside = loaded.path.parent / "motors.csv"
     catalogue = read_motors(motors or beside) if motors is not None or beside.is_file() else []
     valid = scene.needs_drives if scene.weights is None else tuple(scene.weights)
-    if unknown := [name for name in drives if name not in valid]:
-        raise UnknownNameError("drive", unknown, valid)
+    check_known("drive", drives, valid)
     chosen = tuple(dict.fromkeys(drives)) or valid
     refuse(
         (

@@ -9,7 +9,7 @@ from typing import Any
 
 import click
 
-from ..errors import UnknownNameError
+from ..errors import check_known
 from ..model.even_points import EvenPoints
 from ..model.torques import Law, dc_motor, induction_motor, power, torque
 from ..results.store.runs import check_target, save
@@ -129,8 +129,7 @@ def free(
 def _law(text: str) -> Law:
     """Read WORD=NUMBER,... as a law."""
     word, _, numbers = text.partition("=")
-    if word not in LAWS:
-        raise UnknownNameError("law of --drive", word, LAWS)
+    check_known("law of --drive", word, LAWS)
     make, many = LAWS[word]
     return make(*_numbers(f"--drive {word}", numbers, many))
 

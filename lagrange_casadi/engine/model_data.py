@@ -20,7 +20,7 @@ from ..base.symbolic import Graphs, symbolic
 from ..base.tables import table_of
 from ..base.templates import Template
 from ..base.vocabulary import PRECISIONS, Precision
-from ..errors import UnknownNameError
+from ..errors import check_known
 from ..model.beams.beam import Beam
 from ..model.corners import Corners
 from ..model.declared_parts import Link, Parameter
@@ -183,8 +183,7 @@ class ModelData(Graphs, Brief):
         Raises :class:`.UnknownNameError` for anything else.
         """
         bodies = self.content.bodies
-        if part not in (*bodies, ALL):
-            raise UnknownNameError("part with a mass", part, (*bodies, ALL))
+        check_known("part with a mass", part, (*bodies, ALL))
         some = bodies.values() if part == ALL else [bodies[part]]
         return ca.SX(sum(self.template.placed([body.mass for body in some], p)))
 

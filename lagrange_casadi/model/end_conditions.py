@@ -7,7 +7,7 @@ from __future__ import annotations
 from typing import Literal
 
 from ..base.arguments import public
-from ..errors import DeclarationError, UnknownNameError, shown
+from ..errors import check_kind, check_known
 from .description import Description
 
 _END = 1e-9
@@ -63,12 +63,8 @@ def effective_lengths(description: Description, link: str) -> tuple[float, float
     2 if an end is free. These are the theoretical numbers (Timoshenko and Gere, *Theory of Elastic
     Stability*, section 2.4).
     """
-    if not isinstance(description, Description):
-        raise DeclarationError(
-            f"effective_lengths: expected the description of a solution, got {shown(description)}"
-        )
-    if link not in description.links:
-        raise UnknownNameError("link", link, description.links)
+    check_kind("effective_lengths", description, "the description of a solution", Description)
+    check_known("link", link, description.links)
     ends = held_ends(description, link)
     if description.space:
         return (1.0, 1.0) if all(ends) else (2.0, 2.0)

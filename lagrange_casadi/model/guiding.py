@@ -14,7 +14,7 @@ from typing import Literal
 
 from ..base.tables import ANGLE, LENGTH
 from ..base.vectors import AXES, ZERO
-from ..errors import DeclarationError, UnknownNameError
+from ..errors import DeclarationError, UnknownNameError, check_kind
 from .declared_parts import Body, Link, Point, PointMass, RigidMass
 from .joints import Joint
 from .mechanism import Mechanism
@@ -74,11 +74,7 @@ def laws_of(
                 f"motion of {what} '{name}': expected {wanted}, got {len(given)}"
             )
         for law in given:
-            if not isinstance(law, Motion):
-                raise DeclarationError(
-                    f"motion of {what} '{name}': expected a law of lagrange_casadi.motion, got"
-                    f" {law!r}"
-                )
+            check_kind(f"motion of {what} '{name}'", law, "a law of lagrange_casadi.motion", Motion)
         found |= zip(names, given, strict=True)
     for name, law in found.items():
         unit = ANGLE if kind_of(mechanism, name) == "angle" else LENGTH

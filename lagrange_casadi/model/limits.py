@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping
 import casadi as ca
 
 from ..base.vocabulary import Precision
-from ..errors import DeclarationError, ParameterError, UnknownNameError
+from ..errors import DeclarationError, ParameterError, check_known
 from .declared_parts import Body, Expression, Ground, Link, Parameter, Point
 from .joints import Joint
 
@@ -66,8 +66,7 @@ def parameter_values(
     once, and :class:`DeclarationError` for what has no names.
     """
     overrides = {} if overrides is None else overrides
-    if unknown := [name for name in overrides if name not in parameters]:
-        raise UnknownNameError("parameter", unknown, parameters)
+    check_known("parameter", overrides, parameters)
     if faults := parameter_faults(parameters, overrides):
         raise ParameterError("; ".join(faults))
     return {

@@ -20,7 +20,7 @@ import numpy as np
 from ..base.arguments import Row, Symbolic, public
 from ..base.arrays import Array, Expression, Operand
 from ..base.brief import Brief
-from ..errors import DeclarationError
+from ..errors import DeclarationError, check_kind
 from .curves import Curve, rows
 
 
@@ -331,10 +331,7 @@ def thick(density: Density, *, yy: Expression, zz: Expression, yz: Expression = 
     For a homogeneous bar, the second moments are the density of its material times the second
     moments of its area. A round bar of diameter d has yy = zz = d^2/16 times its mass per length.
     """
-    if not isinstance(density, Density):
-        raise DeclarationError(
-            f"density thick: expected a density of lagrange_casadi.density, got {density!r}"
-        )
+    check_kind("density thick", density, "a density of lagrange_casadi.density", Density)
     moments = [
         moment if isinstance(moment, Density) else polynomial(moment) for moment in (yy, zz, yz)
     ]

@@ -10,7 +10,7 @@ from typing import TypeAlias
 import casadi as ca
 
 from ..base.vectors import ZERO
-from ..errors import DeclarationError
+from ..errors import DeclarationError, check_kind
 from .beams.beam import Beam
 from .beams.shape import UNITS
 from .declared_parts import Expression, Link, PointMass, RigidMass
@@ -55,10 +55,7 @@ def mass_properties_of(
     if (centre is None) != (inertia is None) or (centre is not None and mass is None):
         raise DeclarationError(f"{what}: expected mass=, centre= and inertia= together")
     if density is not None:
-        if not isinstance(density, Density):
-            raise DeclarationError(
-                f"{what}: expected a density of lagrange_casadi.density, got {density!r}"
-            )
+        check_kind(what, density, "a density of lagrange_casadi.density", Density)
         if density.slices is not None and not own.declared.space:
             raise DeclarationError(
                 f"{what}: second moments of slices are for links in space; leave them out in a"
@@ -88,8 +85,7 @@ def beam_of(own: Ownership, what: str, beam: Beam | None) -> Beam | None:
     """
     if beam is None:
         return None
-    if not isinstance(beam, Beam):
-        raise DeclarationError(f"{what}: expected a beam of lagrange_casadi.beams, got {beam!r}")
+    check_kind(what, beam, "a beam of lagrange_casadi.beams", Beam)
     return beam.mapped(
         lambda name, value: own.expression(
             f"{what}: {name} of its cross-section", value, UNITS.get(name, "m")

@@ -9,7 +9,7 @@ from typing import Any
 
 import casadi as ca
 
-from ..errors import DeclarationError
+from ..errors import DeclarationError, check_kind
 from .declared_parts import Body, Link, Parameter, Point, PointMass
 from .loads import Force
 from .scene import Scene
@@ -24,8 +24,7 @@ def with_push(scene: Scene, point: Body | Point) -> tuple[Scene, tuple[str, ...]
     Raises :class:`.DeclarationError` for a point on the ground or of another mechanism.
     """
     mechanism: Any = scene.mechanism
-    if not isinstance(point, (Point, Link, PointMass)):
-        raise DeclarationError(f"tool_deflection: expected a point of the mechanism, got {point!r}")
+    check_kind("tool_deflection", point, "a point of the mechanism", Point, Link, PointMass)
     place = point if isinstance(point, Point) else Point(point, 0.0, 0.0)
     if mechanism.bodies.get(place.body.name) is not place.body or place.body is mechanism.ground:
         raise DeclarationError(

@@ -19,7 +19,7 @@ import casadi as ca
 
 from ..base.arguments import Symbolic, public
 from ..base.brief import Brief
-from ..errors import DeclarationError, UnknownNameError
+from ..errors import DeclarationError, check_known
 from .declared_parts import Expression
 from .expressions import plain
 
@@ -299,6 +299,5 @@ def rest_law(what: str, law: object) -> RestLaw:
             f"{what}: law: expected a name, trapezoid(SHARE) or s_curve(SHARE, ROUNDING), got"
             f" {law!r}"
         )
-    if law not in _LAWS:
-        raise UnknownNameError("law", law, LAWS, place=what)
+    check_known("law", law, LAWS, place=what)
     return _LAWS[law]

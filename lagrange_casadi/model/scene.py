@@ -16,7 +16,15 @@ from ..base.methods import method
 from ..base.symbolic import Graphs, symbolic, symbolic_property
 from ..base.units import Number, double, quantity
 from ..base.vocabulary import PRECISIONS, Precision
-from ..errors import DeclarationError, ParameterError, PickleError, UnknownNameError, shown
+from ..errors import (
+    DeclarationError,
+    ParameterError,
+    PickleError,
+    UnknownNameError,
+    check_kind,
+    check_known,
+    shown,
+)
 from .declared_parts import Expression, Parameter
 from .even_points import EvenPoints, checked_ratios
 from .guiding import guided, laws_of
@@ -257,13 +265,11 @@ class Scene(Graphs):
     rounding: float = 1e-6
 
     def __post_init__(self) -> None:
-        if not isinstance(self.mechanism, Mechanism):
-            raise DeclarationError(f"scene: expected a Mechanism, got {self.mechanism!r}")
+        check_kind("scene", self.mechanism, "a Mechanism", Mechanism)
         put = partial(object.__setattr__, self)
         for what in ("motion", "posture", "assembly"):
             mapping = getattr(self, what)
-            if not isinstance(mapping, Mapping):
-                raise DeclarationError(f"{what}: expected a mapping by name, got {mapping!r}")
+            check_kind(what, mapping, "a mapping by name", Mapping)
             put(what, MappingProxyType(dict(mapping)))
         coordinates = self.mechanism.coordinates
         guides = [name for name in self.laws if name not in coordinates]
@@ -557,8 +563,7 @@ class Scene(Graphs):
         ParameterConstraints
             The conditions.
         """
-        if precision not in PRECISIONS:
-            raise UnknownNameError("precision", precision, PRECISIONS)
+        check_known("precision", precision, PRECISIONS)
         parts = demands(self.mechanism, precision)
         moved = [demand for law in self.laws.values() for demand in law.parameter_constraints]
         return ParameterConstraints(parts.symbols, (*parts.each, *moved)) if moved else parts
@@ -605,8 +610,7 @@ class Scene(Graphs):
         DeclarationError
             If its motion is not made of moves.
         """
-        if name not in self.laws:
-            raise UnknownNameError("driven joint", name, self.laws)
+        check_known("driven joint", name, self.laws)
         law, values = self.laws[name], self.values(parameters)
         if not law.stretches:
             raise DeclarationError(

@@ -13,7 +13,7 @@ from ..base.arguments import texts
 from ..base.numerals import readable
 from ..base.tables import ANGLE, LENGTH
 from ..base.units import quantity
-from ..errors import DeclarationError, UnknownNameError, shown
+from ..errors import DeclarationError, UnknownNameError, check_known, shown
 from .declared_parts import Expression
 from .link_density import Density
 from .mechanism import Mechanism
@@ -51,8 +51,7 @@ def weighed(
                 else "has no coordinate for an effort"
             )
             raise DeclarationError(f"drives: joint '{name}' {why}")
-        if name not in coordinates:
-            raise UnknownNameError("joint in drives", name, coordinates)
+        check_known("joint in drives", name, coordinates)
         if not isinstance(weight, ca.SX):
             if not isinstance(weight, (int, float)) or not 0.0 < weight < float("inf"):
                 raise DeclarationError(
@@ -123,9 +122,7 @@ def rough_posture(mechanism: Mechanism, posture: Mapping[str, object]) -> dict[s
         for axis in joint.axes_of(body)
     )
     places = [*coordinates, *turns] if mechanism.space else [*mechanism.links, *coordinates]
-    for name in posture:
-        if name not in places:
-            raise UnknownNameError("link or joint in posture", name, dict.fromkeys(places))
+    check_known("link or joint in posture", posture, dict.fromkeys(places))
     slides = {name for name, (_, axis) in coordinates.items() if axis.kind == "slide"}
     return {name: _rough(name, value, name not in slides) for name, value in posture.items()}
 

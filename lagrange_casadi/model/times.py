@@ -20,7 +20,7 @@ from ..base.brief import Brief
 from ..base.scalars import called
 from ..base.tables import ANGLE, LENGTH
 from ..base.units import quantity
-from ..errors import DeclarationError, UnknownNameError, shown
+from ..errors import DeclarationError, check_known, shown
 from .declared_parts import Expression
 from .even_points import EvenPoints, checked, points
 from .limits import values_note
@@ -90,8 +90,7 @@ class Timing:
             return cls(*_read(mechanism, "t", t))
         if not isinstance(over, (tuple, list)) or len(over) != 4 or not isinstance(over[0], str):
             raise DeclarationError(f"over: expected (joint, start, stop, count), got {shown(over)}")
-        if over[0] not in motion:
-            raise UnknownNameError("driven joint in over", over[0], motion)
+        check_known("driven joint in over", over[0], motion)
         slides = mechanism.coordinates[over[0]][1].kind == "slide"
         unit = LENGTH if slides else ANGLE
         bounds = [

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..base.arrays import Array, Instants, during
 from ..base.quantities import Output, quotient
-from ..errors import UnknownNameError
+from ..errors import check_known
 from ..model.wanted_names import SENSITIVITY
 from .histories import Histories
 
@@ -42,11 +42,9 @@ class Derivatives:
         Raises :class:`.UnknownNameError` for a parameter by which there is none, and a quantity
         that has none.
         """
-        if parameter not in self.by:
-            raise UnknownNameError("parameter with sensitivities", parameter, self.by)
+        check_known("parameter with sensitivities", parameter, self.by)
         found = {str(output): values for output, values in self.by[parameter].items()}
-        if str(name) not in found:
-            raise UnknownNameError("quantity with sensitivities", str(name), found)
+        check_known("quantity with sensitivities", str(name), found)
         return found[str(name)]
 
     def notes(self) -> Iterator[str]:

@@ -9,7 +9,7 @@ from functools import cached_property
 
 from ..base.arrays import Array
 from ..base.brief import Brief
-from ..errors import NoComponentError, UnknownNameError
+from ..errors import NoComponentError, check_known
 from .pieces import Rows
 from .section_laws import SectionLaw
 from .vector_sizes import size_of
@@ -173,8 +173,7 @@ class Section:
         return found
 
     def _grid(self, force: str) -> Array:
-        if force not in self.law.table.forces:
-            raise UnknownNameError("section force", force, self.law.table.forces)
+        check_known("section force", force, self.law.table.forces)
         return self.law.on_grid(force, self._basis)
 
     @cached_property

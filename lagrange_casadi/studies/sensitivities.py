@@ -18,7 +18,7 @@ from ..base.vocabulary import Backend
 from ..engine.codegen.peak_search import Listed
 from ..engine.instants.evaluation_method import EvaluationMethod
 from ..engine.sharpness import Sharpness
-from ..errors import DeclarationError, UnknownNameError
+from ..errors import DeclarationError, check_known
 from ..model.scene import Scene
 from ..results.sensitivity.ends import Ends
 from ..results.sensitivity.peak_derivatives import (
@@ -277,8 +277,7 @@ class Sensitivities:
         )
 
     def _number(self, parameter: str) -> int:
-        if parameter not in self.parameters:
-            raise UnknownNameError("parameter", parameter, self.parameters)
+        check_known("parameter", parameter, self.parameters)
         return self.parameters.index(parameter)
 
 

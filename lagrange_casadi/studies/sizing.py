@@ -18,7 +18,12 @@ from ..base.scalars import column
 from ..base.templates import Template
 from ..engine.model_data import beam_at, template
 from ..engine.two_force_links import unaimed
-from ..errors import DeclarationError, LagrangeCasadiError, NoDesignError, UnknownNameError
+from ..errors import (
+    DeclarationError,
+    LagrangeCasadiError,
+    NoDesignError,
+    check_known,
+)
 from ..model.beams.profiles import Profile
 from ..model.declared_parts import Parameter
 from ..model.description import Description
@@ -218,8 +223,7 @@ class _Search:
                 "size: no link has a cross-section, so there is nothing to size; declare one with"
                 " beam="
             )
-        if unknown := [name for name in links or () if name not in having]:
-            raise UnknownNameError("link with a beam", unknown, having)
+        check_known("link with a beam", links or (), having)
         slots: dict[str, _Slot] = {}
         remaining: dict[str, str] = {}
         defaults = scene.values(request.parameters)

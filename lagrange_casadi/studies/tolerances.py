@@ -17,7 +17,7 @@ from ..base.numerals import real
 from ..base.status import Status
 from ..base.units import Within, number, typed
 from ..base.vocabulary import SAMPLES, Compiled
-from ..errors import DeclarationError, UnknownNameError
+from ..errors import DeclarationError, check_known
 from ..model.declared_parts import Parameter
 from ..model.scene import Scene
 from ..model.times import Over, Times
@@ -73,8 +73,7 @@ def read_tolerance(
     Raises :class:`UnknownNameError` for what is no parameter, :class:`DeclarationError` for what is
     no tolerance of it.
     """
-    if name not in parameters:
-        raise UnknownNameError("parameter", name, parameters)
+    check_known("parameter", name, parameters)
     unit, text = parameters[name].unit, value.strip() if isinstance(value, str) else ""
     try:
         if text.endswith("%"):

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from ...base.arguments import public
 from ...base.brief import Brief
 from ...base.vocabulary import BACKENDS, PRECISIONS, Backend, Precision
-from ...errors import DeclarationError, UnknownNameError, check_kind
+from ...errors import DeclarationError, check_kind, check_known
 
 if TYPE_CHECKING:
     from ..program import Program
@@ -84,8 +84,7 @@ class EvaluationMethod:
             ("backend", self.backend, BACKENDS),
             ("precision", self.precision, PRECISIONS),
         ):
-            if name not in valid:
-                raise UnknownNameError(kind, str(name), valid)
+            check_known(kind, str(name), valid)
         if self.newton is not None and (
             type(self.newton) is not int or not 1 <= self.newton <= MOST_STEPS
         ):

@@ -18,7 +18,7 @@ from ...base.packages import check_installed
 from ...base.quantities import motion_names
 from ...engine.codegen import find_compiler, no_compiler
 from ...engine.codegen.compiler import Compiler, broken, built
-from ...errors import DeclarationError, StoreError, UnknownNameError
+from ...errors import DeclarationError, StoreError, check_known
 from ..portable.golden import motions_at
 from ..portable.header import header
 from ..portable.source import Source
@@ -91,8 +91,7 @@ def _check_way(source: Source, by: str) -> None:
     :class:`DeclarationError` for one that does not rise or fall at all instants.
     """
     program = source.exported.program
-    if by not in program.driven:
-        raise UnknownNameError("coordinate", by, ["time", *program.driven])
+    check_known("coordinate", by, ["time", *program.driven])
     times = np.linspace(*program.data.span, max(2, 4 * program.data.timing.count))
     _, (name,), _ = motion_names([by])
     rates = motions_at(program, times, source.p)[name]

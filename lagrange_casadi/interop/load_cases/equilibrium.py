@@ -15,7 +15,7 @@ import numpy.typing as npt
 from ...base.arguments import Row, public
 from ...base.arrays import Array
 from ...engine.derive import compile_scene
-from ...errors import CertificateError, DeclarationError, UnknownNameError
+from ...errors import CertificateError, DeclarationError, check_known
 from ...model.description import BodyNumbers, Triple
 from ...model.scene import Scene
 from ...model.stated import Stated
@@ -77,8 +77,7 @@ def link_load_cases(
         If the loads are not in equilibrium within the tolerance of the solution.
     """
     described = solution.description.bodies
-    if link not in described:
-        raise UnknownNameError("link", link, described)
+    check_known("link", link, described)
     declared, stated = solution.description, _stated(solution, link, scene)
     needed = forces_needed(declared, link)
     if missing := [f"{one.group}:{one.part}" for one in needed if one not in solution.outputs]:

@@ -14,7 +14,7 @@ from ...base.arguments import public
 from ...base.folders import filling
 from ...base.table_writers import csv_text
 from ...base.vocabulary import LOAD_FORMATS
-from ...errors import DeclarationError, UnknownNameError, shown
+from ...errors import DeclarationError, check_known, shown
 from .beam_model import beam_model
 from .calculix import calculix
 from .load_case import Load, LoadCase, nodes_of
@@ -83,14 +83,12 @@ def write_load_cases(
     PathError
         If the folder cannot be written.
     """
-    if unknown := [name for name in formats if name not in LOAD_FORMATS]:
-        raise UnknownNameError("format", unknown, LOAD_FORMATS)
+    check_known("format", formats, LOAD_FORMATS)
     links = dict.fromkeys(case.link for case in cases)
     chosen = {name: str(node) for name, node in (nodes or {}).items()}
     loads = (node.name for case in cases for node in nodes_of(case, {}))
     loaded = dict.fromkeys([*loads, *links])
-    if unknown := [name for name in chosen if name not in loaded]:
-        raise UnknownNameError("load", unknown, loaded)
+    check_known("load", chosen, loaded)
     if wrong := [node for node in chosen.values() if not _NAME.fullmatch(node)]:
         raise DeclarationError(f"nodes: expected names or numbers of nodes, got {shown(wrong[0])}")
     files = {

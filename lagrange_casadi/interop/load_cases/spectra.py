@@ -12,7 +12,7 @@ from ...base.arguments import Index, public
 from ...base.arrays import Array
 from ...base.files import writing
 from ...base.table_writers import csv_text
-from ...errors import DeclarationError, UnknownNameError
+from ...errors import DeclarationError, check_known
 from ...results.solution import Solution
 from ...results.strength.rainflow import counted
 
@@ -95,7 +95,6 @@ def _history(solution: Solution, name: str) -> tuple[Array, str]:
         return stresses[int(np.argmax(np.ptp(stresses, axis=1)))], "Pa"
     link, _, force = quantity.rpartition(":")
     law, forces = solution.section(link).law, solution.table.forces
-    if force not in forces:
-        raise UnknownNameError("section force", force, forces, place=f"spectrum of '{name}'")
+    check_known("section force", force, forces, place=f"spectrum of '{name}'")
     values = law.at(force, np.full((solution.t.size, 1), ratio))[:, 0]
     return np.asarray(values), solution.unit(f"section:{quantity}")

@@ -10,7 +10,7 @@ from typing import Annotated, Any, TypeAlias
 from ...base.arguments import Positive, Stress, public
 from ...base.brief import Brief
 from ...base.units import Within
-from ...errors import DeclarationError, UnknownNameError
+from ...errors import DeclarationError, check_known
 
 MassDensity: TypeAlias = Annotated[Any, Within(0.0, above=True, unit="kg/m^3")]
 Cycles: TypeAlias = Annotated[float, Within(1e3, above=True)]
@@ -137,8 +137,7 @@ def material(name: str) -> Material:
     UnknownNameError
         For any other name; the message lists all.
     """
-    if name not in TABLE:
-        raise UnknownNameError("material", name, TABLE)
+    check_known("material", name, TABLE)
     return TABLE[name]
 
 

@@ -20,7 +20,7 @@ import numpy as np
 from ...base.arguments import Numeric, public
 from ...base.arrays import Array
 from ...base.bernstein import interpolated, nodes, product, raised, slope, value, zeros
-from ...errors import DeclarationError, UnknownNameError
+from ...errors import DeclarationError, check_known
 from ...model.end_conditions import ends_of
 from ..histories import Histories
 from ..strength.all_parts import reason, strong_of
@@ -88,8 +88,7 @@ class Deflection:
 
     def at(self, name: str, u: Numeric) -> Array:
         """Displacement by a name, at a ratio, or at ratios (t, ...), a row an instant."""
-        if name not in self.names:
-            raise UnknownNameError("deflection", name, self.names)
+        check_known("deflection", name, self.names)
         u = np.asarray(u, float)
         if not u.shape:
             u = np.full(self.member.t.size, float(u))

@@ -24,7 +24,7 @@ from ...base.interrupts import uninterrupted
 from ...base.quantities import Output
 from ...base.tables import ANGLE, LENGTH
 from ...engine.instants.beyond_equilibrium import ENDS, Holding
-from ...errors import PathError, StoreError, UnknownNameError, one_line
+from ...errors import PathError, StoreError, check_known, one_line
 from ...model.description import Description
 from ...model.even_points import are_even
 from ...model.times import DriveAxis
@@ -150,8 +150,7 @@ def _with_grids(solution: Solution, asked: bool | Sequence[str] | None) -> list[
         return [link for link in links if link not in pieces]
     if isinstance(asked, bool):
         return list(links) if asked else []
-    if unknown := [name for name in asked if name not in links]:
-        raise UnknownNameError("link with sections", unknown, links)
+    check_known("link with sections", asked, links)
     return [link for link in links if link in asked]
 
 

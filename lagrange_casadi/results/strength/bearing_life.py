@@ -22,7 +22,7 @@ from ...base.arguments import Force, Numeric, Positive, Row, public
 from ...base.arrays import Array
 from ...base.quantities import Output
 from ...base.units import Within
-from ...errors import DeclarationError, UnknownNameError
+from ...errors import DeclarationError, check_known
 from ...model.fitted import Fitted, Pin, Plain, Rolling, positive
 from ..histories import Histories
 from ..statistics import counted, shares
@@ -248,8 +248,7 @@ def _reaction_sizes(solution: Histories, joint: str) -> tuple[Array, Array]:
     evaluated, or is indeterminate at all instants.
     """
     joints = solution.description.joints
-    if joint not in joints:
-        raise UnknownNameError("joint", joint, joints)
+    check_known("joint", joint, joints)
     members = [o for o in solution.outputs if o.group == "reaction" and o.part == joint]
     if not members:
         raise DeclarationError(

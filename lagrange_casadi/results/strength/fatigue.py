@@ -20,7 +20,7 @@ import numpy as np
 
 from ...base.arguments import Numeric, public
 from ...base.arrays import Array, Operand
-from ...errors import UnknownNameError
+from ...errors import check_known
 from ...model.beams.material import Material
 from ...model.beams.properties import larger
 from .rainflow import StressCycle, counted
@@ -56,8 +56,7 @@ def strengths(material: Material, criterion: str) -> tuple[float, float]:
 
 
 def _needed(material: Material, criterion: str) -> tuple[str, str]:
-    if criterion not in CRITERIA:
-        raise UnknownNameError("fatigue criterion", criterion, CRITERIA)
+    check_known("fatigue criterion", criterion, CRITERIA)
     name = CRITERIA[criterion]
     missing = name == "fatigue_strength" and material.fatigue_strength is None
     return "endurance", "ultimate" if missing else name

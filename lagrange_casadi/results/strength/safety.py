@@ -13,7 +13,7 @@ from ...base.arguments import public
 from ...base.brief import Brief
 from ...engine import buckling as columns
 from ...engine.buckling import Column
-from ...errors import UnknownNameError
+from ...errors import check_known
 from ...model.description import Description
 from ...model.end_conditions import effective_lengths
 from ..histories import Histories
@@ -175,8 +175,7 @@ def rated(
     enough: float = 0.0,
 ) -> Safety:
     """Safety of a link in numbers; results after a factor that is not ``enough`` are left out."""
-    if criterion not in (known := (*CRITERIA, FINDLEY)):
-        raise UnknownNameError("fatigue criterion", criterion, known)
+    check_known("fatigue criterion", criterion, (*CRITERIA, FINDLEY))
     member = member.counted
     missing, verdicts = lacking(member.beam.material, criterion), list[Verdict]()
     for verdict in (

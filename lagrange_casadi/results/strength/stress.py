@@ -24,7 +24,7 @@ from ...base.bernstein import product, slope, value, zeros
 from ...base.brief import Brief
 from ...engine.section_function import SIDES, Side
 from ...engine.section_stress import KINDS, concentration, squared
-from ...errors import DeclarationError, UnknownNameError, shown
+from ...errors import DeclarationError, check_known, shown
 from ...model.beams.beam import Notch
 from .member import Member
 
@@ -312,8 +312,7 @@ class Stress:
 
 
 def _weights(kind: str) -> tuple[float, float]:
-    if kind not in KINDS:
-        raise UnknownNameError("kind of stress", kind, KINDS)
+    check_known("kind of stress", kind, KINDS)
     return KINDS[kind]
 
 

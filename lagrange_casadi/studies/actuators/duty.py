@@ -15,7 +15,7 @@ from ...base.arrays import Array
 from ...base.brief import Brief
 from ...base.units import quantity
 from ...engine.instants.beyond_equilibrium import Holding
-from ...errors import DeclarationError, UnknownNameError
+from ...errors import DeclarationError, check_known
 from ...results.solution import Solution
 from ...results.statistics import shares
 
@@ -194,8 +194,7 @@ def duty_of(
     drives = [
         str(name).partition(":")[2] for name in solution.names() if str(name).startswith("effort:")
     ]
-    if joint not in drives:
-        raise UnknownNameError("drive", joint, drives)
+    check_known("drive", joint, drives)
     turns = quantity("ratio", ratio, "rad/m" if slides(solution, joint) and not linear else "1")
     if not turns:
         raise DeclarationError(f"ratio must be a finite number other than 0, got {ratio!r}")

@@ -12,7 +12,7 @@ from ...engine.instants.backends import run
 from ...engine.instants.evaluation_method import EvaluationMethod
 from ...engine.instants.refusing import refuse
 from ...engine.reflected_inertia import ReflectedInertia, reflected_inertia
-from ...errors import DeclarationError, UnknownNameError
+from ...errors import DeclarationError, check_known
 from ...model.scene import Scene
 from ...model.times import Over, Times, instants_of
 
@@ -58,8 +58,7 @@ def inertia_at(
     """
     values = scene.values(parameters)
     reflected = reflected_inertia(scene, values)
-    if joint not in reflected.drives:
-        raise UnknownNameError("drive", joint, reflected.drives)
+    check_known("drive", joint, reflected.drives)
     several = len(reflected.motions) > 1
     rows = reflected.program.data.content.rows
     if rows or (several and len(reflected.drives) != len(reflected.motions)):

@@ -33,7 +33,7 @@ from ...engine.instants.grids import empty
 from ...engine.instants.phases import unwind
 from ...engine.program import Program
 from ...engine.sharpness import bent, with_watched
-from ...errors import DeclarationError, UnknownNameError
+from ...errors import DeclarationError, check_known
 from ...model.beyond_ends import BEYOND
 from ...model.scene import Scene
 from ...model.times import Times, Timing, checked_span
@@ -104,10 +104,8 @@ class DesignEngine:
         peaks: PeakSearch = "exact",
     ) -> DesignEngine:
         """Compile a graph for designs at instants that are asked for."""
-        if method.backend not in COMPILED:
-            raise UnknownNameError("backend of designs", method.backend, COMPILED)
-        if peaks not in PEAK_SEARCHES:
-            raise UnknownNameError("choice of peaks", str(peaks), PEAK_SEARCHES)
+        check_known("backend of designs", method.backend, COMPILED)
+        check_known("choice of peaks", str(peaks), PEAK_SEARCHES)
         sampled = peaks == "sampled"
         data = program.data
         times, p = DesignTimes(data.laws, data.values(data.defaults), timing), data.defaults

@@ -22,7 +22,7 @@ from ...base.units import Number
 from ...base.vocabulary import Compiled, PeakSearch, Precision
 from ...engine.instants.evaluation_method import EvaluationMethod
 from ...engine.model_data import template
-from ...errors import AssemblyError, DeclarationError, UnknownNameError, shown
+from ...errors import AssemblyError, DeclarationError, UnknownNameError, check_known, shown
 from ...model.scene import Scene
 from ...model.times import Over, Times
 from ...model.wanted_names import without_fitted, without_life
@@ -112,8 +112,7 @@ class Gradient:
 
         Raises :class:`UnknownNameError`.
         """
-        if quantity not in self.quantities:
-            raise UnknownNameError("quantity with a peak", quantity, self.quantities)
+        check_known("quantity with a peak", quantity, self.quantities)
         return dict(
             zip(self.parameters, self.slopes[self.quantities.index(quantity)].tolist(), strict=True)
         )
@@ -137,8 +136,7 @@ class Curvature:
 
         Raises :class:`UnknownNameError`.
         """
-        if quantity not in self.quantities:
-            raise UnknownNameError("quantity with a peak", quantity, self.quantities)
+        check_known("quantity with a peak", quantity, self.quantities)
         rows = self.bends[self.quantities.index(quantity)].tolist()
         return {
             name: dict(zip(self.parameters, row, strict=True))

@@ -23,7 +23,7 @@ from ...base.symbolic import symbolic
 from ...base.units import Number, quantity
 from ...base.vocabulary import Backend
 from ...engine.instants.evaluation_method import EvaluationMethod
-from ...errors import AssemblyError, DeclarationError, UnknownNameError, shown
+from ...errors import AssemblyError, DeclarationError, check_known, shown
 from ...model.motion_laws import Motion, expression
 from ...model.scene import Scene
 from ..case import Case, scene_of
@@ -143,8 +143,7 @@ def excite(
         quantities = [f"effort:{drive}" for drive in efforts]
     regressor = Regressor.of(scene, tuple(quantities), names, EvaluationMethod(backend))
     drives = regressor.program.driven
-    if unknown_drives := [drive for drive in limits if drive not in drives]:
-        raise UnknownNameError("drive of limits=", unknown_drives, drives)
+    check_known("drive of limits=", limits, drives)
     if lost := [drive for drive in drives if drive not in limits]:
         raise DeclarationError(f"limits=: expected those of drive '{lost[0]}' too")
     p = np.array(list(values.values()))

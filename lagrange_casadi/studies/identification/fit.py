@@ -16,7 +16,7 @@ import numpy.typing as npt
 from ...base.arrays import Array
 from ...base.brief import Brief
 from ...base.units import differs
-from ...errors import AccuracyError, DeclarationError, UnknownNameError
+from ...errors import AccuracyError, DeclarationError, check_known
 from .base import Base, Ranking, base_of, triangle
 from .consistency import Consistency
 from .measurements import Measurements, filtered
@@ -119,8 +119,7 @@ class Data:
             if wrong := differs(measurements.units.get(name, unit), unit):
                 raise DeclarationError(f"{measurements.name}: column '{name}' is in {wrong}")
         columns, names = measurements.columns, regressor.quantities
-        if lost := [name for name in names if name not in columns]:
-            raise UnknownNameError("column", lost, columns, place=measurements.name)
+        check_known("column", names, columns, place=measurements.name)
         return cls(
             regressor,
             measurements.motion(regressor.program.driven, trim),

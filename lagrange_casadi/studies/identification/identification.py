@@ -13,7 +13,7 @@ from ...base.arrays import Array
 from ...base.brief import Brief
 from ...base.vocabulary import Backend
 from ...engine.instants.evaluation_method import EvaluationMethod
-from ...errors import DeclarationError, UnknownNameError
+from ...errors import DeclarationError, check_known
 from ...model.scene import Scene
 from ..case import Case, scene_of
 from .base import RANK, base_of
@@ -234,8 +234,7 @@ def identify(
     """
     scene = scene_of(scene)
     names = tuple(scene.parameters) if unknown is None else tuple(dict.fromkeys(unknown))
-    if lost := [name for name in prior or {} if name not in names]:
-        raise UnknownNameError("parameter of prior=", lost, names)
+    check_known("parameter of prior=", prior or {}, names)
     if wrong := [name for name, spread in (prior or {}).items() if not 0.0 < spread < math.inf]:
         raise DeclarationError(f"prior of '{wrong[0]}': expected a finite number above 0")
     drives = tuple(scene.laws)

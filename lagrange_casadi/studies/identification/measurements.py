@@ -17,7 +17,7 @@ from ...base.arrays import Array
 from ...base.brief import Brief
 from ...base.csv_table import Table, count_sizes
 from ...base.units import Unit, differs, known
-from ...errors import DeclarationError, UnknownNameError
+from ...errors import DeclarationError, check_known
 from ...model.curves import curve, derivatives
 from .regressor import MOTION, DrivenMotion
 
@@ -94,8 +94,7 @@ class Measurements(Brief):
                 )
             if not np.isfinite(values).any():
                 raise DeclarationError(f"{self.name}: column '{name}' has no values")
-        if unknown := [name for name in self.noise if name not in columns]:
-            raise UnknownNameError("column of noise=", unknown, columns, place=self.name)
+        check_known("column of noise=", self.noise, columns, place=self.name)
         if wrong := [name for name, noise in self.noise.items() if not 0.0 <= noise < math.inf]:
             raise DeclarationError(
                 f"{self.name}: noise of '{wrong[0]}': expected a number that is not negative, got"
@@ -148,8 +147,7 @@ class Measurements(Brief):
         """
         parts = []
         for drive in drives:
-            if drive not in self.columns:
-                raise UnknownNameError("column of a drive", drive, self.columns, place=self.name)
+            check_known("column of a drive", drive, self.columns, place=self.name)
             missing = np.full(self.t.size, np.nan)
             found = np.array([self.columns.get(f"{drive}{end}", missing) for end in MOTION])
             if self.noise.get(drive, 0.0) > 0.0:

@@ -27,7 +27,7 @@ from ...engine.program import Program
 from ...engine.reciprocals import differentiable
 from ...engine.section_function import Place
 from ...engine.section_stress import CrossSections
-from ...errors import AssemblyError, DeclarationError, UnknownNameError
+from ...errors import AssemblyError, DeclarationError, UnknownNameError, check_known
 from ...model.limits import END
 from ...model.scene import Scene
 from ...results.sensitivity.jacobian import total
@@ -104,9 +104,7 @@ class Regressor(Graphs, Brief):
         """
         if not unknown:
             raise DeclarationError("expected at least one unknown parameter, got none")
-        for name in unknown:
-            if name not in scene.parameters:
-                raise UnknownNameError("parameter", name, scene.parameters)
+        check_known("parameter", unknown, scene.parameters)
         program = compile_scene(scene, _wanted(scene, quantities))
         laws = program.data.laws
         t, p = laws.motion.sx_in()
@@ -286,16 +284,14 @@ def _quantity(
     if place.kind == "section":
         output = Output("section", place.link, place.member)
         return section[place.member], output.unit(data.kinds)
-    if place.link not in data.content.materials:
-        raise UnknownNameError("link with a beam", place.link, data.content.materials, place=name)
+    check_known("link with a beam", place.link, data.content.materials, place=name)
     link = data.link(place.link, p)
     assert link.beam is not None
     sections = CrossSections(link.beam, data.space)
     breaks = link.beam.course.breaks
     cell = int(np.clip(np.searchsorted(breaks, place.ratio, "right") - 1, 0, len(breaks) - 2))
     fibres = sections.fibres(cell).names
-    if place.member not in fibres:
-        raise UnknownNameError("fibre", place.member, fibres, place=name)
+    check_known("fibre", place.member, fibres, place=name)
     forces = [section[force] for force in sections.forces]
     normal, _, _ = sections.stresses(cell, place.ratio, [fibres.index(place.member)], forces)
     elasticity = link.beam.material.needs(f"quantity '{name}'", "elasticity")[0]

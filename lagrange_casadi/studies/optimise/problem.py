@@ -18,7 +18,7 @@ from ...base.vocabulary import Compiled
 from ...engine.identity import sources
 from ...engine.instants.evaluation_method import EvaluationMethod
 from ...engine.model_data import ModelData, template
-from ...errors import DeclarationError, UnknownNameError
+from ...errors import DeclarationError, UnknownNameError, check_known
 from ...model.scene import Scene, margins
 from ...model.times import Times, Timing
 from ...results.strength.fatigue import lacking, strengths
@@ -61,8 +61,7 @@ class Box:
             )
         names, low, high = tuple(over), [], []
         for name, bounds in over.items():
-            if name not in declared:
-                raise UnknownNameError("parameter", name, declared)
+            check_known("parameter", name, declared)
             if not isinstance(bounds, (tuple, list)) or len(bounds) != 2:
                 raise DeclarationError(
                     f"over: expected (least, largest) for '{name}', got {bounds!r}"

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...base.status import Status
 from ...base.units import Within
-from ...errors import DeclarationError, NoDesignError, UnknownNameError
+from ...errors import DeclarationError, NoDesignError, check_known
 from .problem import Problem
 from .sampled_design import EvaluatedDesign
 from .solver import Solver
@@ -34,8 +34,7 @@ def named(solver: Solver, starts: Sequence[Mapping[str, float]]) -> list[Evaluat
     for values in starts:
         p = box.p.copy()
         for name, value in values.items():
-            if name not in box.names:
-                raise UnknownNameError("parameter that is chosen", name, box.names)
+            check_known("parameter that is chosen", name, box.names)
             k = box.names.index(name)
             if not box.low[k] <= value <= box.high[k]:
                 raise DeclarationError(f"starts: {name} = {value!r} is not within its bounds")

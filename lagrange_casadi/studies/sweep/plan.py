@@ -21,7 +21,7 @@ from ...errors import (
     MobilityError,
     ParameterError,
     SizeError,
-    UnknownNameError,
+    check_known,
 )
 from ...model.even_points import checked_ratios
 from ...model.scene import STRENGTH, Scene
@@ -104,8 +104,7 @@ class Plan:
         Raises what :func:`.sweep` does.
         """
         fixed, method = request.parameters or {}, request.method
-        if keep not in KEEPS:
-            raise UnknownNameError("choice of what to keep", str(keep), KEEPS)
+        check_known("choice of what to keep", str(keep), KEEPS)
         check_designs(designs, scene.parameters, fixed)
         values, timing = scene.values(fixed), scene.timing(request.t, request.over)
         if designs.size > MOST:

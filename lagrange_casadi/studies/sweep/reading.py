@@ -27,6 +27,7 @@ from ...errors import (
     StoreError,
     UnknownNameError,
     check_kind,
+    check_known,
     one_line,
     shown,
 )
@@ -231,8 +232,7 @@ class Sweep:
             For anything else as value, and if no design has it; the message names the nearest.
         """
         chosen = dict(self.chosen)
-        if unknown := [name for name in values if name not in self.parameters]:
-            raise UnknownNameError("swept parameter", unknown, self.parameters)
+        check_known("swept parameter", values, self.parameters)
         for name, wanted in values.items():
             (axis,) = self._axes(name)
             there = replace(self, chosen=chosen)[name]
@@ -261,8 +261,7 @@ class Sweep:
         UnknownNameError
             If there is no such axis.
         """
-        if axis not in self.dimensions:
-            raise UnknownNameError("axis of designs", axis, self.dimensions)
+        check_known("axis of designs", axis, self.dimensions)
         check_kind("places", places, "a slice", slice)
         numbers = self.chosen.get(axis, np.arange(self.dimensions[axis]))
         return replace(self, chosen={**self.chosen, axis: numbers[places]})
@@ -471,8 +470,7 @@ class Sweep:
             For other axes, and for an axis with the name of a parameter.
         """
         for axis in along:
-            if axis not in self.axes:
-                raise UnknownNameError("axis", axis, self.axes)
+            check_known("axis", axis, self.axes)
             if axis in self.parameters:
                 raise DeclarationError(
                     f"parameter '{axis}' has the name of an axis: rows cannot go along both"

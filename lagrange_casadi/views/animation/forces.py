@@ -11,7 +11,7 @@ import numpy as np
 
 from ...base.arrays import Array
 from ...base.quantities import Output
-from ...errors import DeclarationError, UnknownNameError
+from ...errors import DeclarationError, check_known
 from ...results.solution import Solution
 from ..shapes.poses import Poses
 from ..shapes.readable import scale_for
@@ -159,8 +159,7 @@ def _vector(solution: Solution, group: str, name: str) -> Array | None:
 
 def _laws(solution: Solution, force: str) -> list[str]:
     """The links whose section force is known."""
-    if force not in solution.table.sections:
-        raise UnknownNameError("section force", force, solution.table.sections)
+    check_known("section force", force, solution.table.sections)
     links = [
         link
         for link in solution.links_with_sections

@@ -10,7 +10,7 @@ from itertools import product
 import numpy as np
 
 from ...base.quantities import Output
-from ...errors import DeclarationError, NoDesignError, UnknownNameError
+from ...errors import DeclarationError, NoDesignError, check_known
 from ...studies.sweep.axes import DESIGN
 from ...studies.sweep.reading import Sweep
 from .designs import Along, Front, Peaks, Spec
@@ -91,9 +91,7 @@ def default_plots(
 
 def _over(sweep: Sweep, over: tuple[str, ...], at: Mapping[str, float]) -> tuple[str, ...]:
     """The parameters to draw over; none where nothing varies."""
-    for name in (*over, *at):
-        if name not in sweep.parameters:
-            raise UnknownNameError("swept parameter", name, sweep.parameters)
+    check_known("swept parameter", (*over, *at), sweep.parameters)
     sweep.select(**at)
     changed, listed = varied(sweep), DESIGN in sweep.dimensions
     for name in over:
