@@ -244,6 +244,21 @@ def test_an_iterated_loop_has_the_same_rule(step, share, precision):
         )
 
 
+def test_so_have_designs_of_an_iterated_loop():
+    """Half of the drives pass the dead centre, half end before it."""
+    scene = four_bar(iterated=True)
+    given, passes = scene.mechanism.values(), []
+    for step in np.radians([6.0, 2.0, 0.3]):
+        for share in (0.2, 0.5, 0.9):
+            passes += [given | {"start": math.pi - (6 + share) * step, "rate": step * (COUNT - 1)}]
+    stays = [row | {"start": row["start"] - row["rate"]} for row in passes]
+    engine = DesignEngine.of(scene, method=EvaluationMethod("lanes"))
+    found = engine.evaluate(np.array([[*row.values()] for row in (*passes, *stays)])).status
+    told = {Status.PASSES_DEAD_CENTRE, Status.DEAD_CENTRE, Status.JUMPED, Status.SLOW}
+    assert {*found[:9].tolist()} <= told
+    assert (found[9:] == Status.OK).all()
+
+
 @pytest.mark.parametrize("iterated", [False, True])
 @pytest.mark.parametrize("at", [0.41, 0.4584, 0.5])
 def test_what_touches_and_turns_back_is_certified(at, iterated):
