@@ -159,8 +159,24 @@ def mixed(draw):
     return Curve(lambda t: sum(part.at(t) for part in parts), watched, places)
 
 
+def swinging(draw):
+    """A jump each time a wave passes a number."""
+    base, a, w = polynomial(draw), draw.uniform(-2, 2), draw.uniform(0.1, 0.9) / STEP
+    number, phase = draw.uniform(-0.9, 0.9), draw.uniform(0, 6)
+
+    def u(t):
+        return sine(w * t + phase)
+
+    turns = 2 * np.pi * np.arange(-4, 6) - phase
+    passes = np.concatenate([turns + np.arcsin(number), turns + np.pi - np.arcsin(number)]) / w
+    near = np.add.outer(passes[np.abs(passes) < 1], np.arange(-9, 10) * 1e-15).ravel()
+    return Curve(
+        lambda t: base(t) + a * (u(t) > number), ((Kind.SWITCH, (number,), u),), tuple(near)
+    )
+
+
 ALONE = (smooth, pole, root, switch, knot, steps, rate, soft, power)
-KINDS = {kind.__name__: kind for kind in (*ALONE, mixed)}
+KINDS = {kind.__name__: kind for kind in (*ALONE, mixed, swinging)}
 
 WORK = {
     "smooth": 61,
@@ -173,6 +189,7 @@ WORK = {
     "soft": 4554,
     "power": 1293,
     "mixed": 5355,
+    "swinging": 6884,
 }
 """Times at which the search evaluates forty drawn curves of each kind, those of the instants not
 counted. A search that takes fewer is better.
