@@ -387,3 +387,9 @@ def test_what_zigzags_by_rounding_is_not_searched():
     peaks, work = searched([Curve(zigzag)])
     assert peaks.resolved.all()
     assert work < 20
+
+
+def test_a_wild_curve_ends_its_own_search_alone():
+    wild = Curve(lambda t: (1e9 * (t + 1)).astype(int) * 2654435761 % 1009 / 1009)
+    calm = Curve(lambda t: t * (1 - t))
+    assert searched([wild, calm], (0, 1), (0, 1))[0].resolved.tolist() == [False, True]
