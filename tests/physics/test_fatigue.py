@@ -198,8 +198,10 @@ def test_any_amplitudes_out_of_phase_against_all_planes_one_by_one(share):
         across = normal * c * c + 2 * shear * c * s
         around = -normal * c * s + shear * (c * c - s * s)
         best = max(best, np.ptp(around) / 2 + share * max(across.max(), 0.0))
-    found = strength.critical_plane(history(normal, shear), share)
-    assert found.value(share) == pytest.approx(1e6 * best, rel=1e-5)
+    rows = history(normal, shear)
+    for along in ([0, 1, 2], [0, 2, 1]):  # shear along y, then along z
+        found = strength.critical_plane(rows[along], share)
+        assert found.value(share) == pytest.approx(1e6 * best, rel=1e-5)
 
 
 def by_goodman(rows):
