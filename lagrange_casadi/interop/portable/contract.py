@@ -33,8 +33,8 @@ FAINT = 1e-9
 """Relative size below which a value is written as zero, for its digits are rounding."""
 
 
-@dataclass(frozen=True)
-class Member:
+@dataclass(frozen=True, repr=False)
+class Member(Brief):
     """A member of a struct: its name in C, the full name of what it holds, and what a reader must
     know of it.
 
