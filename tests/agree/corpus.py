@@ -3,6 +3,8 @@ commits are judged.
 
 ``python tests corpus make`` writes a file for each mechanism: its declaration as text, and
 outputs, peaks, statuses and stated errors, of every fifth mechanism by every way to evaluate.
+Cases, scenes of ``every_way`` and mechanisms in space are told as calls of what declares them: of
+these the declaration is the one of the commit that reads it.
 ``check`` evaluates the text of one file in five, ``check --whole`` of every file. It prints what
 differs by more than the error that the commit of the corpus stated, and is not in ``allowed.txt``.
 """

@@ -65,3 +65,8 @@ def test_the_numbers_are_met(name):
         found = solve(instant.mechanism, instant.drives, instant.guess, instant.pushed)
         gaps = differences(instant, found, weighed=name not in COMPUTED)
         assert max(gaps.values()) < 2e-14, (k, gaps)
+        for joint, given in instant.data.get("published_child_axes", {}).items():
+            R = found.poses[instant.mechanism.joint(joint).child].R
+            printed = numbers([given["force"], given["torque"]])
+            gap = np.abs(found.reactions[joint].reshape(2, 3) @ R - printed).max()
+            assert gap < (5e-7 if name.startswith("sdfast") else 2e-11), (k, joint)
