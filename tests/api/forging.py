@@ -10,14 +10,17 @@ from internals import opening
 LISTS = ("DIMENSION_LIST", "REFERENCE_LIST")
 """What HDF5 keeps of axes: references, which are places in the file."""
 
+OWN = (*LISTS, "CLASS", "NAME")
+"""Attributes that HDF5 itself writes."""
+
 
 def attributes(file):
-    """Yield every attribute of a file but HDF5's own: its place, name and value."""
+    """Yield every attribute of a file but references: its place, name and value."""
     places = ["/"]
     file.visit(places.append)
     for place in places:
         for name, value in file[place].attrs.items():
-            if name not in (*LISTS, "CLASS", "NAME"):
+            if name not in LISTS:
                 yield place, name, value
 
 

@@ -18,7 +18,7 @@ import pytest
 import sweeps
 from commands import command
 from damaging import damaged
-from forging import LISTS, attributes, forging
+from forging import OWN, attributes, forging
 from places import TESTS
 from resealing import ONCE
 
@@ -148,7 +148,7 @@ def test_every_attribute_is_compared_with_something(
     """Each alone is changed; those that may be believed are listed, with the reason."""
     file, believed = source(kind, tmp_path, slider_crank, monkeypatch), []
     with h5py.File(file) as h:
-        told = [found for found in attributes(h) if found[1] not in ONCE[h.attrs["schema"]]]
+        told = [one for one in attributes(h) if one[1] not in {*OWN, *ONCE[h.attrs["schema"]]}]
     whole = file.read_bytes()
     for place, name, value in told if count is None else random.Random(1).sample(told, count):
         file.write_bytes(whole)
@@ -186,7 +186,7 @@ def another_tree(tree, chance):
 
 def forge_attribute(h, place, chance):
     """Another value of an attribute of a place, or none."""
-    name = chance.choice([name for name in h[place].attrs if name not in (*LISTS, "CLASS", "NAME")])
+    name = chance.choice([name for name in h[place].attrs if name not in OWN])
     told, value = h[place].attrs[name], chance.choice(VALUES)
     if chance.random() < 0.1:
         del h[place].attrs[name]
@@ -212,7 +212,7 @@ def forge_dataset(h, place, chance):
     piped = {"shape": shape, "dtype": float, "external": [("pipe", 0, 8 * max(shape, default=1))]}
     data = {"data": np.full(shape, chance.choice(NUMBERS))}
     new = h.create_dataset(place, **chance.choice([data, data, data, huge, piped]))
-    for name in told.keys() - {*LISTS, "CLASS", "NAME"}:
+    for name in told.keys() - {*OWN}:
         new.attrs[name] = told[name]
 
 
