@@ -141,6 +141,16 @@ OPEN = {
         {},
         r"joint '\w+' is at a dead centre at t = 1 s, where guide = 0\.45 m",
     ),
+    "at a dead centre, in singles": (
+        lambda: stretched(Mechanism.revolute),
+        {"precision": "single"},
+        r"joint '\w+' is at a dead centre at t = 1 s",
+    ),
+    "at a dead centre, of two instants": (
+        lambda: stretched(Mechanism.revolute),
+        {"t": (0, 1, 2)},
+        r"joint '\w+' is at a dead centre at t = 1 s",
+    ),
     "at one that is iterated": (
         lambda: stretched(pinned),
         {"newton": 24},

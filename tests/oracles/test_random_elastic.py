@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 from elastic_mechanisms import work
 from random_mechanisms import draw
+from spatial_bridge import declared, plain
+from spatial_mechanisms import FAMILIES
 
-from lagrange_casadi import Mechanism, beams, evaluate
+from lagrange_casadi import Mechanism, SpatialMechanism, beams, evaluate
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -34,8 +36,9 @@ def made(monkeypatch):
             **given if "centre" in given else {"beam": beams.Beam(next(shapes), STEEL), **given},
         )
 
-    beams_of = functools.partialmethod(functools.partial(with_beam, Mechanism.link))
-    monkeypatch.setattr(Mechanism, "link", beams_of)
+    for kind in (Mechanism, SpatialMechanism):
+        beams_of = functools.partialmethod(functools.partial(with_beam, kind.link))
+        monkeypatch.setattr(kind, "link", beams_of)
 
 
 def least(scene, given):
@@ -67,3 +70,8 @@ def test_random_mechanisms(made, seed):
     start, stop, count = drawn.grid
     given = {"parameters": drawn.keywords.get("parameters"), "t": (start, stop, min(count, 5))}
     assert all(least(drawn.scene(), given))
+
+
+@pytest.mark.long
+def test_a_loop_in_space(made):
+    assert all(least(declared(plain(FAMILIES["bennett"](0))), {"t": (0, 0.05, 3)}))
