@@ -172,7 +172,6 @@ PLACES = {
 SCENES = pytest.mark.parametrize("scene", PLACES)
 
 
-@pytest.mark.sampled(2)
 @SCENES
 def test_parameters_with_a_corner_are_refused_by_every_way(scene, tmp_path):
     """And others beside them have their results."""

@@ -171,7 +171,8 @@ def test_a_wrong_derivation_is_noticed(name, monkeypatch):
     # What the residual is of the largest force is a part of each force that may be wrong.
     effort = next(name for name in solution.names() if name.startswith("effort"))
     off = solution.errors[effort] / abs(solution.peak(effort).value)
-    assert residual == "closure" or off == pytest.approx(np.max(solution.certificate["balance"]))
+    balance = np.max(solution.certificate["balance"])
+    assert residual == "closure" or (off == pytest.approx(balance) and off > 1e-6)
 
 
 @pytest.mark.parametrize("precision", ["double", "single"])

@@ -160,9 +160,10 @@ MJCF = """<mujoco><worldbody><body name="a">
 <geom size="0.1" pos="0.1 0.2 0"/></body></body></worldbody></mujoco>"""
 
 
-def test_a_drive_has_the_lesser_of_two_limits(arm):
+def test_a_drive_has_its_armature_and_the_lesser_of_two_limits(arm):
     pytest.importorskip("mujoco")
-    assert arm(MJCF, "arm.xml").mechanism.drives["q1_drive"].effort == 30.0
+    drive = arm(MJCF, "arm.xml").mechanism.drives["q1_drive"]
+    assert (drive.effort, drive.armature) == (30.0, 0.3)
 
 
 LEGS = {"FL": (0.2, 1), "FR": (0.2, -1), "RL": (-0.2, 1), "RR": (-0.2, -1)}

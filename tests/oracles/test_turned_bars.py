@@ -6,6 +6,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from exported import by_c99, exported, instants
 from internals import Output, certify
 from reports import held
 from spatial_oracle import SECTION
@@ -123,6 +124,13 @@ def swept(scene, folder):
     return [float(np.squeeze(found[name])) for name in (*least, "life:rod")]
 
 
+def sized(scene, folder):
+    tall = scene.mechanism.parameters["h"].default == EDGE
+    sides = [(x, 0.01) if tall else (0.01, x) for x in (0.02, 0.03, 0.04)]
+    profiles = [Profile(f"{h} x {w}", {"height": h, "width": w}) for h, w in sides]
+    return [v.factor for v in size(scene, profiles, safety=0.01).links[0].safety.verdicts]
+
+
 def written(scene, folder):
     """A file, and a report."""
     solution = evaluate(scene)
@@ -134,7 +142,17 @@ def written(scene, folder):
     return [shown["stress:rod"], shown["deflection:rod"], kept]
 
 
-@pytest.mark.parametrize("asked", [evaluated, swept, written], ids=lambda asked: asked.__name__)
+def exported_c(scene, folder):
+    _, told = exported(dataclasses.replace(scene, wanted=["stress:rod", "deflection:rod"]), folder)
+    rows = by_c99(folder, told, instants(np.linspace(0.0, 0.5, 5), "double"))
+    names = [row["name"] for row in told["outputs"]]
+    chosen = [name.startswith(("stress", "deflection")) for name in names]
+    return rows[:, : len(names)][:, chosen]
+
+
+@pytest.mark.parametrize(
+    "asked", [evaluated, swept, sized, written, exported_c], ids=lambda asked: asked.__name__
+)
 def test_all_that_follows_is_about_the_same_axes(asked, tmp_path):
     """The bar on edge told in two ways, and the bar that lies flat."""
     told = {"edge": (UP, EDGE, FLAT), "same": (ACROSS, FLAT, EDGE), "flat": (ACROSS, EDGE, FLAT)}
