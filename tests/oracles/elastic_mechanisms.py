@@ -2,13 +2,11 @@
 
 import numpy as np
 from internals import Compliance, Member, nodes
-from mechanisms import pins_of
 
-from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams
+from lagrange_casadi import Mechanism, Scene, beams
 from lagrange_casadi.motion import harmonic
 
 STEEL = beams.material("S235")
-LIGHT = STEEL.but(density=1e-9)
 
 
 def made(shape, material=STEEL):
@@ -39,22 +37,6 @@ def held(**forces):
     m.weld("B", m.ground.at(2.0, 0), bar.tip)
     m.force("push", bar.at(0.6), **forces)
     return Scene(m, {}, t=(0, 0, 1), xi=(0, 1, 5), elastic=True)
-
-
-def four_bar(axis=(0, 0, 1), third=None):
-    """A planar four-bar of pins in space, loaded aside, with links that are not round."""
-    m = SpatialMechanism("four_bar")
-    parts = {
-        "a": m.link("a", length=0.1, beam=made(beams.rectangle(0.03, 0.012))),
-        "b": m.link("b", length=0.3, beam=made(beams.rectangle(0.02, 0.01))),
-        "c": m.link("c", length=0.25, beam=third or made(beams.tube(0.02, 0.003))),
-    }
-    a, b, c = parts.values()
-    pins_of(
-        m, axis=axis, O=(m.ground, a), A=(a.tip, b), B=(b.tip, c.tip), C=(m.ground.at(0.3, 0, 0), c)
-    )
-    m.force("side", b.at(0.15), x=20.0, z=100.0)
-    return m
 
 
 def three_cranks(beam, bar=None, elastic=True):
