@@ -50,8 +50,8 @@ typedef struct {
   fmi2CallbackAllocateMemory allocate;
   fmi2CallbackFreeMemory release;
   fmi2ComponentEnvironment environment;
-  char* name;
   int discards; /* whether to log them */
+  char name[];
 } Unit;
 
 static const double start[VALUES] = {

@@ -1,3 +1,8 @@
+/* Arguments are the interface's, of use here or not. */
+#ifdef __GNUC__
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#endif
+
 /* ---- For Model Exchange and Co-Simulation ---- */
 
 const char* fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
@@ -21,51 +26,30 @@ fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t many, con
 fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources,
                               const fmi2CallbackFunctions* functions, fmi2Boolean visible, fmi2Boolean logging) {
   Unit* unit;
-  Unit made;
-  size_t length;
-  (void) type;
-  (void) resources;
-  (void) visible;
-  (void) logging; /* failures are always logged */
+  /* Failures are logged, whatever logging says. */
   if (!functions || !functions->allocateMemory || !functions->freeMemory || !name) return NULL;
-  reset(&made.state);
-  made.logger = functions->logger;
-  made.allocate = functions->allocateMemory;
-  made.release = functions->freeMemory;
-  made.environment = functions->componentEnvironment;
-  made.discards = 1;
-  length = strlen(name) + 1;
-  made.name = (char*) made.allocate(length, 1);
-  if (!made.name) return NULL;
-  memcpy(made.name, name, length);
-  if (!guid || strcmp(guid, GUID) != 0) {
-    report(&made, fmi2Error, "the GUID differs from that of this unit: ", guid ? guid : "none");
-    made.release(made.name);
-    return NULL;
-  }
-  unit = (Unit*) made.allocate(1, sizeof *unit);
-  if (!unit) {
-    made.release(made.name);
-    return NULL;
-  }
-  *unit = made;
-  return unit;
+  unit = (Unit*) functions->allocateMemory(1, sizeof *unit + strlen(name) + 1);
+  if (!unit) return NULL;
+  reset(&unit->state);
+  unit->logger = functions->logger;
+  unit->allocate = functions->allocateMemory;
+  unit->release = functions->freeMemory;
+  unit->environment = functions->componentEnvironment;
+  unit->discards = 1;
+  strcpy(unit->name, name);
+  if (guid && strcmp(guid, GUID) == 0) return unit;
+  report(unit, fmi2Error, "the GUID differs from that of this unit: ", guid ? guid : "none");
+  unit->release(unit);
+  return NULL;
 }
 
 void fmi2FreeInstance(fmi2Component c) {
-  Unit* unit = (Unit*) c;
-  if (!unit) return;
-  unit->release(unit->name);
-  unit->release(unit);
+  if (c) ((Unit*) c)->release(c);
 }
 
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean tolerance_defined, fmi2Real tolerance, fmi2Real start_time,
                                fmi2Boolean stop_defined, fmi2Real stop) {
   Unit* unit = (Unit*) c;
-  (void) tolerance_defined;
-  (void) tolerance;
-  (void) stop_defined;
-  (void) stop;
   if (out_of_order(unit, INSTANTIATED, "fmi2SetupExperiment")) return fmi2Error;
   set_time(&unit->state, start_time);
   unit->state.reached = start_time;
@@ -136,13 +120,9 @@ $check    state->values[vr[i]] = value[i];
 
 #define NONE_OF(Type)                                                                                                        \
   fmi2Status fmi2Get##Type(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2##Type value[]) {                 \
-    (void) vr;                                                                                                               \
-    (void) value;                                                                                                            \
     return nvr == 0 ? fmi2OK : unsupported(c, "fmi2Get" #Type);                                                              \
   }                                                                                                                          \
   fmi2Status fmi2Set##Type(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2##Type value[]) {           \
-    (void) vr;                                                                                                               \
-    (void) value;                                                                                                            \
     return nvr == 0 ? fmi2OK : unsupported(c, "fmi2Set" #Type);                                                              \
   }
 
@@ -172,34 +152,20 @@ fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate* kept) {
 }
 
 fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate kept, size_t* size) {
-  (void) kept;
-  (void) size;
   return unsupported(c, "fmi2SerializedFMUstateSize");
 }
 
 fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate kept, fmi2Byte bytes[], size_t size) {
-  (void) kept;
-  (void) bytes;
-  (void) size;
   return unsupported(c, "fmi2SerializeFMUstate");
 }
 
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate* kept) {
-  (void) bytes;
-  (void) size;
-  (void) kept;
   return unsupported(c, "fmi2DeSerializeFMUstate");
 }
 
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknown[], size_t unknowns,
                                         const fmi2ValueReference known[], size_t knowns, const fmi2Real change[],
                                         fmi2Real derivative[]) {
-  (void) unknown;
-  (void) unknowns;
-  (void) known;
-  (void) knowns;
-  (void) change;
-  (void) derivative;
   return unsupported(c, "fmi2GetDirectionalDerivative");
 }
 
@@ -217,7 +183,6 @@ fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) {
 }
 
 fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean last, fmi2Boolean* event, fmi2Boolean* terminate) {
-  (void) last;
   *event = *terminate = fmi2False;
   return out_of_order((Unit*) c, RUNNING, "fmi2CompletedIntegratorStep") ? fmi2Error : fmi2OK;
 }
@@ -230,13 +195,11 @@ fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time) {
 }
 
 fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t nx) {
-  (void) x;
   return nx == 0 ? fmi2OK : unsupported(c, "fmi2SetContinuousStates");
 }
 
 #define NO_NUMBERS(Function)                                                                                                 \
   fmi2Status Function(fmi2Component c, fmi2Real x[], size_t many) {                                                          \
-    (void) x;                                                                                                                \
     return many == 0 ? fmi2OK : unsupported(c, "a state or event");                                                          \
   }
 
@@ -249,24 +212,17 @@ NO_NUMBERS(fmi2GetNominalsOfContinuousStates)
 
 fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Integer order[],
                                        const fmi2Real value[]) {
-  (void) vr;
-  (void) order;
-  (void) value;
   return nvr == 0 ? fmi2OK : unsupported(c, "fmi2SetRealInputDerivatives");
 }
 
 fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Integer order[],
                                         fmi2Real value[]) {
-  (void) vr;
-  (void) order;
-  (void) value;
   return nvr == 0 ? fmi2OK : unsupported(c, "fmi2GetRealOutputDerivatives");
 }
 
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real now, fmi2Real step, fmi2Boolean no_return) {
   Unit* unit = (Unit*) c;
   fmi2Status status;
-  (void) no_return;
   if (out_of_order(unit, RUNNING, "fmi2DoStep")) return fmi2Error;
   set_time(&unit->state, now + step);
   status = update(unit);
@@ -281,12 +237,12 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real now, fmi2Real step, fmi2Boolean 
 fmi2Status fmi2CancelStep(fmi2Component c) { return unsupported(c, "fmi2CancelStep"); }
 
 /* Nothing is ever pending. */
-fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Status* value) {
-  (void) c;
-  (void) kind;
-  (void) value;
-  return fmi2Discard;
-}
+#define NEVER(Kind, Type)                                                                                                    \
+  fmi2Status fmi2Get##Kind(fmi2Component c, const fmi2StatusKind kind, Type* value) { return fmi2Discard; }
+
+NEVER(Status, fmi2Status)
+NEVER(IntegerStatus, fmi2Integer)
+NEVER(StringStatus, fmi2String)
 
 fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Real* value) {
   if (kind != fmi2LastSuccessfulTime) return fmi2Discard;
@@ -294,23 +250,8 @@ fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Rea
   return fmi2OK;
 }
 
-fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Integer* value) {
-  (void) c;
-  (void) kind;
-  (void) value;
-  return fmi2Discard;
-}
-
 fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Boolean* value) {
-  (void) c;
   if (kind != fmi2Terminated) return fmi2Discard;
   *value = fmi2False;
   return fmi2OK;
-}
-
-fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind kind, fmi2String* value) {
-  (void) c;
-  (void) kind;
-  (void) value;
-  return fmi2Discard;
 }
