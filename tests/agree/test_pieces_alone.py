@@ -77,7 +77,7 @@ KINDS = {
 def library():
     """A function for each kind, of its columns, its matter, and its values and places."""
     links = [kind.along for kind in KINDS.values()]
-    macros = {"ROOT": "sqrt", "FABS": "fabs", "HALF": "0.5", "CLOSE": 2.0**-26, "END": END}
+    macros = {"ROOT": "sqrt", "HALF": "0.5", "CLOSE": 2.0**-26, "END": END}
     text = compiler.start("double")
     text += "".join(f"#define DESIGNS_{name} {value}\n" for name, value in macros.items())
     text += along_links.pieces(links)

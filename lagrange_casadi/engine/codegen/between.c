@@ -52,7 +52,7 @@ static search_real search_floor(search_real x) { return x - x == 0 ? (search_rea
 #define SEARCH_MANY 100
 #define SEARCH_NUMBERED(kind) ((kind) == SEARCH_IS_SWITCH || (kind) == SEARCH_IS_KNOT)
 static int search_kinks(const search_now* now, const search_panel* panel, int watch, long long i, int bent) {
-  const search_real *row = search_watched(panel, watch), *at = now->curves->watch_at + now->curves->watch_first[watch];
+  const search_real *row = search_watched(now, panel, watch), *at = now->curves->watch_at + now->curves->watch_first[watch];
   const search_real a = row[i], b = row[i + 1], least = search_lower(a, b), most = search_upper(b, a);
   const int kind = now->curves->watch[watch], count = now->curves->watch_first[watch + 1] - now->curves->watch_first[watch];
   const long long n = panel->n;
@@ -169,21 +169,22 @@ static int search_depends(const search_now* now, int watch, int quantity) {
   return now->curves->depends[watch*now->curves->quantities + quantity];
 }
 
-/* Whether what is found at a time counts for a quantity: where one of the watched that it depends on may be on a side by rounding, that
+/* Whether what is found at a time of a panel counts for a quantity: where one of the watched that it depends on may be on a side by rounding, that
    must be one that it has at an instant before or after, or the number between both. */
-static int search_counts(const search_now* now, int quantity, double t, const search_real* watched, long long apart) {
-  const double x = (t - now->t[0])/(2*now->half);
+static int search_counts(const search_now* now, int quantity, const search_panel* panel, long long at) {
+  const double x = (panel->t[at] - now->all.t[0])/(2*now->half);
   long long i = now->step >= 0 ? now->step : x > 0 ? (long long) x : 0;
-  search_real side, ends[2];
+  search_real value, side, ends[2];
   int j, k, seen;
-  i = i < now->n - 2 ? i : now->n - 2;
+  i = i < now->all.n - 2 ? i : now->all.n - 2;
   for (k = 0; k < now->curves->watches; ++k) {
     const int kind = now->curves->watch[k];
     if ((kind != SEARCH_IS_SWITCH && kind != SEARCH_IS_STEP) || now->ignored[k] || !search_depends(now, k, quantity)) continue;
-    if (now->step >= 0 && !(now->noise[k] > 0 && search_gap(now, k, watched[k*apart]) <= now->noise[k])) continue;
-    side = search_side(now, k, watched[k*apart]);
+    value = search_watched(now, panel, k)[at];
+    if (now->step >= 0 && !(now->noise[k] > 0 && search_gap(now, k, value) <= now->noise[k])) continue;
+    side = search_side(now, k, value);
     for (seen = j = 0; j < 2; ++j) {
-      ends[j] = search_side(now, k, search_watched(&now->all, k)[i + j]);
+      ends[j] = search_side(now, k, search_watched(now, &now->all, k)[i + j]);
       seen |= side == ends[j];
       seen |= now->step >= 0 && side == now->sides[2*k + j];
     }
@@ -202,10 +203,10 @@ static double search_beside(const search_now* now, const search_panel* panel) {
 /* Whether one of the watched may be at a number at which it switches in more than a point of a step between instants: it comes near
    to one, but does not go on from one side to another. */
 static int search_lingers(const search_now* now, int watch, long long step) {
-  const search_real *row = search_watched(&now->all, watch) + step, change = search_magnitude(row[1] - row[0]);
+  const search_real *row = search_watched(now, &now->all, watch) + step, change = search_magnitude(row[1] - row[0]);
   const search_real gap = search_lower(search_gap(now, watch, row[0]), search_gap(now, watch, row[1]));
   search_real low = search_lower(row[0], row[1]), high = search_upper(row[0], row[1]);
-  const long long before = step > 0 ? -1 : 0, after = step + 2 < now->n ? 2 : 1;
+  const long long before = step > 0 ? -1 : 0, after = step + 2 < now->all.n ? 2 : 1;
   const search_real apart = search_side(now, watch, row[before]) - search_side(now, watch, row[after]);
   low = search_lower(low, search_lower(row[before], row[after]));
   high = search_upper(high, search_upper(row[before], row[after]));
@@ -217,10 +218,10 @@ static int search_lingers(const search_now* now, int watch, long long step) {
    and on which sides it is beyond that, before and after. */
 static void search_measure(search_now* now, long long step) {
   const search_panel* all = &now->all;
-  const int rows = search_rows(now), watches = (int) now->curves->watches;
+  const int watches = (int) now->curves->watches;
   const double beside = search_beside(now, all);
   double t[2*SEARCH_QUIET];
-  search_real near[2*SEARCH_QUIET];
+  const search_panel near = search_few(t, 2*SEARCH_QUIET, now->found);
   long long at;
   int j, k, any = 0;
   for (k = 0; k < watches; ++k) {
@@ -234,15 +235,14 @@ static void search_measure(search_now* now, long long step) {
     t[j] = all->t[step] + j*beside;
     t[SEARCH_QUIET + j] = all->t[step + 1] - j*beside;
   }
-  search_columns_at(now, t, 2*SEARCH_QUIET, 0, now->near);
+  search_evaluate(now, &near, 0, 2*SEARCH_QUIET, 0);
   for (k = 0; k < watches; ++k) {
-    const search_real* row = search_watched(all, k);
+    const search_real *row = search_watched(now, all, k), *ends = search_watched(now, &near, k);
     if (!search_is_switching(now, k)) continue;
-    for (j = 0; j < 2*SEARCH_QUIET; ++j) near[j] = now->near[(j + 1)*rows - watches + k];
-    now->noise[k] = search_upper(search_shaken(near, 0, SEARCH_QUIET, 1), search_shaken(near + SEARCH_QUIET, 0, SEARCH_QUIET, 1));
+    now->noise[k] = search_upper(search_shaken(ends, 0, SEARCH_QUIET, 1), search_shaken(ends + SEARCH_QUIET, 0, SEARCH_QUIET, 1));
     for (at = step; at > 0 && search_gap(now, k, row[at]) <= now->noise[k]; --at) {}
     now->sides[2*k] = search_side(now, k, row[at]);
-    for (at = step + 1; at < now->n - 1 && search_gap(now, k, row[at]) <= now->noise[k]; ++at) {}
+    for (at = step + 1; at < all->n - 1 && search_gap(now, k, row[at]) <= now->noise[k]; ++at) {}
     now->sides[2*k + 1] = search_side(now, k, row[at]);
   }
 }
@@ -250,7 +250,7 @@ static void search_measure(search_now* now, long long step) {
 /* Whether one of the watched hides nothing in a step, where rounding decides, at both ends of it or of a step beside, on which side of a
    number it is. */
 static int search_undecided(const search_now* now, const search_panel* panel, int watch, long long step) {
-  const search_real *row = search_watched(panel, watch), noise = now->noise[watch];
+  const search_real *row = search_watched(now, panel, watch), noise = now->noise[watch];
   long long i;
   if (now->step < 0 || !(noise > 0) || step < 0 || step > panel->n - 2) return 0;
   for (i = step > 0 ? step - 1 : 0; i < step + 2 && i < panel->n - 1; ++i) {
@@ -268,12 +268,33 @@ static int search_switches(const search_now* now, const search_panel* panel, int
   return 0;
 }
 
-/* Take in what all curves are at a time, from a column. */
-static void search_note_column(search_now* now, double t, const search_real* column) {
-  const search_real *places = column + now->curves->curves, *watched = places + now->curves->places;
+/* Take in a value of a curve, and return whether it counts; what is nothing has its peak at an instant. */
+static int search_note(search_now* now, const search_panel* panel, int curve, long long i) {
+  search_peak* peak = now->peaks + now->quantity[curve];
+  const search_real value = search_row(panel, curve)[i], size = search_magnitude(value);
+  const double t = panel->t[i];
+  if (!search_counts(now, now->quantity[curve], panel, i)) return 0;
+  if (!(size - size == 0) || search_lacks(now, curve, t)) return 1;
+  if (now->call->tops) search_list_top(now, panel, curve, i);
+  if (size > peak->best) {
+    search_grow(now, now->quantity[curve], size);
+    if (peak->size >= size - peak->rounding && peak->t < t - now->half) return 1;
+  } else if (!(peak->limit <= SEARCH_LARGEST && size >= peak->best - peak->rounding && t < peak->t - now->half)) {
+    return 1;
+  }
+  peak->size = size;
+  peak->t = t;
+  peak->place = search_ratio(now, panel, curve, i);
+  peak->sign = value < 0 ? -1 : 1;
+  return 1;
+}
+
+/* Take in all of a panel of a few times. */
+static void search_note_all(search_now* now, const search_panel* panel) {
+  long long i;
   int k;
-  for (k = 0; k < now->curves->curves; ++k) {
-    if (search_counts(now, now->quantity[k], t, watched, 1)) search_note(now, k, column[k], t, search_ratio(now, k, places, 1));
+  for (i = 0; i < panel->n; ++i) {
+    for (k = 0; k < now->curves->curves; ++k) search_note(now, panel, k, i);
   }
 }
 
@@ -282,6 +303,7 @@ static void search_note_column(search_now* now, double t, const search_real* col
 static long long search_toward_ends(search_now* now, const search_panel* panel, int watch, long long step) {
   long long first = step, last = step;
   double t[2*SEARCH_INNER], width;
+  const search_panel near = search_few(t, 2*SEARCH_INNER, now->found);
   int j;
   while (search_undecided(now, panel, watch, first - 1)) --first;
   while (search_undecided(now, panel, watch, last + 1)) ++last;
@@ -291,8 +313,8 @@ static long long search_toward_ends(search_now* now, const search_panel* panel, 
     t[j] = panel->t[first] + width;
     t[SEARCH_INNER + j] = panel->t[last + 1] - width;
   }
-  search_columns_at(now, t, 2*SEARCH_INNER, ~0ull, now->near);
-  for (j = 0; j < 2*SEARCH_INNER; ++j) search_note_column(now, t[j], now->near + j*search_rows(now));
+  search_evaluate(now, &near, 0, 2*SEARCH_INNER, ~0ull);
+  search_note_all(now, &near);
   return last;
 }
 
@@ -307,13 +329,13 @@ static int search_is_sharp(search_real* row, long long n, int kind, double step)
   for (i = 0; i < n; i += LANES) {
     memcpy(&here, row + i, sizeof here);
     if (kind == SEARCH_IS_RATE) {
-      if (lanes_where_less(rate, search_size(here))) return 1;
+      if (lanes_where_less(rate, lanes_size(here))) return 1;
       continue;
     }
     memcpy(&before, row + i - 1, sizeof here);
     memcpy(&after, row + i + 1, sizeof here);
     bend = before - here + (after - here);
-    if (lanes_where_less(search_size(here), 16*search_size(bend)) || lanes_where_less(here*after, SEARCH_LEAST)) return 1;
+    if (lanes_where_less(lanes_size(here), 16*lanes_size(bend)) || lanes_where_less(here*after, SEARCH_LEAST)) return 1;
   }
   return 0;
 }
@@ -350,7 +372,7 @@ static void search_hide(search_now* now, const search_panel* panel, int depth) {
     any = depth < SEARCH_FINEST;
   }
   for (k = 0; k < curves->watches; ++k) {
-    search_real* row = search_watched(panel, k);
+    search_real* row = search_watched(now, panel, k);
     const int kind = curves->watch[k];
     if (now->ignored[k] || !search_is_sharp(row, panel->n, kind, search_width(panel))) continue;
     for (sampled = -1, i = 0; i < steps; ++i) {

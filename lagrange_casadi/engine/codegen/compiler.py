@@ -78,8 +78,10 @@ _START = (
 #define LAGRANGE_CASADI_C
 #ifdef LANES_SINGLE
 #define lanes_real float
+#define lanes_size fabsf
 #else
 #define lanes_real double
+#define lanes_size fabs
 #endif
 #define lanes_pack lanes_real
 #define lanes_choose(where, a) ((where) ? (a) : 0)

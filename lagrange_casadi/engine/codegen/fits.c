@@ -9,10 +9,14 @@
 /* How far from a kink, in steps, both its sides are looked at. */
 #define SEARCH_ASIDE ((search_real) 1e-2)
 
+typedef union {
+  lanes_pack pack;
+  search_real lane[LANES];
+} search_lanes;
+
 /* Seven values at equal steps, where to begin, and bounds, in steps from the middle one; then what a polynomial through them says. */
 typedef struct {
-  search_real y[SEARCH_FIT][LANES], x[LANES], low[LANES], high[LANES];
-  search_real size[LANES], slope[LANES], curve[LANES], steep[LANES], rough[LANES];
+  search_lanes y[SEARCH_FIT], x, low, high, size, slope, curve, steep, rough;
 } search_fit;
 
 /* A value of a panel beside which a curve may rise: where to look, and what is expected there: its size, and the size's slope and
@@ -27,17 +31,15 @@ typedef struct {
 } search_summit;
 
 static void search_solve(search_fit* fit) {
-  lanes_pack y[SEARCH_FIT], a[SEARCH_FIT], d[4], o[4], x, low, high, slope, curve, square;
+  const search_lanes* middle = fit->y + 3;
+  const lanes_pack low = fit->low.pack, high = fit->high.pack;
+  lanes_pack a[SEARCH_FIT], d[4], o[4], x = fit->x.pack, slope, curve, square;
   int k, trial;
-  memcpy(y, fit->y, sizeof y);
-  memcpy(&x, fit->x, sizeof x);
-  memcpy(&low, fit->low, sizeof x);
-  memcpy(&high, fit->high, sizeof x);
   for (k = 1; k < 4; ++k) {
-    d[k] = SEARCH_HALF*(y[3 + k] + y[3 - k]) - y[3];
-    o[k] = SEARCH_HALF*(y[3 + k] - y[3 - k]);
+    d[k] = SEARCH_HALF*(middle[k].pack + middle[-k].pack) - middle->pack;
+    o[k] = SEARCH_HALF*(middle[k].pack - middle[-k].pack);
   }
-  a[0] = y[3];
+  a[0] = middle->pack;
   a[1] = (45*o[1] - 9*o[2] + o[3])*((search_real) 1/30);
   a[2] = (270*d[1] - 27*d[2] + 2*d[3])*((search_real) 1/180);
   a[3] = (8*o[2] - 13*o[1] - o[3])*((search_real) 1/24);
@@ -52,16 +54,13 @@ static void search_solve(search_fit* fit) {
     x = lanes_less(low, x, lanes_less(x, high, x, high), low);
   }
   square = x*x;
-  y[0] = a[0] + x*(a[1] + x*(a[2] + x*(a[3] + x*(a[4] + x*(a[5] + x*a[6])))));
+  fit->x.pack = x;
+  fit->size.pack = a[0] + x*(a[1] + x*(a[2] + x*(a[3] + x*(a[4] + x*(a[5] + x*a[6])))));
+  fit->slope.pack = slope;
+  fit->curve.pack = curve;
   /* The product of x - j over the seven places j, and its slope. */
-  y[1] = (((7*square - 70)*square + 147)*square - 36)/(x*(((square - 14)*square + 49)*square - 36));
-  memcpy(fit->x, &x, sizeof x);
-  memcpy(fit->size, y, sizeof x);
-  memcpy(fit->slope, &slope, sizeof x);
-  memcpy(fit->curve, &curve, sizeof x);
-  memcpy(fit->steep, y + 1, sizeof x);
-  y[2] = search_size(720*a[6]);
-  memcpy(fit->rough, y + 2, sizeof x);
+  fit->steep.pack = (((7*square - 70)*square + 147)*square - 36)/(x*(((square - 14)*square + 49)*square - 36));
+  fit->rough.pack = lanes_size(720*a[6]);
 }
 
 /* The first of seven values around value j of count, as far in the middle as there are. */
@@ -72,9 +71,9 @@ static long long search_window(long long j, long long count) {
 /* Begin at value j of count, around which the first of the seven is given; an end keeps a little inside. */
 static void search_begin(search_fit* fit, int lane, long long j, long long first, long long count) {
   const search_real from = (search_real) (j - first - 3), off = (search_real) 1e-5;
-  fit->x[lane] = from;
-  fit->low[lane] = j == 0 ? from + off : from - 1;
-  fit->high[lane] = j == count - 1 ? from - off : from + 1;
+  fit->x.lane[lane] = from;
+  fit->low.lane[lane] = j == 0 ? from + off : from - 1;
+  fit->high.lane[lane] = j == count - 1 ? from - off : from + 1;
 }
 
 /* What a polynomial through seven values, of which the first is that at an end, says of the step there: its value in the middle, and

@@ -6,13 +6,12 @@
 /* What has no place along a link, and what is at its ends. */
 enum { SEARCH_AT_BASE = -1, SEARCH_AT_TIP = -2 };
 
-/* The largest size of a quantity that is known, and at the instants; and the first that is as large but for rounding: its size, with
-   its sign, its time and its ratio xi/l. least is what a summit must reach that matters. going is its size where it grows on and no
-   end of that is found. base is what values are counted from. Open: not searched. unlocated: the search would take too many
-   panels, and has ended. */
+/* The largest size of a quantity that is known; and the first that is as large but for rounding: its size, with its sign, its time and
+   its ratio xi/l. least is what a summit must reach that matters, going its size where it grows on and no end of that is found, base
+   what values are counted from. Open: not searched. unlocated: the search would take too many panels, and has ended. */
 typedef struct {
   double t;
-  search_real best, rounding, least, limit, sampled, size, place, sign, going, base;
+  search_real best, rounding, least, limit, size, place, sign, going, base;
   int open, unlocated;
 } search_peak;
 
@@ -21,26 +20,25 @@ typedef struct {
 typedef struct {
   long long n, stride;
   const double* t;
-  search_real *rows, *watched;
+  search_real* rows;
   signed char *hiding, *kinks;
 } search_panel;
 
 enum { SEARCH_HIDES = 1, SEARCH_DONE = 2 };
 
-/* A search. left are panels that it may still take of a quota; none says which curves are no number at any instant, ignored which of
-   the watched hide too much. In a step between instants that is searched, noise is the rounding of what is watched, and sides are those on which it is before and after;
-   step is below zero elsewhere, near are columns of times near its ends. inner are rows of panels within each other, columns what such panels
-   have at their ends, found what was evaluated last. */
+/* A search. left are panels that it may still take of a quota; none says which
+   curves are no number at any instant, ignored which of the watched hide too much. In a step between instants that is searched, noise is
+   the rounding of what is watched, and sides are those on which it is before and after; step is below zero elsewhere. inner are rows of
+   panels within each other, beside those of the sides of kinks in their steps, found those that were evaluated last. */
 typedef struct {
   const lagrange_casadi_search_call* call;
   const lagrange_casadi_curves* curves;
-  const int *quantity, *link, *placed;
-  long long n, left, quota, step;
-  const double* t;
+  const int* quantity;
+  long long left, quota, step;
   double half;
   search_panel all;
   search_peak* peaks;
-  search_real *scale, *inner, *columns, *found, *noise, *sides, *near;
+  search_real *scale, *inner, *beside, *found, *noise, *sides;
   signed char *zigzags, *none, *ignored;
   int ignoring, stopped;
 } search_now;
@@ -53,7 +51,9 @@ static search_real search_lower(search_real x, search_real y) { return x < y ? x
 
 static search_real* search_row(const search_panel* panel, int k) { return panel->rows + k*panel->stride; }
 
-static search_real* search_watched(const search_panel* panel, int k) { return panel->watched + k*panel->stride; }
+static search_real* search_watched(const search_now* now, const search_panel* panel, int k) {
+  return search_row(panel, (int) (now->curves->curves + now->curves->places) + k);
+}
 
 static double search_width(const search_panel* panel) { return (panel->t[panel->n - 1] - panel->t[0])/(double) (panel->n - 1); }
 
@@ -73,35 +73,33 @@ static void search_count(const search_now* now, int curve, search_real* row, lon
   for (i = 0; i < many; ++i) row[i] = way*row[i] - base;
 }
 
-/* Evaluate at up to as many times as go together, into rows that are so far apart. need names links by bits. */
-static void search_evaluate(search_now* now, const double* t, int many, unsigned long long need, search_real* rows, long long apart) {
-  int k;
-  if (now->stopped || now->call->at(now->call->of, many, t, need, rows, apart)) now->stopped = 1;
-  for (k = 0; now->call->way && k < now->curves->curves; ++k) search_count(now, k, rows + k*apart, many);
+/* A panel of a few times. */
+static search_panel search_few(double* t, long long n, search_real* rows) {
+  search_panel panel;
+  memset(&panel, 0, sizeof panel);
+  panel.n = n;
+  panel.stride = SEARCH_STRIDE;
+  panel.t = t;
+  panel.rows = rows;
+  return panel;
 }
 
-static search_real search_found(const search_now* now, int k, int j) { return now->found[k*now->call->together + j]; }
-
-/* What is found at times, in columns one after another. */
-static void search_columns_at(search_now* now, const double* t, int many, unsigned long long need, search_real* columns) {
-  const int together = now->call->together, rows = search_rows(now);
-  int i, j, k;
-  for (i = 0; i < many; i += together) {
-    search_evaluate(now, t + i, many - i < together ? many - i : together, need, now->found, together);
-    for (j = i; j < many && j < i + together; ++j) {
-      for (k = 0; k < rows; ++k) columns[j*rows + k] = search_found(now, k, j - i);
-    }
+/* Evaluate such a panel at so many of its times. need names links by bits. */
+static void search_evaluate(search_now* now, const search_panel* panel, int first, int many, unsigned long long need) {
+  const int together = now->call->together, last = first + many;
+  int i, k, some;
+  for (i = first; i < last && !now->stopped; i += together) {
+    some = last - i < together ? last - i : together;
+    now->stopped = now->call->at(now->call->of, some, panel->t + i, need, panel->rows + i, panel->stride);
   }
+  for (k = 0; now->call->way && k < now->curves->curves; ++k) search_count(now, k, search_row(panel, k) + first, many);
 }
 
-/* The ratio xi/l of a curve, of rows of places that begin so and are so far apart. */
-static search_real search_ratio(const search_now* now, int curve, const search_real* places, long long apart) {
-  const int k = now->placed[curve];
-  return k >= 0 ? places[k*apart] : k == SEARCH_AT_BASE ? 0 : k == SEARCH_AT_TIP ? 1 : (search_real) NAN;
-}
-
-static search_real search_ratio_in(const search_now* now, const search_panel* panel, int curve, long long i) {
-  return search_ratio(now, curve, search_row(panel, now->curves->curves) + i, panel->stride);
+/* The ratio xi/l of a value of a curve. */
+static search_real search_ratio(const search_now* now, const search_panel* panel, int curve, long long i) {
+  const int k = now->curves->placed[curve];
+  if (k >= 0) return search_row(panel, (int) now->curves->curves + k)[i];
+  return k == SEARCH_AT_BASE ? 0 : k == SEARCH_AT_TIP ? 1 : (search_real) NAN;
 }
 
 /* A quantity's largest size becomes this; what is nothing beside others of its unit has no limit that a curve could rise above. Where
@@ -129,49 +127,31 @@ static int search_nothing(search_real x) { return x == 0 && 1/x < 0; }
 
 /* Whether a curve is not sought at a time: in steps beside rest those that are open at an end are left out. */
 static int search_lacks(const search_now* now, int curve, double t) {
-  const double x = (t - now->t[0])/(2*now->half);
+  const double x = (t - now->all.t[0])/(2*now->half);
   long long i = x > 0 ? (long long) x : 0;
-  const search_real* row = search_row(&now->all, curve) + (i < now->n - 2 ? i : now->n - 2);
-  return now->call->rests && now->n > 1 && (search_nothing(row[0]) || search_nothing(row[1]));
+  const search_real* row = search_row(&now->all, curve) + (i < now->all.n - 2 ? i : now->all.n - 2);
+  return now->call->rests && now->all.n > 1 && (search_nothing(row[0]) || search_nothing(row[1]));
 }
 
-/* List what a curve is at a time: the largest of what is less than a step apart, and the largest of these where there are many. */
-static void search_list_top(search_now* now, int curve, search_real value, double t, search_real place) {
+/* List a value of a curve: the largest of what is less than a step apart, and the largest of these where there are many. */
+static void search_list_top(search_now* now, const search_panel* panel, int curve, long long i) {
   const int q = now->quantity[curve];
   double *rows = now->call->tops + 4*SEARCH_TOPS*q, *row, *into = rows;
-  const double size = (double) search_magnitude(value);
+  const double t = panel->t[i], value = (double) search_row(panel, curve)[i];
   int j;
-  if (!(size >= (double) now->peaks[q].least)) return;
+  if (!(fabs(value) >= (double) now->peaks[q].least)) return;
   for (j = 0; j < SEARCH_TOPS; ++j) {
     row = rows + 4*j;
-    if (row[0] == curve && t - row[1] <= 2*now->half && row[1] - t <= 2*now->half) {
+    if (row[0] == curve && fabs(t - row[1]) <= 2*now->half) {
       into = row;
       break;
     }
     if (row[0] != row[0] || fabs(row[3]) < fabs(into[3])) into = row;
     if (row[0] != row[0]) break;
   }
-  if (into[0] == into[0] && fabs(into[3]) >= size) return;
+  if (into[0] == into[0] && fabs(into[3]) >= fabs(value)) return;
   into[0] = curve;
   into[1] = t;
-  into[2] = (double) place;
-  into[3] = (double) value;
-}
-
-/* Take in what a curve is at a time; what is nothing has its peak at an instant. */
-static void search_note(search_now* now, int curve, search_real value, double t, search_real place) {
-  search_peak* peak = now->peaks + now->quantity[curve];
-  const search_real size = search_magnitude(value);
-  if (!(size - size == 0) || search_lacks(now, curve, t)) return;
-  if (now->call->tops) search_list_top(now, curve, value, t, place);
-  if (size > peak->best) {
-    search_grow(now, now->quantity[curve], size);
-    if (peak->size >= size - peak->rounding && peak->t < t - now->half) return;
-  } else if (!(peak->limit <= SEARCH_LARGEST && size >= peak->best - peak->rounding && t < peak->t - now->half)) {
-    return;
-  }
-  peak->size = size;
-  peak->t = t;
-  peak->place = place;
-  peak->sign = value < 0 ? -1 : 1;
+  into[2] = (double) search_ratio(now, panel, curve, i);
+  into[3] = value;
 }

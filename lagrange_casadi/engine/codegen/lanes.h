@@ -144,7 +144,8 @@ LANES_INLINE lanes_pack LANES_OF(copysign)(lanes_pack a, lanes_pack b) {
   const lanes_mask sign = (lanes_mask)lanes_pack(-lanes_real(0)).v;
   return lanes_bits(sign, b, a);
 }
-LANES_INLINE lanes_pack LANES_OF(fabs)(lanes_pack a) { return (lanes_vector)((lanes_mask)a.v & ~(lanes_mask)lanes_pack(-lanes_real(0)).v); }
+LANES_INLINE lanes_pack lanes_size(lanes_pack a) { return (lanes_vector)((lanes_mask)a.v & ~(lanes_mask)lanes_pack(-lanes_real(0)).v); }
+LANES_INLINE lanes_pack LANES_OF(fabs)(lanes_pack a) { return lanes_size(a); }
 
 /* Store a pack past the caches, at a multiple of its size. A line of the cache that is filled so is not read from memory before. */
 LANES_INLINE void lanes_stream(lanes_real* to, lanes_pack x) {

@@ -215,7 +215,7 @@ class Library:
             if (array := arrays.get(name)) is not None and array.dtype != dtype
         ]
         arrays |= {name: converted for name, _, converted in rounded}
-        search, within = many.search.call(many.tables, _CUT, listed)
+        search, within = many.search.call(many.tables, listed)
         call = CALL.made(
             search=ctypes.addressof(search),
             find=many.search.address,

@@ -2,7 +2,6 @@
 #include <float.h>
 typedef lanes_real search_real;
 #ifdef LANES_SINGLE
-#define SEARCH_FABS fabsf
 #define SEARCH_LARGEST FLT_MAX
 #define SEARCH_LEAST FLT_MIN
 /* Rounding of a value, relative to its largest size. */
@@ -19,7 +18,6 @@ typedef lanes_real search_real;
 #define SEARCH_DEEPEST 8
 #define SEARCH_FINEST 5
 #else
-#define SEARCH_FABS fabs
 #define SEARCH_LARGEST DBL_MAX
 #define SEARCH_LEAST DBL_MIN
 #define SEARCH_CLOSE (8*DBL_EPSILON)
@@ -58,6 +56,3 @@ typedef lanes_real search_real;
 #define SEARCH_STRAIGHT ((search_real) 4)
 /* Least change in a step, of that in it and the steps beside, of an argument that passes a number once. */
 #define SEARCH_EVEN ((search_real) 0.3)
-
-LANES_INLINE lanes_pack search_size(lanes_pack x) { return SEARCH_FABS(x); }
-LANES_INLINE lanes_pack search_larger(lanes_pack x, lanes_pack y) { return lanes_larger(x, y); }

@@ -26,7 +26,6 @@ from .compiler import Compiler, entry_of, loaded, start, written
 from .printer import defined
 
 FUNCTION = "lagrange_casadi_search"
-_CAPACITY = "lagrange_casadi_search_room"
 
 CURVES = Call(
     "lagrange_casadi_curves",
@@ -72,7 +71,6 @@ CALL = Call(
         "stride": "long long",
         "t": "const double*",
         "rows": "real*",
-        "watched": "real*",
         "most": "real*",
         "scales": "const real*",
         "open": "const signed char*",
@@ -253,7 +251,6 @@ class Search:
     """The loaded search."""
 
     entry: Any
-    room: Any
     precision: Precision
 
     @property
@@ -262,15 +259,13 @@ class Search:
         return ctypes.cast(self.entry, ctypes.c_void_p).value
 
     def call(
-        self, tables: Tables, together: int, listed: Listed | None, **members: float | None
+        self, tables: Tables, listed: Listed | None, **members: float | None
     ) -> tuple[ctypes.Structure, npt.NDArray[np.int8]]:
-        """A call for some curves, of which ``together`` times are evaluated at once, and its room;
-        other members are left out.
-        """
-        made = CALL.type(curves=ctypes.addressof(tables.struct), together=together, **members)
+        """A call for some curves, and its room; other members are left out."""
+        made = CALL.type(curves=ctypes.addressof(tables.struct), **members)
         if listed:
             made.way, made.share = listed.sign, listed.share
-        self.room(made)
+        self.entry(made)
         room = np.empty(made.size + 4 * _LINE, np.int8)
         made.room = room.ctypes.data + -room.ctypes.data % (4 * _LINE)
         return made, room
@@ -324,16 +319,15 @@ class Search:
         most = np.fmax.reduce(np.abs(values), axis=1, initial=0.0)
         call, room = self.call(
             tables,
-            _TOGETHER,
             listed,
             n=n,
             stride=rows.shape[1],
             t=t.ctypes.data,
             rows=begin,
-            watched=begin + (count + along.size) * rows.strides[0],
             most=most.ctypes.data,
             scales=scales.ctypes.data,
             rests=int(np.isnan(values).any()),
+            together=_TOGETHER,
             tops=None if tops is None else tops.ctypes.data,
             hiding=hidden.ctypes.data,
             at=ctypes.cast(asked.entry, ctypes.c_void_p).value,
@@ -401,7 +395,4 @@ def load_search(
     Raises :class:`CompilerError`.
     """
     library = loaded(source(precision), compiler, extra, _LEVEL)
-    entry, room = (
-        CALL.declare(entry_of(library, name, compiler)) for name in (FUNCTION, _CAPACITY)
-    )
-    return Search(entry, room, precision)
+    return Search(CALL.declare(entry_of(library, FUNCTION, compiler)), precision)

@@ -5,10 +5,6 @@
    two breaks of the density, what acts is a polynomial. A force is its integral from the tip, a moment the length times the integral of the
    force. Polynomials are in Bernstein's form, of x from 0 at the end towards the tip to 1 at that towards the base. */
 
-LANES_INLINE casadi_real designs_size(casadi_real x) { return DESIGNS_FABS(x); }
-
-LANES_INLINE casadi_real designs_larger(casadi_real x, casadi_real y) { return lanes_larger(x, y); }
-
 /* Kept from low to high; low for what is none. */
 LANES_INLINE casadi_real designs_kept(casadi_real u, casadi_real low, casadi_real high) {
   return lanes_less(low, u, lanes_less(u, high, u, high), low);
@@ -86,7 +82,7 @@ static inline casadi_real designs_between(const casadi_real* c, const casadi_rea
                                           casadi_real* turns) {
   const casadi_real at_low = designs_value(c, n, low), at_high = designs_value(c, n, high);
   const casadi_real begin = lanes_less(at_low, 0, -1, 1), there = -begin*lanes_less(at_high, 0, -1, 1);
-  const casadi_real nearer = lanes_less(designs_size(at_high), designs_size(at_low), high, low);
+  const casadi_real nearer = lanes_less(lanes_size(at_high), lanes_size(at_low), high, low);
   casadi_real x = low + (high - low)*(at_low/(at_low - at_high)), left = there, now, before, step, ahead, tight, inside;
   int trial;
   for (trial = 0; trial < 60 && lanes_where_less(0, left); ++trial) {
@@ -94,14 +90,14 @@ static inline casadi_real designs_between(const casadi_real* c, const casadi_rea
     before = begin*lanes_less(now, 0, -1, 1);
     low = lanes_less(0, before, x, low);
     high = lanes_less(0, before, high, x);
-    step = lanes_less(0, designs_size(now), now/(n*designs_value(slope, n - 1, x)), 0);  /* 0/0 where zeros meet */
+    step = lanes_less(0, lanes_size(now), now/(n*designs_value(slope, n - 1, x)), 0);  /* 0/0 where zeros meet */
     ahead = x - step;
     tight = lanes_less(DESIGNS_CLOSE, high - low, 0, 1);
     /* At an end that is a zero, too, there is another one between. */
     inside = lanes_less(low, ahead, lanes_less(ahead, high, 1, tight), tight);
     ahead = lanes_less(0, inside, designs_kept(ahead, low, high), DESIGNS_HALF*(low + high));
     x = lanes_less(0, left, ahead, x);
-    left = lanes_less(designs_size(step), DESIGNS_CLOSE, lanes_less(0, inside, 0, left), left);
+    left = lanes_less(lanes_size(step), DESIGNS_CLOSE, lanes_less(0, inside, 0, left), left);
   }
   *turns = lanes_less(0, there, begin, 0);
   return lanes_less(0, there, x, nearer);
@@ -320,7 +316,7 @@ static void designs_seek(const designs_link* link, const designs_piece* piece, i
     return;
   }
   for (i = 0; i < degree; ++i) {
-    size = designs_size(designs_force_at(link, piece, k, at[i]));
+    size = lanes_size(designs_force_at(link, piece, k, at[i]));
     size = lanes_less(0, wide, lanes_less(0, single ? falls[i]*falls[i] : falls[i], size, -1), -1);
     u = piece->stop - wide*at[i];
     turns->place[1] = lanes_less(turns->best[0], size, turns->place[0], lanes_less(turns->best[1], size, u, turns->place[1]));
@@ -329,9 +325,9 @@ static void designs_seek(const designs_link* link, const designs_piece* piece, i
     turns->best[0] = lanes_less(turns->best[0], size, size, turns->best[0]);
   }
   if (single) {
-    size = lanes_less(0, wide, designs_size(slope[0])/wide, -1);
+    size = lanes_less(0, wide, lanes_size(slope[0])/wide, -1);
     turns->at_high = lanes_less(turns->at_high, 0, size, turns->at_high);
-    turns->at_low = lanes_less(0, wide, designs_size(slope[degree])/wide, turns->at_low);
+    turns->at_low = lanes_less(0, wide, lanes_size(slope[degree])/wide, turns->at_low);
   } else {
     if (cell == link->cells - 1) turns->at_high = designs_force_at(link, piece, k, 0);
     if (cell == 0) turns->at_low = designs_force_at(link, piece, k, 1);

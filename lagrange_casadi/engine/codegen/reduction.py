@@ -157,7 +157,6 @@ def _macros(program: Program, reduction: Reduction, precision: Precision) -> dic
     numbers = np.finfo(DTYPES[precision])
     return {
         "ROOT": function_name("sqrt", precision),
-        "FABS": function_name("fabs", precision),
         "HALF": "((lanes_real) 0.5)",
         "CLOSE": _real(math.sqrt(float(numbers.eps))),
         "LARGEST": _real(float(numbers.max)),
@@ -168,7 +167,8 @@ def _macros(program: Program, reduction: Reduction, precision: Precision) -> dic
         "QUANTITIES": quantities,
         "CURVES": curves,
         "PLACES": reduction.places,
-        "CHECKED": curves + reduction.places,
+        "WATCHED": curves + reduction.places,
+        "CHECKED": curves + reduction.places + len(reduction.watches),
         "WATCHES": len(reduction.watches),
         "MARKS": len(reduction.marks),
         "CHECKS": checks,

@@ -31,8 +31,8 @@ typedef struct {
    rounding, and takes no further lane of a pack. */
 static void search_look(search_now* now, double step, const double* times, const int* curves, search_real* found, int many) {
   const double same = SEARCH_SAME_TIME*step;
-  const int together = now->call->together, own = (int) (now->curves->curves + now->curves->places);
-  const search_real* places = now->found + now->curves->curves*together;
+  const int together = now->call->together;
+  search_panel panel;
   double t[SEARCH_LOOKS];
   unsigned long long need;
   int lane[SEARCH_LOOKS], apart = 0, known, first, j, k;
@@ -44,21 +44,17 @@ static void search_look(search_now* now, double step, const double* times, const
     if (known == apart) t[apart++] = times[k];
   }
   for (first = 0; first < apart; first += together) {
+    panel = search_few(t + first, apart - first < together ? apart - first : together, now->found);
     need = 0;
     for (k = 0; k < many; ++k) {
-      j = now->link[curves[k]];
+      j = now->curves->link[curves[k]];
       if (lane[k] >= first && lane[k] < first + together && j >= 0) need |= 1ull << (j < 63 ? j : 63);
     }
-    search_evaluate(now, t + first, apart - first < together ? apart - first : together, need, now->found, together);
+    search_evaluate(now, &panel, 0, (int) panel.n, need);
     for (k = 0; k < many; ++k) {
       j = lane[k] - first;
       if (j < 0 || j >= together) continue;
-      found[k] = search_found(now, curves[k], j);
-      if (search_counts(now, now->quantity[curves[k]], t[lane[k]], now->found + own*together + j, together)) {
-        search_note(now, curves[k], found[k], t[lane[k]], search_ratio(now, curves[k], places + j, together));
-      } else {
-        found[k] = (search_real) NAN;  /* which closes nothing */
-      }
+      found[k] = search_note(now, &panel, curves[k], j) ? search_row(&panel, curves[k])[j] : (search_real) NAN;  /* which closes nothing */
     }
   }
 }
@@ -98,8 +94,8 @@ static int search_rounded(const search_now* now, int curve) {
   const search_real* row = search_row(all, curve);
   search_real bend, before = 0;
   long long i, turns = 0;
-  if (now->n < 2*SEARCH_QUIET) return 0;
-  for (i = 1; i < now->n - 1; ++i) {
+  if (all->n < 2*SEARCH_QUIET) return 0;
+  for (i = 1; i < all->n - 1; ++i) {
     bend = search_bend(row + i);
     if (search_kinked(now, all, i - 1) || search_kinked(now, all, i) ||
         !(search_magnitude(bend) > SEARCH_RAGGED*search_upper(search_magnitude(row[i]),
@@ -109,7 +105,7 @@ static int search_rounded(const search_now* now, int curve) {
     turns += (bend < 0 && before > 0) || (bend > 0 && before < 0);
     before = bend;
   }
-  return 2*turns >= now->n;
+  return 2*turns >= all->n;
 }
 
 /* Leave a step open in which a curve may rise, unless that is rounding; anywhere, if what was found there was not what was expected. */
@@ -153,7 +149,7 @@ static void search_aim(const search_now* now, const search_panel* panel, search_
       const search_summit* summit = list->summits + (j + lane < list->looks ? j + lane : list->looks - 1);
       const search_real* row = search_row(panel, summit->curve);
       first = search_window(summit->at, panel->n);
-      for (k = 0; k < SEARCH_FIT; ++k) fit->y[k][lane] = summit->sign*row[first + k];
+      for (k = 0; k < SEARCH_FIT; ++k) fit->y[k].lane[lane] = summit->sign*row[first + k];
       search_begin(fit, lane, summit->at, first, panel->n);
     }
   }
@@ -164,13 +160,13 @@ static void search_aim(const search_now* now, const search_panel* panel, search_
     fit = fits + j/LANES;
     lane = j % LANES;
     first = search_window(summit->at, panel->n);
-    summit->t = panel->t[first] + step*(double) (fit->x[lane] + 3);
-    summit->size = fit->size[lane];
-    summit->slope = fit->slope[lane];
-    summit->curve_there = fit->curve[lane];
-    summit->steep = fit->steep[lane];
-    summit->rough = fit->rough[lane];
-    summit->trust = fit->x[lane] > -2 && fit->x[lane] < 2 ? SEARCH_TRUST : SEARCH_TRUST_ASIDE;
+    summit->t = panel->t[first] + step*(double) (fit->x.lane[lane] + 3);
+    summit->size = fit->size.lane[lane];
+    summit->slope = fit->slope.lane[lane];
+    summit->curve_there = fit->curve.lane[lane];
+    summit->steep = fit->steep.lane[lane];
+    summit->rough = fit->rough.lane[lane];
+    summit->trust = fit->x.lane[lane] > -2 && fit->x.lane[lane] < 2 ? SEARCH_TRUST : SEARCH_TRUST_ASIDE;
     summit->kinked = 0;
     if (first == summit->at - 3) search_kink(search_row(panel, summit->curve) + summit->at, summit, panel->t[summit->at], step);
     summit->broken = search_broken(now, panel, summit->curve, first);

@@ -4,10 +4,7 @@
    size so far is looked at, a pack at once: a polynomial through seven values says where, and what it misses there says whether it is to
    be believed. A step that this leaves open, or in which something may hide, becomes a panel of its own, or two where it is known where
    in the step a kink or a jump is, of steps a ninth as long, and so on, until all are closed, or so short that nothing but a jump, a kink
-   or a pole is left in them. Where that takes too many panels, or a quantity keeps growing slowly, its peak is not located.
-
-   Where friction at rest leaves a curve open at an instant, the steps beside it are searched by themselves from where, or up to where, it
-   is a number. */
+   or a pole is left in them. Where that takes too many panels, or a quantity keeps growing slowly, its peak is not located. */
 
 /* What is left in a step that is as short as can be: a kink, a jump, or what grows on without an end. */
 static void search_end(search_now* now, const search_panel* panel, int curve, long long step, int deepest) {
@@ -37,7 +34,7 @@ static void search_end(search_now* now, const search_panel* panel, int curve, lo
   search_grow(now, now->quantity[curve], (search_real) INFINITY);
   peak->size = peak->best;
   peak->t = panel->t[endless];
-  peak->place = search_ratio_in(now, panel, curve, endless);
+  peak->place = search_ratio(now, panel, curve, endless);
   peak->sign = row[endless] < 0 ? -1 : 1;
 }
 
@@ -167,7 +164,7 @@ LANES_INLINE lanes_pack search_reach(const search_real* row) {
   memcpy(&before, row - 1, sizeof before);
   memcpy(&here, row, sizeof here);
   memcpy(&after, row + 1, sizeof after);
-  return search_size(4*here - (before + after));
+  return lanes_size(4*here - (before + after));
 }
 
 /* List where a curve may rise above what is known, a limit. From a value it reaches no further than half of what bends it there takes
@@ -228,9 +225,10 @@ LANES_INLINE void search_panel_of(search_now* now, const search_panel* panel, in
   }
 }
 
-/* Leave out what friction at rest leaves open, and take the largest sizes of the rest; a curve that is open at all instants has no number. */
+/* Leave out what friction at rest leaves open, and take the largest sizes of the rest; a curve that is open at all instants has no
+   number. */
 static void search_leave_out(search_now* now) {
-  const long long padded = (now->n + LANES - 1)/LANES*LANES;
+  const long long padded = (now->all.n + LANES - 1)/LANES*LANES;
   search_real most;
   search_real* row;
   long long i;
@@ -250,7 +248,7 @@ static void search_leave_out(search_now* now) {
 
 /* Count values from so far below the least at the instants that only what is largest goes far: sizes are values then. */
 static void search_one_way(search_now* now) {
-  const long long padded = (now->n + LANES - 1)/LANES*LANES;
+  const long long padded = (now->all.n + LANES - 1)/LANES*LANES;
   search_real low, high, x, *row;
   long long i;
   int k, q;
@@ -258,7 +256,7 @@ static void search_one_way(search_now* now) {
     low = SEARCH_LARGEST;
     high = -SEARCH_LARGEST;
     for (k = now->curves->first[q]; k < now->curves->first[q + 1]; ++k) {
-      for (row = search_row(&now->all, k), i = 0; i < now->n; ++i) {
+      for (row = search_row(&now->all, k), i = 0; i < now->all.n; ++i) {
         x = (search_real) now->call->way*row[i];
         if (x < low) low = x;
         if (x > high) high = x;
@@ -295,7 +293,6 @@ static void search_largest(search_now* now) {
       peak->best = search_upper(now->call->most[k], peak->best);
     }
     peak->open |= j;
-    peak->sampled = peak->best;
     if (!peak->open) now->scale[curves->unit[q]] = search_upper(peak->best, now->scale[curves->unit[q]]);
   }
   for (q = 0; q < curves->quantities; ++q) search_grow(now, q, now->peaks[q].best);
@@ -305,7 +302,7 @@ static void search_largest(search_now* now) {
    panel is screened, and not known where something may hide. */
 static void search_errors(search_now* now) {
   const search_panel* all = &now->all;
-  const long long n = now->n;
+  const long long n = now->all.n;
   lanes_pack twice, other;
   search_real far, nothing, lane[LANES];
   long long i;
@@ -324,12 +321,12 @@ static void search_errors(search_now* now) {
       const search_real* row = search_row(all, k);
       if (!(peak->best < 3*now->call->most[k])) continue;
       for (i = 0; i + 2*LANES <= n; i += 2*LANES) {
-        twice = search_larger(twice, search_reach(row + i));
-        other = search_larger(other, search_reach(row + i + LANES));
+        twice = lanes_larger(twice, search_reach(row + i));
+        other = lanes_larger(other, search_reach(row + i + LANES));
       }
       for (; i < n; ++i) far = search_upper(far, search_magnitude(4*row[i] - (row[i - 1] + row[i + 1]))/2);
     }
-    twice = search_larger(twice, other);
+    twice = lanes_larger(twice, other);
     memcpy(lane, &twice, sizeof lane);
     for (j = 0; j < LANES; ++j) far = search_upper(far, lane[j]/2);
     now->call->error[q] = hides ? (search_real) INFINITY : peak->best > nothing ? far - peak->best + peak->rounding : nothing;
@@ -348,13 +345,12 @@ static void search_sampled(search_now* now, int q) {
   long long i, at, first = all->n;
   unsigned where;
   int k, curve = -1;
-  if (peak->sampled < least) return;
   for (k = now->curves->first[q]; k < now->curves->first[q + 1]; ++k) {
     if (!(under < now->call->most[k])) continue;
     row = search_row(all, k);
     for (i = 0; i <= first && i < all->n; i += LANES) {
       memcpy(&pack, row + i, sizeof pack);
-      where = lanes_where_less(under, search_size(pack));
+      where = lanes_where_less(under, lanes_size(pack));
       for (at = i; where >> (at - i) && at < all->n && at <= first; ++at) {
         x = search_magnitude(row[at]);
         if (!(x >= least) || (at == first && !(x > size)) || (now->call->rests && search_nothing(row[at]))) continue;
@@ -366,7 +362,7 @@ static void search_sampled(search_now* now, int q) {
   }
   if (curve < 0 || !(peak->size < least || all->t[first] < peak->t - now->half)) return;
   peak->t = all->t[first];
-  peak->place = search_ratio_in(now, all, curve, first);
+  peak->place = search_ratio(now, all, curve, first);
   peak->sign = search_row(all, curve)[first] < 0 ? -1 : 1;
 }
 
@@ -376,7 +372,7 @@ static int search_top_at(const search_now* now, int curve, long long i) {
   const search_peak* peak = now->peaks + now->quantity[curve];
   const search_real* row = search_row(&now->all, curve) + i;
   const search_real size = search_magnitude(row[0]), rounding = peak->rounding;
-  const search_real before = i > 0 ? search_magnitude(row[-1]) : -1, after = i + 1 < now->n ? search_magnitude(row[1]) : -1;
+  const search_real before = i > 0 ? search_magnitude(row[-1]) : -1, after = i + 1 < now->all.n ? search_magnitude(row[1]) : -1;
   if (!(size >= peak->least && size >= before - rounding && size >= after - rounding)) return SEARCH_NO_TOP;
   if (now->call->rests && search_nothing(row[0])) return SEARCH_NO_TOP;
   return size - before > rounding || size - after > rounding ? SEARCH_TOP : SEARCH_FLAT;
@@ -395,12 +391,12 @@ static void search_tops(search_now* now) {
   for (k = 0; k < now->curves->curves; ++k) {
     peak = now->peaks + now->quantity[k];
     if (peak->open) continue;
-    for (flat = i = 0; i < now->n; ++i) flat += search_top_at(now, k, i) == SEARCH_FLAT;
-    every = peak->limit <= SEARCH_LARGEST ? 1 + 2*flat/SEARCH_TOPS : now->n;
-    for (flat = i = 0; i < now->n; ++i) {
+    for (flat = i = 0; i < now->all.n; ++i) flat += search_top_at(now, k, i) == SEARCH_FLAT;
+    every = peak->limit <= SEARCH_LARGEST ? 1 + 2*flat/SEARCH_TOPS : now->all.n;
+    for (flat = i = 0; i < now->all.n; ++i) {
       top = search_top_at(now, k, i);
       if (top == SEARCH_NO_TOP || (top == SEARCH_FLAT && flat++ % every)) continue;
-      search_list_top(now, k, search_row(all, k)[i], all->t[i], search_ratio_in(now, all, k, i));
+      search_list_top(now, all, k, i);
     }
   }
   for (q = 0; q < now->curves->quantities; ++q) {
@@ -410,10 +406,10 @@ static void search_tops(search_now* now) {
       if (one[0] != one[0]) continue;
       row = search_row(all, (int) one[0]);
       i = (long long) ((one[1] - all->t[0])/step);
-      i = i < 0 || now->n < 2 ? 0 : i < now->n - 2 ? i : now->n - 2;
+      i = i < 0 || now->all.n < 2 ? 0 : i < now->all.n - 2 ? i : now->all.n - 2;
       size = (search_real) fabs(one[3]) + peak->rounding;
-      if (peak->open || !(size >= peak->least && size >= search_magnitude(row[i]) && (now->n < 2 || size >= search_magnitude(row[i + 1]))) ||
-          (way != 0 && one[3] < 0)) one[0] = NAN;
+      if (peak->open || !(size >= peak->least && size >= search_magnitude(row[i]) &&
+                         (now->all.n < 2 || size >= search_magnitude(row[i + 1]))) || (way != 0 && one[3] < 0)) one[0] = NAN;
       for (j = 0; j < SEARCH_TOPS; ++j) {
         other = rows + 4*j;
         if (other != one && other[0] == one[0] && fabs(other[1] - one[1]) <= step && fabs(other[3]) >= fabs(one[3])) one[0] = NAN;
@@ -433,51 +429,43 @@ static char* search_take(char** room, long long count, size_t size) {
 }
 
 /* Lay a search into its room, and say how many bytes that takes. */
-static long long search_lay(search_now* now, const lagrange_casadi_search_call* call) {
+static void search_lay(search_now* now, lagrange_casadi_search_call* call) {
   const lagrange_casadi_curves* curves = call->curves;
   const long long rows = curves->curves + curves->places + curves->watches;
   char* room = call->room;
   now->peaks = (search_peak*) search_take(&room, curves->quantities, sizeof *now->peaks);
   now->scale = (search_real*) search_take(&room, curves->units, sizeof *now->scale);
   now->inner = (search_real*) search_take(&room, SEARCH_DEEPEST*rows*SEARCH_STRIDE, sizeof *now->inner);
-  now->columns = (search_real*) search_take(&room, 5*SEARCH_DEEPEST*rows, sizeof *now->columns);
-  now->found = (search_real*) search_take(&room, call->together*rows, sizeof *now->found);
+  now->beside = (search_real*) search_take(&room, SEARCH_DEEPEST*rows*SEARCH_STRIDE, sizeof *now->beside);
+  now->found = (search_real*) search_take(&room, rows*SEARCH_STRIDE, sizeof *now->found);
   now->zigzags = (signed char*) search_take(&room, curves->curves, 1);
   now->none = (signed char*) search_take(&room, curves->curves, 1);
   now->ignored = (signed char*) search_take(&room, curves->watches, 1);
   now->noise = (search_real*) search_take(&room, curves->watches, sizeof *now->noise);
   now->sides = (search_real*) search_take(&room, 2*curves->watches, sizeof *now->sides);
-  now->near = (search_real*) search_take(&room, 2*SEARCH_QUIET*rows, sizeof *now->near);
-  return room - call->room;
-}
-
-/* How many bytes of room a search takes. */
-LAGRANGE_CASADI_EXPORT void lagrange_casadi_search_room(lagrange_casadi_search_call* call) {
-  search_now now;
-  call->size = search_lay(&now, call);
+  call->size = room - call->room;
 }
 
 /* The peak of every quantity of n instants t in equal steps: its value, its time and its place, NaN for what is open, and whether it is
    located. Where way is 1 or -1, the peak of a quantity is the largest of its values times that, else of its size. Where error is not
    NULL, peaks are those at the instants, and it becomes how much larger quantities may be between them. tops, unless it is NULL,
    becomes for each quantity SEARCH_TOPS local peaks down to a share of the largest: the number of the curve among the quantity's own,
-   which is NAN where there are no more, time, ratio and value. rows are those of curves, of their places and, at watched, of what is watched, stride values apart; most
-   are the largest sizes of curves at the instants. What rests is NaN in rows. scales, unless it is NULL, says how large others are of each unit, hiding in which
-   steps something is known to hide; it has twice stride values. at evaluates up to so many times together, and may
-   write as many values of each row of its out; what it returns ends the search unless it is 0. */
+   which is NAN where there are no more, time, ratio and value. rows are those of curves, of their places and of what is watched, stride
+   values apart, filled up to whole packs by the last instant or NaN; what rests is NaN. most are the largest sizes of curves at the
+   instants. scales, unless it is NULL, says how large others
+   are of each unit, hiding in which steps something is known to hide; it has twice stride values. at evaluates up to so many times
+   together, and may write as many values of each row of its out; unless it returns 0, the search ends. Where room is NULL, nothing is
+   searched, and size becomes how many bytes of it a search takes. */
 LAGRANGE_CASADI_EXPORT void lagrange_casadi_search(lagrange_casadi_search_call* call) {
   const lagrange_casadi_curves* curves = call->curves;
   search_now now;
   search_peak* peak;
   int q, located;
   search_lay(&now, call);
+  if (!call->room) return;
   now.call = call;
   now.curves = curves;
   now.quantity = curves->quantity;
-  now.link = curves->link;
-  now.placed = curves->placed;
-  now.n = call->n;
-  now.t = call->t;
   now.half = call->n > 1 ? (call->t[call->n - 1] - call->t[0])/(double) (2*(call->n - 1)) : 1;
   now.left = now.quota = SEARCH_PANELS + 4*call->n;
   now.ignoring = now.stopped = 0;
@@ -486,7 +474,6 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_search(lagrange_casadi_search_call* 
   now.all.stride = call->stride;
   now.all.t = call->t;
   now.all.rows = call->rows;
-  now.all.watched = call->watched;
   now.all.hiding = call->hiding;
   now.all.kinks = call->hiding + call->stride;
   for (q = 0; call->tops && q < 4*SEARCH_TOPS*curves->quantities; ++q) call->tops[q] = NAN;

@@ -5,14 +5,6 @@
 
 LANES_INLINE void search_panel_of(search_now* now, const search_panel* panel, int depth);
 
-/* What a panel has at a time: a column of its rows. */
-static void search_column(const search_now* now, const search_panel* panel, long long i, search_real* column) {
-  const int own = (int) (now->curves->curves + now->curves->places);
-  int k;
-  for (k = 0; k < own; ++k) column[k] = search_row(panel, k)[i];
-  for (k = 0; k < now->curves->watches; ++k) column[own + k] = search_watched(panel, k)[i];
-}
-
 /* Take in what a curve is at the times inside a step, where it is larger than what is known: of local peaks none of their flanks. */
 static void search_note_inner(search_now* now, const search_panel* within, int curve) {
   const int q = now->quantity[curve];
@@ -23,10 +15,7 @@ static void search_note_inner(search_now* now, const search_panel* within, int c
   for (j = 1; beyond && j <= SEARCH_INNER; ++j) {
     size = search_magnitude(row[j]);
     beside = search_upper(search_magnitude(row[j - 1]), search_magnitude(row[j + 1]));
-    if (size > known && !(now->call->tops && size < beside) &&
-        search_counts(now, q, within->t[j], within->watched + j, SEARCH_STRIDE)) {
-      search_note(now, curve, row[j], within->t[j], search_ratio_in(now, within, curve, j));
-    }
+    if (size > known && !(now->call->tops && size < beside)) search_note(now, within, curve, j);
     /* What has no value is nothing, and hides what is beside it. */
     if (row[j] - row[j] == 0) continue;
     within->hiding[j - 1] = within->hiding[j] = SEARCH_HIDES;
@@ -34,35 +23,27 @@ static void search_note_inner(search_now* now, const search_panel* within, int c
   }
 }
 
-/* Search what is between two times as a panel; beside rest, where what switches is no number, only so deep. */
-static void search_part(search_now* now, double start, double stop, const search_real* first, const search_real* last, int depth) {
-  const double width = (stop - start)/(SEARCH_INNER + 1);
-  const int rows = search_rows(now), curves = (int) now->curves->curves, together = now->call->together;
+/* Search what is between two times, those of values of panels, as a panel; beside rest, where what switches is no number, only so deep. */
+static void search_part(search_now* now, const search_panel* from, long long first, const search_panel* to, long long last, int depth) {
+  const double start = from->t[first], stop = to->t[last], width = (stop - start)/(SEARCH_INNER + 1);
+  const int rows = search_rows(now), curves = (int) now->curves->curves;
   double t[SEARCH_WITHIN];
   signed char hiding[SEARCH_WITHIN], kinks[SEARCH_WITHIN];
-  search_panel within;
+  search_panel within = search_few(t, SEARCH_WITHIN, now->inner + depth*rows*SEARCH_STRIDE + LANES);
   search_real* row;
-  int i, j, k, many;
+  int j, k;
   for (k = 0; now->call->rests && depth >= SEARCH_BESIDE_REST && k < curves; ++k) {
     if (search_lacks(now, k, (start + stop)/2)) return;
   }
-  within.n = SEARCH_WITHIN;
-  within.stride = SEARCH_STRIDE;
-  within.t = t;
-  within.rows = now->inner + depth*rows*SEARCH_STRIDE + LANES;
-  within.watched = within.rows + (rows - now->curves->watches)*SEARCH_STRIDE;
   within.hiding = hiding;
   within.kinks = kinks;
   memset(hiding, 0, sizeof hiding);
   for (j = 0; j < SEARCH_WITHIN; ++j) t[j] = j <= SEARCH_INNER ? start + j*width : stop;
-  for (i = 1; i <= SEARCH_INNER; i += together) {
-    many = SEARCH_INNER + 1 - i < together ? SEARCH_INNER + 1 - i : together;
-    search_evaluate(now, t + i, many, ~0ull, within.rows + i, SEARCH_STRIDE);
-  }
+  search_evaluate(now, &within, 1, SEARCH_INNER, ~0ull);
   for (k = 0; k < rows; ++k) {
-    row = within.rows + k*SEARCH_STRIDE;
-    row[0] = first[k];
-    row[SEARCH_WITHIN - 1] = last[k];
+    row = search_row(&within, k);
+    row[0] = search_row(from, k)[first];
+    row[SEARCH_WITHIN - 1] = search_row(to, k)[last];
     if (k >= curves) continue;
     if (!search_lacks(now, k, (start + stop)/2)) search_note_inner(now, &within, k);
     else memset(row, 0, SEARCH_WITHIN*sizeof *row);
@@ -92,12 +73,12 @@ static int search_beyond(int kind, search_real value, search_real level) {
 
 /* Evaluate both sides of where one of the watched passes a number in a step, and there; whether they are on both sides. */
 static int search_apart(search_now* now, const search_panel* panel, long long step, int watch, search_real level, double* t,
-                        search_real* columns) {
-  const search_real* row = search_watched(panel, watch);
-  const int rows = search_rows(now), kind = now->curves->watch[watch];
+                        const search_panel* sides) {
+  const search_real *row = search_watched(now, panel, watch), *ends = search_watched(now, sides, watch);
+  const int kind = now->curves->watch[watch];
   const double start = panel->t[step], stop = panel->t[step + 1], beside = search_beside(now, panel);
   double at, place = search_where(row, step, panel->n, level), slope = (double) row[step + 1] - (double) row[step], before = 0, was = 0;
-  search_real ends[3], sum;
+  search_real sum;
   int trial, apart, j, k;
   for (trial = 0; trial < SEARCH_TRIALS && place >= 0 && place <= 1; ++trial) {
     at = start + place*(stop - start);
@@ -105,15 +86,14 @@ static int search_apart(search_now* now, const search_panel* panel, long long st
       t[j] = j == 0 ? at - beside : j == 1 ? at + beside : at;
       t[j] = t[j] < start ? start : t[j] > stop ? stop : t[j];
     }
-    search_columns_at(now, t, 3, ~0ull, columns);
+    search_evaluate(now, sides, 0, 3, ~0ull);
     sum = 0;
-    for (j = 0; j < 3; ++j) {
-      for (k = 0; k < now->curves->curves; ++k) sum += 0*columns[j*rows + k];
+    for (k = 0; k < now->curves->curves; ++k) {
+      for (j = 0; j < 3; ++j) sum += 0*search_row(sides, k)[j];
     }
     apart = sum == 0;
-    for (j = 0; j < 3; ++j) {
-      ends[j] = columns[j*rows + rows - now->curves->watches + watch];
-      if (j == 2 || t[j] == panel->t[step + j]) continue;
+    for (j = 0; j < 2; ++j) {
+      if (t[j] == panel->t[step + j]) continue;
       apart &= search_beyond(kind, ends[j], level) == search_beyond(kind, row[step + j], level);
     }
     if (apart) return 1;
@@ -126,7 +106,7 @@ static int search_apart(search_now* now, const search_panel* panel, long long st
 }
 
 /* Find a kink or a jump in a step, and what is beside it; whether there is one, and nothing else hides there. */
-static int search_find_sides(search_now* now, const search_panel* panel, long long step, double* t, search_real* columns) {
+static int search_find_sides(search_now* now, const search_panel* panel, long long step, double* t, const search_panel* sides) {
   const lagrange_casadi_curves* curves = now->curves;
   search_real low, high, level;
   int numbered, kind, j, k, tried = 0;
@@ -139,7 +119,7 @@ static int search_find_sides(search_now* now, const search_panel* panel, long lo
   }
   for (numbered = 0; numbered < 2; ++numbered) {
     for (k = 0; k < curves->watches; ++k) {
-      const search_real* row = search_watched(panel, k);
+      const search_real* row = search_watched(now, panel, k);
       kind = curves->watch[k];
       if ((numbered ? !SEARCH_NUMBERED(kind) : kind != SEARCH_IS_STEP) || now->ignored[k]) continue;
       low = search_lower(row[step], row[step + 1]);
@@ -150,7 +130,7 @@ static int search_find_sides(search_now* now, const search_panel* panel, long lo
         if (search_beyond(kind, low, level) || !search_beyond(kind, high, level)) continue;
         if (search_undecided(now, panel, k, step)) continue;
         if (tried++ == SEARCH_WATCHED) return 0;
-        if (search_apart(now, panel, step, k, level, t, columns)) return 1;
+        if (search_apart(now, panel, step, k, level, t, sides)) return 1;
       }
     }
   }
@@ -159,19 +139,15 @@ static int search_find_sides(search_now* now, const search_panel* panel, long lo
 
 /* Search a step as a panel of its own, or as two if it is known where in it a kink or a jump is. */
 static void search_inside(search_now* now, const search_panel* panel, long long step, int depth) {
-  const double start = panel->t[step], stop = panel->t[step + 1], beside = search_beside(now, panel);
-  const int rows = search_rows(now);
-  search_real *first = now->columns + 5*depth*rows, *last = first + rows, *sides = last + rows;
+  const double least = 2*search_beside(now, panel);
   double t[3];
-  int j;
-  search_column(now, panel, step, first);
-  search_column(now, panel, step + 1, last);
-  if (!search_find_sides(now, panel, step, t, sides)) {
-    search_part(now, start, stop, first, last, depth);
+  const search_panel sides = search_few(t, 3, now->beside + depth*search_rows(now)*SEARCH_STRIDE);
+  if (!search_find_sides(now, panel, step, t, &sides)) {
+    search_part(now, panel, step, panel, step + 1, depth);
     return;
   }
-  for (j = 0; j < 3; ++j) search_note_column(now, t[j], sides + j*rows);
+  search_note_all(now, &sides);
   --now->left;
-  if (t[0] - start > 2*beside) search_part(now, start, t[0], first, sides, depth);
-  if (stop - t[1] > 2*beside) search_part(now, t[1], stop, sides + rows, last, depth);
+  if (t[0] - panel->t[step] > least) search_part(now, panel, step, &sides, 0, depth);
+  if (panel->t[step + 1] - t[1] > least) search_part(now, &sides, 1, panel, step + 1, depth);
 }
