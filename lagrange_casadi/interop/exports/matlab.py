@@ -14,6 +14,9 @@ _RESTS = """
    Numbers are doubles here: what single precision would round off a coordinate or a time is kept,
    without a member of its own."""
 
+_SECTION = "plhs[0] = section(prhs[1], prhs[2], prhs[3], nrhs > 4 ? prhs[4] : 0)"
+_NO_SECTION = 'mexErrMsgIdAndTxt("{}:name", "there is no link with sections.")'
+
 
 def matlab(source: Source) -> dict[str, str]:
     """The files by name."""
@@ -36,10 +39,10 @@ def matlab(source: Source) -> dict[str, str]:
             inputs=_members(c, "inputs", [m for m in c.inputs if not m.rest_of]),
             outputs=_members(c, "outputs", c.outputs),
             parameters=_members(c, "parameters", c.settings),
-            links=", ".join(f'"{link.name}"' for link in c.links) or "0",
             prepare=_prepare(c, words),
             time=", ".join(c.split("t")),
-            section=_section(c, words) if c.links else template("mex_no_section.c", **words),
+            section=_section(c, words) if c.links else "",
+            sections=_SECTION if c.links else _NO_SECTION.format(c.prefix),
             matrices=listed(c.table.forces),
         ),
         "build_mex.m": template("build_mex.m", **words),
@@ -85,6 +88,7 @@ def _section(c: Contract, words: Mapping[str, str]) -> str:
     return template(
         "mex_section.c",
         **words,
+        links=", ".join(f'"{link.name}"' for link in c.links),
         pointers=", ".join(f"*{force}" for force in forces),
         added="\n".join(
             f'  {force} = added(found, "{force}", many, width, mxDOUBLE_CLASS);' for force in forces

@@ -40,7 +40,6 @@ static const member members_of_parameters[] = {
 $parameters
   {0, 0, 0}
 };
-static const char* const names_of_links[] = {$links, 0};
 
 static void put(void* to, const member* m, double value) {
   const ${p}_real rounded = (${p}_real) value;
@@ -184,7 +183,7 @@ void mexFunction(int nlhs, mxArray* plhs[], int nrhs, const mxArray* prhs[]) {
   } else if (strcmp(word, "motion") == 0 && (nrhs == 2 || nrhs == 3)) {
     plhs[0] = motion(prhs[1], nrhs > 2 ? prhs[2] : 0);
   } else if (strcmp(word, "section") == 0 && (nrhs == 4 || nrhs == 5)) {
-    plhs[0] = section(prhs[1], prhs[2], prhs[3], nrhs > 4 ? prhs[4] : 0);
+    $sections;
   } else if (strcmp(word, "message") == 0 && nrhs == 2) {
     plhs[0] = message(prhs[1]);
   } else {

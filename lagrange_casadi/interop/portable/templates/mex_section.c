@@ -1,3 +1,5 @@
+static const char* const names_of_links[] = {$links, 0};
+
 static mxArray* section(const mxArray* given, const mxArray* link, const mxArray* ratios, const mxArray* parameters) {
   const mxArray* vectors[sizeof members_of_outputs/sizeof(member)];
   mxArray* found = mxCreateStructMatrix(1, 1, 0, 0);
