@@ -164,11 +164,10 @@ class UnknownNameError(DeclarationError, KeyError):
 
 
 def check_known(
-    kind: str, name: object, valid: Collection[str], listed_by: str = "", place: str = ""
+    kind: str, names: Iterable[str], valid: Collection[str], listed_by: str = "", place: str = ""
 ) -> None:
-    """Raise :class:`UnknownNameError` for a name, or those of several names, that are not valid."""
-    names = name if isinstance(name, Collection) and not isinstance(name, str) else [name]
-    if unknown := [str(one) for one in names if one not in valid]:
+    """Raise :class:`UnknownNameError` for those of the names that are not valid."""
+    if unknown := [str(name) for name in names if name not in valid]:
         raise UnknownNameError(kind, unknown, valid, listed_by, place)
 
 

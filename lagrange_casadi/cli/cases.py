@@ -144,7 +144,7 @@ def _copied(like: str, folder: Path) -> dict[str, bytes]:
     named after the folder, as far as that is a name.
     """
     found = shipped_cases()
-    check_known("case", like, found)
+    check_known("case", [like], found)
     files = {
         file.name: file.read_bytes()
         for file in sorted(found[like].iterdir())

@@ -129,7 +129,7 @@ def free(
 def _law(text: str) -> Law:
     """Read WORD=NUMBER,... as a law."""
     word, _, numbers = text.partition("=")
-    check_known("law of --drive", word, LAWS)
+    check_known("law of --drive", [word], LAWS)
     make, many = LAWS[word]
     return make(*_numbers(f"--drive {word}", numbers, many))
 

@@ -183,7 +183,7 @@ class ModelData(Graphs, Brief):
         Raises :class:`.UnknownNameError` for anything else.
         """
         bodies = self.content.bodies
-        check_known("part with a mass", part, (*bodies, ALL))
+        check_known("part with a mass", [part], (*bodies, ALL))
         some = bodies.values() if part == ALL else [bodies[part]]
         return ca.SX(sum(self.template.placed([body.mass for body in some], p)))
 

@@ -64,7 +64,7 @@ def effective_lengths(description: Description, link: str) -> tuple[float, float
     Stability*, section 2.4).
     """
     check_kind("effective_lengths", description, "the description of a solution", Description)
-    check_known("link", link, description.links)
+    check_known("link", [link], description.links)
     ends = held_ends(description, link)
     if description.space:
         return (1.0, 1.0) if all(ends) else (2.0, 2.0)

@@ -299,5 +299,5 @@ def rest_law(what: str, law: object) -> RestLaw:
             f"{what}: law: expected a name, trapezoid(SHARE) or s_curve(SHARE, ROUNDING), got"
             f" {law!r}"
         )
-    check_known("law", law, LAWS, place=what)
+    check_known("law", [law], LAWS, place=what)
     return _LAWS[law]

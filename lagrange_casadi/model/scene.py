@@ -563,7 +563,7 @@ class Scene(Graphs):
         ParameterConstraints
             The conditions.
         """
-        check_known("precision", precision, PRECISIONS)
+        check_known("precision", [precision], PRECISIONS)
         parts = demands(self.mechanism, precision)
         moved = [demand for law in self.laws.values() for demand in law.parameter_constraints]
         return ParameterConstraints(parts.symbols, (*parts.each, *moved)) if moved else parts
@@ -610,7 +610,7 @@ class Scene(Graphs):
         DeclarationError
             If its motion is not made of moves.
         """
-        check_known("driven joint", name, self.laws)
+        check_known("driven joint", [name], self.laws)
         law, values = self.laws[name], self.values(parameters)
         if not law.stretches:
             raise DeclarationError(

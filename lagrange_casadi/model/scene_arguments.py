@@ -51,7 +51,7 @@ def weighed(
                 else "has no coordinate for an effort"
             )
             raise DeclarationError(f"drives: joint '{name}' {why}")
-        check_known("joint in drives", name, coordinates)
+        check_known("joint in drives", [name], coordinates)
         if not isinstance(weight, ca.SX):
             if not isinstance(weight, (int, float)) or not 0.0 < weight < float("inf"):
                 raise DeclarationError(

@@ -90,7 +90,7 @@ class Timing:
             return cls(*_read(mechanism, "t", t))
         if not isinstance(over, (tuple, list)) or len(over) != 4 or not isinstance(over[0], str):
             raise DeclarationError(f"over: expected (joint, start, stop, count), got {shown(over)}")
-        check_known("driven joint in over", over[0], motion)
+        check_known("driven joint in over", [over[0]], motion)
         slides = mechanism.coordinates[over[0]][1].kind == "slide"
         unit = LENGTH if slides else ANGLE
         bounds = [

@@ -42,9 +42,9 @@ class Derivatives:
         Raises :class:`.UnknownNameError` for a parameter by which there is none, and a quantity
         that has none.
         """
-        check_known("parameter with sensitivities", parameter, self.by)
+        check_known("parameter with sensitivities", [parameter], self.by)
         found = {str(output): values for output, values in self.by[parameter].items()}
-        check_known("quantity with sensitivities", str(name), found)
+        check_known("quantity with sensitivities", [str(name)], found)
         return found[str(name)]
 
     def notes(self) -> Iterator[str]:

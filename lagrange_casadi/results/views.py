@@ -173,7 +173,7 @@ class Section:
         return found
 
     def _grid(self, force: str) -> Array:
-        check_known("section force", force, self.law.table.forces)
+        check_known("section force", [force], self.law.table.forces)
         return self.law.on_grid(force, self._basis)
 
     @cached_property

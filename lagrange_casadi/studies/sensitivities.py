@@ -277,7 +277,7 @@ class Sensitivities:
         )
 
     def _number(self, parameter: str) -> int:
-        check_known("parameter", parameter, self.parameters)
+        check_known("parameter", [parameter], self.parameters)
         return self.parameters.index(parameter)
 
 

@@ -73,7 +73,7 @@ def read_tolerance(
     Raises :class:`UnknownNameError` for what is no parameter, :class:`DeclarationError` for what is
     no tolerance of it.
     """
-    check_known("parameter", name, parameters)
+    check_known("parameter", [name], parameters)
     unit, text = parameters[name].unit, value.strip() if isinstance(value, str) else ""
     try:
         if text.endswith("%"):

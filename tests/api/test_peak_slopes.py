@@ -18,6 +18,7 @@ from lagrange_casadi import (
     tolerances,
 )
 from lagrange_casadi.density import polynomial as density
+from lagrange_casadi.errors import UnknownNameError
 from lagrange_casadi.motion import dwell, harmonic, move, moves, polynomial, samples
 
 _, END, _, UNKNOWN, _ = range(5)
@@ -88,6 +89,9 @@ def test_a_peak_at_an_end_goes_with_the_end(asked):
     at = {"t": (0.0, speed / 20, 21)} if asked == "times" else {"over": ("O", 0.1, speed / 2, 21)}
     f = prepare(Scene(m, {"O": law}, t=(0.0, 1.0, 21)), wanted=["section", "motion"], **at)
     gradient, bends = f.gradient(), f.curvature()["section:arm:axial"]
+    for of in (f.gradient(), f.curvature()):
+        with pytest.raises(UnknownNameError, match="unknown quantity with a peak"):
+            of["effort:A", "section:arm:axial"]
     k = f.quantities.index("section:arm:axial")
     assert gradient.kinds[k] == END
     size = 0.4**2 * MOMENT

@@ -84,7 +84,7 @@ class EvaluationMethod:
             ("backend", self.backend, BACKENDS),
             ("precision", self.precision, PRECISIONS),
         ):
-            check_known(kind, str(name), valid)
+            check_known(kind, [str(name)], valid)
         if self.newton is not None and (
             type(self.newton) is not int or not 1 <= self.newton <= MOST_STEPS
         ):

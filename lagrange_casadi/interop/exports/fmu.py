@@ -91,7 +91,7 @@ def _check_way(source: Source, by: str) -> None:
     :class:`DeclarationError` for one that does not rise or fall at all instants.
     """
     program = source.exported.program
-    check_known("coordinate", by, ["time", *program.driven])
+    check_known("coordinate", [by], ["time", *program.driven])
     times = np.linspace(*program.data.span, max(2, 4 * program.data.timing.count))
     _, (name,), _ = motion_names([by])
     rates = motions_at(program, times, source.p)[name]

@@ -77,7 +77,7 @@ def link_load_cases(
         If the loads are not in equilibrium within the tolerance of the solution.
     """
     described = solution.description.bodies
-    check_known("link", link, described)
+    check_known("link", [link], described)
     declared, stated = solution.description, _stated(solution, link, scene)
     needed = forces_needed(declared, link)
     if missing := [f"{one.group}:{one.part}" for one in needed if one not in solution.outputs]:

@@ -95,6 +95,6 @@ def _history(solution: Solution, name: str) -> tuple[Array, str]:
         return stresses[int(np.argmax(np.ptp(stresses, axis=1)))], "Pa"
     link, _, force = quantity.rpartition(":")
     law, forces = solution.section(link).law, solution.table.forces
-    check_known("section force", force, forces, place=f"spectrum of '{name}'")
+    check_known("section force", [force], forces, place=f"spectrum of '{name}'")
     values = law.at(force, np.full((solution.t.size, 1), ratio))[:, 0]
     return np.asarray(values), solution.unit(f"section:{quantity}")

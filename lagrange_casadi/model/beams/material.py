@@ -137,7 +137,7 @@ def material(name: str) -> Material:
     UnknownNameError
         For any other name; the message lists all.
     """
-    check_known("material", name, TABLE)
+    check_known("material", [name], TABLE)
     return TABLE[name]
 
 

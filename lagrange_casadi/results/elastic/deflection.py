@@ -88,7 +88,7 @@ class Deflection:
 
     def at(self, name: str, u: Numeric) -> Array:
         """Displacement by a name, at a ratio, or at ratios (t, ...), a row an instant."""
-        check_known("deflection", name, self.names)
+        check_known("deflection", [name], self.names)
         u = np.asarray(u, float)
         if not u.shape:
             u = np.full(self.member.t.size, float(u))

@@ -248,7 +248,7 @@ def _reaction_sizes(solution: Histories, joint: str) -> tuple[Array, Array]:
     evaluated, or is indeterminate at all instants.
     """
     joints = solution.description.joints
-    check_known("joint", joint, joints)
+    check_known("joint", [joint], joints)
     members = [o for o in solution.outputs if o.group == "reaction" and o.part == joint]
     if not members:
         raise DeclarationError(

@@ -56,7 +56,7 @@ def strengths(material: Material, criterion: str) -> tuple[float, float]:
 
 
 def _needed(material: Material, criterion: str) -> tuple[str, str]:
-    check_known("fatigue criterion", criterion, CRITERIA)
+    check_known("fatigue criterion", [criterion], CRITERIA)
     name = CRITERIA[criterion]
     missing = name == "fatigue_strength" and material.fatigue_strength is None
     return "endurance", "ultimate" if missing else name

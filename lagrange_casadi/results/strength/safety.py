@@ -175,7 +175,7 @@ def rated(
     enough: float = 0.0,
 ) -> Safety:
     """Safety of a link in numbers; results after a factor that is not ``enough`` are left out."""
-    check_known("fatigue criterion", criterion, (*CRITERIA, FINDLEY))
+    check_known("fatigue criterion", [criterion], (*CRITERIA, FINDLEY))
     member = member.counted
     missing, verdicts = lacking(member.beam.material, criterion), list[Verdict]()
     for verdict in (

@@ -312,7 +312,7 @@ class Stress:
 
 
 def _weights(kind: str) -> tuple[float, float]:
-    check_known("kind of stress", kind, KINDS)
+    check_known("kind of stress", [kind], KINDS)
     return KINDS[kind]
 
 

@@ -194,7 +194,7 @@ def duty_of(
     drives = [
         str(name).partition(":")[2] for name in solution.names() if str(name).startswith("effort:")
     ]
-    check_known("drive", joint, drives)
+    check_known("drive", [joint], drives)
     turns = quantity("ratio", ratio, "rad/m" if slides(solution, joint) and not linear else "1")
     if not turns:
         raise DeclarationError(f"ratio must be a finite number other than 0, got {ratio!r}")

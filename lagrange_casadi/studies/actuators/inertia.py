@@ -58,7 +58,7 @@ def inertia_at(
     """
     values = scene.values(parameters)
     reflected = reflected_inertia(scene, values)
-    check_known("drive", joint, reflected.drives)
+    check_known("drive", [joint], reflected.drives)
     several = len(reflected.motions) > 1
     rows = reflected.program.data.content.rows
     if rows or (several and len(reflected.drives) != len(reflected.motions)):

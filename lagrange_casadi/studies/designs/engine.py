@@ -104,8 +104,8 @@ class DesignEngine:
         peaks: PeakSearch = "exact",
     ) -> DesignEngine:
         """Compile a graph for designs at instants that are asked for."""
-        check_known("backend of designs", method.backend, COMPILED)
-        check_known("choice of peaks", str(peaks), PEAK_SEARCHES)
+        check_known("backend of designs", [method.backend], COMPILED)
+        check_known("choice of peaks", [str(peaks)], PEAK_SEARCHES)
         sampled = peaks == "sampled"
         data = program.data
         times, p = DesignTimes(data.laws, data.values(data.defaults), timing), data.defaults

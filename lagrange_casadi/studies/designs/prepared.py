@@ -112,7 +112,7 @@ class Gradient:
 
         Raises :class:`UnknownNameError`.
         """
-        check_known("quantity with a peak", quantity, self.quantities)
+        check_known("quantity with a peak", [quantity], self.quantities)
         return dict(
             zip(self.parameters, self.slopes[self.quantities.index(quantity)].tolist(), strict=True)
         )
@@ -136,7 +136,7 @@ class Curvature:
 
         Raises :class:`UnknownNameError`.
         """
-        check_known("quantity with a peak", quantity, self.quantities)
+        check_known("quantity with a peak", [quantity], self.quantities)
         rows = self.bends[self.quantities.index(quantity)].tolist()
         return {
             name: dict(zip(self.parameters, row, strict=True))

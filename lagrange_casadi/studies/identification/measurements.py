@@ -147,7 +147,7 @@ class Measurements(Brief):
         """
         parts = []
         for drive in drives:
-            check_known("column of a drive", drive, self.columns, place=self.name)
+            check_known("column of a drive", [drive], self.columns, place=self.name)
             missing = np.full(self.t.size, np.nan)
             found = np.array([self.columns.get(f"{drive}{end}", missing) for end in MOTION])
             if self.noise.get(drive, 0.0) > 0.0:

@@ -284,14 +284,14 @@ def _quantity(
     if place.kind == "section":
         output = Output("section", place.link, place.member)
         return section[place.member], output.unit(data.kinds)
-    check_known("link with a beam", place.link, data.content.materials, place=name)
+    check_known("link with a beam", [place.link], data.content.materials, place=name)
     link = data.link(place.link, p)
     assert link.beam is not None
     sections = CrossSections(link.beam, data.space)
     breaks = link.beam.course.breaks
     cell = int(np.clip(np.searchsorted(breaks, place.ratio, "right") - 1, 0, len(breaks) - 2))
     fibres = sections.fibres(cell).names
-    check_known("fibre", place.member, fibres, place=name)
+    check_known("fibre", [place.member], fibres, place=name)
     forces = [section[force] for force in sections.forces]
     normal, _, _ = sections.stresses(cell, place.ratio, [fibres.index(place.member)], forces)
     elasticity = link.beam.material.needs(f"quantity '{name}'", "elasticity")[0]

@@ -61,7 +61,7 @@ class Box:
             )
         names, low, high = tuple(over), [], []
         for name, bounds in over.items():
-            check_known("parameter", name, declared)
+            check_known("parameter", [name], declared)
             if not isinstance(bounds, (tuple, list)) or len(bounds) != 2:
                 raise DeclarationError(
                     f"over: expected (least, largest) for '{name}', got {bounds!r}"

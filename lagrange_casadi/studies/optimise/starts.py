@@ -34,7 +34,7 @@ def named(solver: Solver, starts: Sequence[Mapping[str, float]]) -> list[Evaluat
     for values in starts:
         p = box.p.copy()
         for name, value in values.items():
-            check_known("parameter that is chosen", name, box.names)
+            check_known("parameter that is chosen", [name], box.names)
             k = box.names.index(name)
             if not box.low[k] <= value <= box.high[k]:
                 raise DeclarationError(f"starts: {name} = {value!r} is not within its bounds")

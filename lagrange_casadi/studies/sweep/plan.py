@@ -104,7 +104,7 @@ class Plan:
         Raises what :func:`.sweep` does.
         """
         fixed, method = request.parameters or {}, request.method
-        check_known("choice of what to keep", str(keep), KEEPS)
+        check_known("choice of what to keep", [str(keep)], KEEPS)
         check_designs(designs, scene.parameters, fixed)
         values, timing = scene.values(fixed), scene.timing(request.t, request.over)
         if designs.size > MOST:

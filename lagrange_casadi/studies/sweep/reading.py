@@ -261,7 +261,7 @@ class Sweep:
         UnknownNameError
             If there is no such axis.
         """
-        check_known("axis of designs", axis, self.dimensions)
+        check_known("axis of designs", [axis], self.dimensions)
         check_kind("places", places, "a slice", slice)
         numbers = self.chosen.get(axis, np.arange(self.dimensions[axis]))
         return replace(self, chosen={**self.chosen, axis: numbers[places]})
@@ -470,7 +470,7 @@ class Sweep:
             For other axes, and for an axis with the name of a parameter.
         """
         for axis in along:
-            check_known("axis", axis, self.axes)
+            check_known("axis", [axis], self.axes)
             if axis in self.parameters:
                 raise DeclarationError(
                     f"parameter '{axis}' has the name of an axis: rows cannot go along both"

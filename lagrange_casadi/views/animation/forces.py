@@ -159,7 +159,7 @@ def _vector(solution: Solution, group: str, name: str) -> Array | None:
 
 def _laws(solution: Solution, force: str) -> list[str]:
     """The links whose section force is known."""
-    check_known("section force", force, solution.table.sections)
+    check_known("section force", [force], solution.table.sections)
     links = [
         link
         for link in solution.links_with_sections
