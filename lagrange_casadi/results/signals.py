@@ -149,17 +149,18 @@ class Signals:
         return self.interpreter.columns(t, self.p, z)
 
     def curves(self, columns: Array, near: npt.NDArray[np.intp]) -> list[tuple[Array, Array]]:
-        """Curves of each quantity, as ratios and values (curves, t), from the graph's columns
-        (columns, t).
+        """Curves of each quantity: see :meth:`curves_of`."""
+        return [self.curves_of(q, columns, near) for q in range(len(self.quantities))]
+
+    def curves_of(self, q: int, columns: Array, near: npt.NDArray[np.intp]) -> tuple[Array, Array]:
+        """Curves of a quantity by its number, as ratios and values (curves, t), from the graph's
+        columns (columns, t).
         """
-        found = []
-        for q, quantity in enumerate(self.quantities):
-            if not isinstance(quantity, tuple):
-                found.append(quantity.curves(columns))
-                continue
-            rows = columns[list(quantity)]
-            values = rows[0] if len(rows) == 1 else size_of(rows)
-            if q in self.turned:
-                values = values + math.tau * np.round((self.turned[q][near] - values) / math.tau)
-            found.append((np.full((1, values.size), np.nan), values[None]))
-        return found
+        quantity = self.quantities[q]
+        if not isinstance(quantity, tuple):
+            return quantity.curves(columns)
+        rows = columns[list(quantity)]
+        values = rows[0] if len(rows) == 1 else size_of(rows)
+        if q in self.turned:
+            values = values + math.tau * np.round((self.turned[q][near] - values) / math.tau)
+        return np.full((1, values.size), np.nan), values[None]

@@ -403,7 +403,7 @@ class ContinuousSolution(Brief):
         self, signals: Signals, names: Sequence[Output], peaks: Peaks
     ) -> tuple[Array, Array, Array]:
         """Values, times and ratios of peaks, the smooth ones at the times where their derivative is
-        zero, by Newton's method.
+        zero, by a chord of the derivative.
         """
         value, t, xi, instants = (
             peaks.value.copy(),
@@ -415,16 +415,16 @@ class ContinuousSolution(Brief):
         some = np.flatnonzero(np.isfinite(value) & ~np.isin(t, instants)).tolist()
         if not some:
             return value, t, xi
-        chosen, first = {k: names[k] for k in some}, t[some]
+        rates, first = _slopes_of(self.program, tuple(names)), t[some]
         later = np.clip(first + reach / 2, instants[0], instants[-1])
-        _, _, slope_first = self.slopes(signals, chosen, first)
+        _, _, slope_first = self.slopes(signals, rates, some, first)
         now, slope = first, slope_first
         with np.errstate(all="ignore"):
-            bend = (self.slopes(signals, chosen, later)[2] - slope_first) / (later - first)
+            bend = (self.slopes(signals, rates, some, later)[2] - slope_first) / (later - first)
             for _ in range(_TRIALS):
                 ahead = now - slope / bend
                 now = np.where(np.abs(ahead - first) < reach, ahead, now)
-                sizes, places, slope = self.slopes(signals, chosen, now)
+                sizes, places, slope = self.slopes(signals, rates, some, now)
         better = (np.abs(sizes) >= np.abs(value[some]) * (1.0 - _LESS)) & (
             np.abs(slope) < np.abs(slope_first)
         )
@@ -433,24 +433,23 @@ class ContinuousSolution(Brief):
         return value, t, xi
 
     def slopes(
-        self, signals: Signals, names: Mapping[int, Output], t: Array
+        self, signals: Signals, rates: Slopes, chosen: Sequence[int], t: Array
     ) -> tuple[Array, Array, Array]:
-        """Value, ratio, and time derivative of the size of each quantity, by its number among the
-        signals, at a time of its own.
+        """Value, ratio, and time derivative of the size of each of the ``chosen`` signals at a time
+        of its own, by the derivatives of all signals.
 
         Where along a link a force is largest moves, but for the rate of its size only at a station
         does that count.
         """
         near = signals.near(t)
         z, _ = signals.closed(t, near)
-        curves, best = signals.curves(signals.columns(t, z), near), []
-        for k, number in enumerate(names):
-            places, values = (rows[:, k] for rows in curves[number])
+        columns, best = signals.columns(t, z), []
+        for k, number in enumerate(chosen):
+            places, values = signals.curves_of(number, columns[:, [k]], near[[k]])
             highest = largest(values)
-            best.append((values[highest], places[highest]))
+            best.append((values[highest, 0], places[highest, 0]))
         value, place = np.array(best).T
-        slopes = _slopes_of(self.program, tuple(names.values()))
-        found = slopes.at(t, z.T, self.p, np.arange(t.size, dtype=np.intc), place, value)
+        found = rates.at(t, z.T, self.p, np.array(chosen, np.intc), place, value)
         return value, place, np.sign(value) * found.rate
 
 

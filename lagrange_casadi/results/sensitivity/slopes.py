@@ -4,7 +4,6 @@ by CasADi's virtual machine.
 
 from __future__ import annotations
 
-import functools
 import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -17,7 +16,7 @@ import numpy.typing as npt
 from ...base.arrays import Array
 from ...base.brief import Brief
 from ...base.quantities import Output
-from ...base.symbolic import symbolic, symbolic_property
+from ...base.symbolic import symbolic_property
 from ...engine import codegen
 from ...engine.codegen.stages import plain
 from ...engine.instants.backends import Interpreter, begun, compiled, evaluator
@@ -185,7 +184,7 @@ class Slopes(Brief):
                 name: (rows[here] if each else rows, each) for name, (rows, each) in given.items()
             }
             local[codegen.CHOSEN] = np.zeros(here.size, np.intc), 1
-            found[here] = _alone(self.points, k).at(here.size, local)
+            found[here] = self._alone(k).at(here.size, local)
         return AtPoints(found[:, 0], found[:, 1:])
 
     def bends(
@@ -214,12 +213,17 @@ class Slopes(Brief):
     def _second(self) -> Batch:
         return Batch.of(self.points.further(), self.method)
 
+    def _alone(self, number: int) -> Batch:
+        """The function of one quantity alone, which nothing else has a part in."""
+        if number not in self._single:
+            own = self.points.quantities[number : number + 1]
+            self._single[number] = Batch(PointFunction.of(self.program, own).function)
+        return self._single[number]
 
-@symbolic
-@functools.lru_cache(maxsize=64)
-def _alone(points: PointFunction, number: int) -> Batch:
-    """The function of one quantity alone, which nothing else has a part in."""
-    return Batch(PointFunction.of(points.program, points.quantities[number : number + 1]).function)
+    @symbolic_property
+    def _single(self) -> dict[int, Batch]:
+        """Functions of single quantities, by their numbers, as far as they were asked for."""
+        return {}
 
 
 def _given(
