@@ -125,28 +125,40 @@ class SectionLaw(Brief):
         """The law of the same link by other numbers, among ``outputs``."""
         return replace(law_of(link, outputs, self.length, self.density), slack=self.slack)
 
-    def changed(self, other: SectionLaw, xi: Array) -> Iterator[tuple[str, Array]]:
-        """Change of each force that is no resultant to that by other numbers of the law, (..., t, n
-        + load points): at ratios ``xi`` (n,) and at every load point, from both sides.
+    def changed(self, changes: SectionLaw, xi: Array) -> Iterator[tuple[str, Array]]:
+        """Change of each force that is no resultant, (t, n), or with load points, also at each of
+        them and from both sides, (sides, t, n + load points).
 
-        A section sees what it saw before the change: that a load point moves is no change by
-        itself.
+        ``changes`` has the changes of the law's numbers in their places; ``xi`` (n,) are ratios. A
+        section sees what it saw before the change: that a load point moves is no change by itself.
         """
         now = self.coefficients["n0"]
         load_points = [np.clip(load.station, 0.0, 1.0) for load in self.loads]
         u = np.stack([*(np.full_like(now, ratio) for ratio in xi), *load_points], axis=-1)
         # Mostly no place moves, and one instant's functions serve all.
         at = u[0] if (u == u[0]).all() else u
-        rows, others = self.basis(at), other.basis(at)
+        moved = replace(
+            self,
+            distributed_loads=tuple(
+                replace(load, width=load.width + change.width, end=load.end + change.end)
+                for load, change in zip(
+                    self.distributed_loads, changes.distributed_loads, strict=True
+                )
+            ),
+        )
+        rows, others = self.basis(at), moved.basis(at)
         beyond = np.stack([edge(u, self.slack, side) for side in SIDES])
         for force in self.table.sections:
             gap: Array = np.zeros(u.shape)
-            for before, after in zip(self._terms(force), other._terms(force), strict=True):
-                gap += after.column[:, None] * after.of(others)
-                gap -= before.column[:, None] * before.of(rows)
-            for step, moved in zip(self._steps(force), other._steps(force), strict=True):
-                (station, *_), (one, two) = step, (_carried(load, u) for load in (step, moved))
-                gap = gap + np.where(beyond < station[:, None], two - one, 0.0)
+            for term, change in zip(self._terms(force), changes._terms(force), strict=True):
+                after = term.of(others)
+                gap += change.column[:, None] * after
+                gap += term.column[:, None] * (after - term.of(rows))
+            for load, shift in zip(self._steps(force), changes._steps(force), strict=True):
+                station, _, slope = (values[:, None] for values in load)
+                going, more, steeper = (values[:, None] for values in shift)
+                carried = more + steeper * (station + going - u) + slope * going
+                gap = gap + np.where(beyond < station, carried, 0.0)
             yield force, gap
 
     def bound(self, force: str, xi: Array) -> float:
@@ -294,12 +306,6 @@ class Term:
         """The function at ratios."""
         found: Array = (rows.moment if self.moment else rows.force).rows[self.row]
         return found
-
-
-def _carried(load: grids.Load, u: Array) -> Array:
-    """Share of a force that sections at ratios (t, n) carry of a load point beyond them."""
-    station, constant, slope = (values[:, None] for values in load)
-    return constant + slope * (station - u)
 
 
 def law_of(

@@ -23,7 +23,7 @@ from ...engine.instants.cycle_table import CycleTable
 from ...engine.instants.refusing import resting
 from ...engine.program import Program
 from ..histories import Histories
-from ..vector_sizes import largest, most
+from ..vector_sizes import largest, most, size_of
 from .longer import LONG, long_doubles, missed
 from .reference import elementwise
 from .reported import blur
@@ -104,17 +104,16 @@ def _worst(
         {output: rows[k] for output, k in program.outputs.items()} for rows in (changes, columns)
     )
     errors = {output: most(values) for output, values in change.items()}
-    rounded = {output: at[output] + values for output, values in change.items()}
     for link in histories.links_with_sections:
         law = histories.section(link).law.of(link, at)
+        off = dict(law.changed(law.of(link, change), ALONG))
         # A force is itself a sum that is rounded, in doubles always.
-        off = {
-            force: most(gap) + 2.0 * ROUNDING["double"] * law.bound(force, ALONG)
-            for force, gap in law.changed(law.of(link, rounded), ALONG)
-        }
+        rounded = {force: 2.0 * ROUNDING["double"] * law.bound(force, ALONG) for force in off}
         for force in law.table.forces:
             parts = law.table.parts("section", force)
-            errors[Output("section", link, force)] = math.hypot(*map(off.__getitem__, parts))
+            error = most(size_of(off[part] for part in parts))
+            error += math.hypot(*(rounded[part] for part in parts))
+            errors[Output("section", link, force)] = error
     if not histories.indeterminate:
         return errors
     return {output: error for output, error in errors.items() if histories.determined(output)}
