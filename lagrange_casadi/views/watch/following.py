@@ -25,7 +25,7 @@ from .child import main
 from .news import News
 
 _MOMENT = 0.05
-"""Seconds between two looks at the files. A file is taken as saved if two find the same."""
+"""Seconds between two looks at the files, at least; a file is saved if two find the same."""
 _DRAWING, _WHOLE = 20.0, 600.0
 """Seconds in which a case is drawn, and in which all is done, where no limit is given."""
 
@@ -50,19 +50,24 @@ def follow(case: Path, given: Mapping[str, Any], news: News, limit: float | None
     files: set[str] = set()
     before: Stamps = {}
     shown: Stamps = {}
+    looked = -math.inf
     try:
         while True:
-            stamps = _stamps(file, files)
-            if stamps == before != shown:
-                runs.append(_Run(said))
-                for run in runs[:-2]:
-                    programs.end(run.process)
-                runs, shown = runs[-2:], stamps
-                news.begin()
-                runs[0].begin(order)
-            before = stamps
-            with suppress(Empty):
+            if (now := time.monotonic()) >= looked + _MOMENT:
+                stamps, looked = _stamps(file, files), now
+                if stamps == before != shown:
+                    runs.append(_Run(said))
+                    for run in runs[:-2]:
+                        programs.end(run.process)
+                    runs, shown = runs[-2:], stamps
+                    news.begin()
+                    runs[0].begin(order)
+                before = stamps
+            try:
                 run, kind, value = said.get(timeout=_MOMENT)
+            except Empty:
+                pass
+            else:
                 if run is runs[0] and not run.done:
                     run.hear(kind)
                     if kind == "files":
