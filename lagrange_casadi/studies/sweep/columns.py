@@ -79,10 +79,6 @@ class Harvest:
     fluctuation: bool
 
     def __post_init__(self) -> None:
-        if self.engine.sampled and (self.safety or self.life or self.by):
-            raise DeclarationError(
-                "peaks: safety, life and sensitivity need exact ones; leave them out of wanted="
-            )
         if self.fluctuation and not self.engine.drives:
             raise DeclarationError(
                 "fluctuation: only efforts of joints whose motion is given have a fluctuation of"

@@ -124,6 +124,10 @@ class Plan:
         without_fitted(content.fitted, names, "sweeps")
         safety, life = (tuple(among(kind, content.beams, named)) for kind in ("safety", "life"))
         by = by_parameters(program.data.parameters, names)
+        if peaks != "exact" and (safety or life or by):
+            raise DeclarationError(
+                "peaks: safety, life and sensitivity need exact ones; leave them out of wanted="
+            )
         method.check(program)
         scene.checked(scene.values())
         whole = compile_scene(scene, wanted_whole(program.outputs), parameters=assembly)
