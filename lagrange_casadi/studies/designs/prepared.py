@@ -184,27 +184,13 @@ class Prepared:
     """A scene that answers for values of its parameters: see :func:`prepare`.
 
     Any number of threads may use one. Answers lie in arrays of the thread that asks; :meth:`copy`
-    has others, for the same thread. All names are in their order: those of the ``parameters``, of
-    the ``outputs`` of which an evaluation gives series, of the ``quantities`` that have peaks, with
-    their ``units``, and of the ``efforts`` that have means.
+    has others, for the same thread.
     """
-
-    parameters: tuple[str, ...]
-    outputs: tuple[str, ...]
-    quantities: tuple[str, ...]
-    units: tuple[str, ...]
-    efforts: tuple[str, ...]
 
     def __init__(
         self, engine: DesignEngine, explain: Callable[[Mapping[str, float]], Solution]
     ) -> None:
         self._engine, self._explain = engine, explain
-        self.parameters, self.outputs, self.efforts = (
-            engine.parameters,
-            engine.columns,
-            engine.efforts,
-        )
-        self.quantities, self.units = engine.quantities, engine.kept.units
         self._declared = engine.program.data.parameters
         self._place = {name: k for k, name in enumerate(self._declared)}
         self._defaults = engine.program.data.defaults
@@ -215,6 +201,31 @@ class Prepared:
             f"<Prepared {self._engine.program.data.name}: {len(self.outputs)} outputs; parameters:"
             f" {listed(self.parameters)}>"
         )
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """The names of the parameters."""
+        return self._engine.parameters
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """The names of the series that an evaluation gives."""
+        return self._engine.columns
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """The names of the quantities that have peaks, in their order."""
+        return self._engine.quantities
+
+    @property
+    def units(self) -> tuple[str, ...]:
+        """Units of the quantities."""
+        return self._engine.kept.units
+
+    @property
+    def efforts(self) -> tuple[str, ...]:
+        """The names of the efforts that have means, in their order."""
+        return self._engine.efforts
 
     @property
     def t(self) -> Array:

@@ -25,7 +25,11 @@ function fieldOfMap(map) {
     column: (place) => nearest(places, place),
     fill: (column, found) => found.set(at(column)),
     describe: (column, ratio) => [whenOf(t[column], over ? places[column] : null), [[map.what, shown(at(column)[ratio], map.unit)]]],
-    show: () => showRow({ ...map, group: "map", part: map.link }),
+    show: () => {
+      seekTo(instantAt(map.peak.t));
+      showSection(map.link, map.peak.xi);
+      announce(`${map.link}: ${map.what} ${shown(map.peak.value, map.unit)}, ${whenOf(map.peak.t, map.peak.over)}`);
+    },
   };
 }
 

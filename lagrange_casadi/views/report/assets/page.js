@@ -129,11 +129,13 @@ function linksTable() {
     element("div", { class: "scroll" }, element("table", { "aria-label": "Largest in each link" }, element("thead", {}, element("tr", {}, element("th", { scope: "col" }, "link"), heads)), element("tbody", {}, lines))));
 }
 
-/** Show when a row peaks; of a section force and of a map also where, of that with its ribbon. */
+/** Show when a row peaks; of a section force also where, with its ribbon. */
 function showRow(row) {
   seekTo(instantAt(row.peak.t));
-  if (row.group === "section") deck.stage.show("ribbon", row.name.slice(`section:${row.part}:`.length));
-  if (row.group === "section" || row.group === "map") showSection(row.part, row.peak.xi);
+  if (row.group === "section") {
+    deck.stage.show("ribbon", row.name.slice(`section:${row.part}:`.length));
+    showSection(row.part, row.peak.xi);
+  }
   deck.stage.paper.canvas.scrollIntoView({ block: "nearest", behavior: "smooth" });
   announce(`${titleOf(row)}: ${shown(row.peak.value, row.unit)}, ${whenOf(row.peak.t, row.peak.over)}`);
 }

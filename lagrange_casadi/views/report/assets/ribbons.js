@@ -13,21 +13,37 @@ function drawRibbon(paper, section, force, instant, scale) {
   // Ordinates are drawn along the link's y, or in space along its z where the force lies in that plane.
   const side = directionOf(section.link, ["shear_z", "bending_y"].includes(force.name) ? [0, 0, 1] : [0, 1, 0], instant);
   const [base, tip] = [0, section.length].map((x) => placeOf(section.link, [x, 0, 0], instant));
-  const axis = ratios.map((u) => paper.on([0, 1, 2].map((k) => base[k] + u * (tip[k] - base[k]))));
+  const onAxis = (u) => paper.on([0, 1, 2].map((k) => base[k] + u * (tip[k] - base[k])));
   const [dx, dy] = paper.along(side);
-  const depth = (axis[0][2] + axis[axis.length - 1][2]) / 2;
+  const [, , depth] = onAxis(0.5);
   paper.put(ORDER.ribbons, depth, (context) => {
     for (const sign of [1, -1]) {
-      if (!values.some((value) => sign * value > 0)) continue;
       const ink = sign > 0 ? paper.inks.positive : paper.inks.negative;
-      const ordinates = values.map((value) => (sign * value > 0 ? value * scale : 0));
-      const edge = axis.map(([x, y], k) => [x + ordinates[k] * dx, y + ordinates[k] * dy]);
-      lineThrough(context, [...axis, ...edge.reverse()], true);
-      fillWith(context, sheer(ink, sign > 0 ? 0.34 : 0.16));
-      if (sign < 0) fillWith(context, paper.hatched(ink));
-      strokeWith(context, ink, 1.3);
+      for (const part of partsOf(ratios, values, sign)) {
+        const axis = part.map(([u]) => onAxis(u));
+        const edge = part.map(([, value], k) => [axis[k][0] + value * scale * dx, axis[k][1] + value * scale * dy]);
+        lineThrough(context, [...axis, ...edge.reverse()], true);
+        fillWith(context, sheer(ink, sign > 0 ? 0.34 : 0.16));
+        if (sign < 0) fillWith(context, paper.hatched(ink));
+        strokeWith(context, ink, 1.3);
+      }
     }
   });
+}
+
+/** The parts along a link in which values have a sign, as ratios and values, cut where the values pass through zero. */
+function partsOf(ratios, values, sign) {
+  const parts = [];
+  values.forEach((value, k) => {
+    const [here, before] = [sign * value > 0, sign * values[k - 1] > 0];
+    if (here && !before) parts.push([]);
+    if (k && here !== before) {
+      const share = values[k - 1] / (values[k - 1] - value);
+      parts.at(-1).push([ratios[k - 1] + share * (ratios[k] - ratios[k - 1]), 0]);
+    }
+    if (here) parts.at(-1).push([ratios[k], value]);
+  });
+  return parts;
 }
 
 /** What the section nearest to a point of the sheet is, within 18 points of it: the link and the number of its ratio. */

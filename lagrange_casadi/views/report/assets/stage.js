@@ -199,7 +199,8 @@ function floorOfSpace(paper, context) {
 
 /** The ways of declared points, and of joints, as far as they are shown and they move. */
 function tracesNow(shows) {
-  const numbers = someInstants(live.moving ? 80 : 240);
+  const step = Math.max(1, Math.ceil(instants.count / (live.moving ? 80 : 240)));
+  const numbers = Array.from({ length: Math.ceil(instants.count / step) }, (_, k) => k * step);
   if (numbers.at(-1) !== instants.count - 1) numbers.push(instants.count - 1);
   const of = (spot) => numbers.map((i) => spotOf(spot, i));
   const moved = (points) => points.some((point) => sizeOf(less(point, points[0])) > 1e-6 * extent.size);
