@@ -14,6 +14,7 @@ import numpy as np
 from ..base.arguments import Measured, public
 from ..base.arrays import Array
 from ..base.csv_table import Table, count_sizes, encoding_of, for_each
+from ..base.space import require
 from ..base.time_stamps import Clock
 from ..base.units import Within, differs, known, quantity
 from ..errors import DeclarationError, PathError, UnknownNameError, one_line
@@ -385,6 +386,7 @@ def _law(
         level[-1] = level[0]
     found = _curve(recording.name, t, level, periodic, noise)
     if points is not None:
+        require(f"{recording.name}: points", (points,))
         even = np.linspace(t[0], t[-1], points)
         found = _curve(recording.name, even, np.asarray(found(even)), periodic, 0.0)
     off = float(np.abs(np.asarray(found(t)) - level).max())

@@ -12,7 +12,7 @@ import pytest
 from derivatives import derivatives
 
 from lagrange_casadi import Mechanism, Scene, curve, evaluate, prepare, refine
-from lagrange_casadi.errors import DeclarationError, PathError, UnknownNameError
+from lagrange_casadi.errors import DeclarationError, PathError, SizeError, UnknownNameError
 from lagrange_casadi.motion import (
     dwell,
     expression,
@@ -193,6 +193,7 @@ REFUSED = {
     "auto": ("t,q", RAMP_ROWS, {"smoothing": "auto"}, "or 'estimated': expected a finite number"),
     "straight": ("t,q", RAMP_ROWS, {"smoothing": 1e3}, "a smoothing of 1000 leaves only a"),
     "points": ("t,q", RAMP_ROWS, {"points": 3}, "points: expected a whole number of at least 5"),
+    "many": ("t,q", RAMP_ROWS, {"points": 10**20}, "not enough memory for .*points"),
     "rows": ("t,q", RAMP_ROWS[: RAMP_ROWS.index("0.4")], {}, "expected at least 5 rows"),
     "back": ("t,q", RAMP_ROWS + "\n0.7,1", {}, "line 10: times must increase, but 0.7 follows 0.7"),
     "stamp": ("t,q", "\n".join(f"{NANO + max(k, 1)},0" for k in range(8)), {},
@@ -278,7 +279,7 @@ def test_misuse_is_named(here, what):
     if what in REFUSED:
         head, rows, options, says = REFUSED[what]
     (here / f"{name}.csv").write_text(f"{head}\n{rows}\n")
-    with pytest.raises((DeclarationError, UnknownNameError), match=says):
+    with pytest.raises((DeclarationError, SizeError, UnknownNameError), match=says):
         read(f"{name}.csv", **options)
 
 
