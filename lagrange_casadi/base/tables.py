@@ -350,7 +350,9 @@ class Table(Brief):
         directions, that of the axis first.
         """
         return tuple(
-            dict.fromkeys(one.distributed for one in self.sections.values() if one.distributed)
+            dict.fromkeys(
+                terms.distributed for terms in self.sections.values() if terms.distributed
+            )
         )
 
     @cached_property

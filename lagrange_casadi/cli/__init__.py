@@ -208,8 +208,8 @@ class _Insistent:
             os.kill(os.getpid(), number)
             return
         self._noticed.set()
-        callers = [one for one, _ in traceback.walk_stack(frame)]
-        packages = {one.f_globals.get("__name__", "").partition(".")[0] for one in callers}
+        callers = [caller for caller, _ in traceback.walk_stack(frame)]
+        packages = {caller.f_globals.get("__name__", "").partition(".")[0] for caller in callers}
         if any(caller.f_code is _Insistent.__exit__.__code__ for caller in callers):
             return  # it has arrived
         if "casadi" in packages and next(self._waits) % _WAITS:

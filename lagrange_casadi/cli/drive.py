@@ -157,7 +157,7 @@ def _choose(
         )
     per_unit = 1.0 if lead is None else math.tau / lead
 
-    beside = quantity("--inertia", inertia, "kg" if linear else "kg m^2")
+    beside_rotor = quantity("--inertia", inertia, "kg" if linear else "kg m^2")
 
     def asked(ratio: float, rotor: float) -> Duty:
         return duty_of(
@@ -165,7 +165,7 @@ def _choose(
             name,
             ratio=ratio,
             efficiency=efficiency,
-            inertia=rotor + beside,
+            inertia=rotor + beside_rotor,
             linear=linear,
             carried=carried,
         )

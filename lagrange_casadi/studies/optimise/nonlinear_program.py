@@ -177,18 +177,19 @@ class NonlinearProgram:
 
         ``averages`` are all instants, for means.
         """
-        many, capacity = max([len(one.points) for one in held] + [len(closures), 1]), _FEW
+        many = max([len(held_term.points) for held_term in held] + [len(closures), 1])
+        capacity = _FEW
         while capacity < many:
             capacity *= 2
         if capacity not in self.built:
             self.built[capacity] = self._build(held, capacity)
         built = self.built[capacity]
         given = np.concatenate(
-            [np.array([(one.bound / one.scale, 1.0 / one.scale) for one in held]).ravel()]
+            [np.array([(each.bound / each.scale, 1.0 / each.scale) for each in held]).ravel()]
             + [
-                self._packed(one.points, capacity, self.values.of(output).size)
-                for one in held
-                if one.points and (output := one.constraint.term.output)
+                self._packed(held_term.points, capacity, self.values.of(output).size)
+                for held_term in held
+                if held_term.points and (output := held_term.constraint.term.output)
             ]
             + [self._packed([(point, 1.0) for point in closures], capacity, 1)]
             * (self.closures is not None)
@@ -204,8 +205,8 @@ class NonlinearProgram:
         at, by_g, by_x = (found[name].full().ravel() for name in ("x", "lam_g", "lam_x"))
         scale = held[0].scale
         multipliers = tuple(
-            float(np.sum(by_g[rows])) * scale / one.scale
-            for rows, one in zip(built.rows[1:], held[1:], strict=True)
+            float(np.sum(by_g[rows])) * scale / held_term.scale
+            for rows, held_term in zip(built.rows[1:], held[1:], strict=True)
         )
         shares = np.clip(at[:n], 0.0, 1.0)
         found_conditions = conditions(
@@ -273,8 +274,8 @@ class NonlinearProgram:
 
         guesses = ca.MX.sym("guesses", nz, self.instants)
         best: Any = level
-        for number, one in enumerate(held):
-            term, (limit, over) = one.constraint.term, (limits[0, number], limits[1, number])
+        for number, held_term in enumerate(held):
+            term, (limit, over) = held_term.constraint.term, (limits[0, number], limits[1, number])
             if not term.pointed:
                 if term in self.energies:
                     value = self.energies[term](p)
@@ -282,7 +283,7 @@ class NonlinearProgram:
                     value = self._average(term, p, guesses)
                 else:
                     value = term.of_parameters(self.values.program.data)(p)
-                row = (-value if one.constraint.least else value) * over - limit
+                row = (-value if held_term.constraint.least else value) * over - limit
                 best = value * over if number == 0 else best
                 held_rows = ca.MX(0, 1) if number == 0 else row
             else:

@@ -147,7 +147,9 @@ def _apart(found: Sequence[Solution]) -> list[list[int]]:
         next(k for k, other in enumerate(clouds) if np.abs(points - other).max() <= near)
         for points in clouds
     ]
-    return [[k for k, one in enumerate(first) if one == number] for number in dict.fromkeys(first)]
+    return [
+        [k for k, alike in enumerate(first) if alike == number] for number in dict.fromkeys(first)
+    ]
 
 
 def _closed(scene: Scene, posture: Mapping[str, float]) -> Solution | PostureError | None:
