@@ -52,7 +52,8 @@ def fmu(source: Source, by: str = "") -> dict[str, bytes]:
     :class:`CompilerError` for what it refuses, :class:`StoreError` for what FMPy finds wrong, and
     :class:`.DeclarationError` for a coordinate that goes back and forth.
     """
-    (fmpy, compiler), prefix = tools(), source.contract.prefix
+    fmpy, compiler = tools()
+    prefix = source.contract.prefix
     if by not in ("", "time"):
         _check_way(source, by)
     description = Description(source, (f"{prefix}.c", f"{prefix}_fmi2.c"), by)

@@ -99,7 +99,8 @@ class _Block:
     """
 
     def __init__(self, source: Source, given: Mapping[str, str]) -> None:
-        c, exported, self.source = source.contract, source.exported, source
+        self.source = source
+        c, exported = source.contract, source.exported
         self.arrays: dict[str, int] = {}
         self.tables: dict[tuple[float, ...], str] = {}
         self.vectors = {name: [name] for name in ("size", "iterated", "rule")} | {"at": ["t"]}

@@ -81,8 +81,9 @@ def golden(
         np.stack([one.series[m.source] for m in contract.outputs]) for one in (exact, solution)
     )
     outputs, gaps = whole[:, chosen].T, found - whole
-    turns = math.tau * np.round(gaps / math.tau)
-    saved = np.abs(gaps - [[m.wrapped] for m in contract.outputs] * turns).max(axis=1)
+    wrapped = np.array([m.wrapped for m in contract.outputs])
+    gaps[wrapped] -= math.tau * np.round(gaps[wrapped] / math.tau)
+    saved = np.abs(gaps).max(axis=1)
     rounding = np.array([ALLOWED * errors[m.source] for m in contract.outputs])
     off = rounding + 2.0 * saved + least * np.abs(outputs).max(axis=0)
     names = contract.table.forces

@@ -150,8 +150,8 @@ class Statements:
         c, sizes, number = self.contract, self.exported.sizes, self.exported.number
         functions, called = self.exported.functions, self.exported.called(PREPARE)
         if c.settings:
-            given = f"parameters ? parameters : &{c.prefix}_defaults"
-            yield f"const {c.prefix}_parameters* values = {given};"
+            values = f"parameters ? parameters : &{c.prefix}_defaults"
+            yield f"const {c.prefix}_parameters* values = {values};"
         if sizes["sound_of"]:
             yield f"casadi_real sound_of[{sizes['sound_of']}];\nint k;"
         if called:
@@ -242,8 +242,8 @@ class Statements:
             yield f"moment[{k}] = {f'inputs->{member}' if member else '0'};"
         for k, (_, rate, acceleration) in enumerate(zip(*c.motion, strict=True)):
             yield f"rate[{k}] = inputs->{rate};\nacceleration[{k}] = inputs->{acceleration};"
-        given = " + ".join(f"inputs->{m.name}" for m in c.inputs)
-        yield f"if (!is_finite({given})) return {P}_BAD_INPUT;"
+        total = " + ".join(f"inputs->{m.name}" for m in c.inputs)
+        yield f"if (!is_finite({total})) return {P}_BAD_INPUT;"
         for name in called:
             yield from self._close() if name == "loops" else call(functions, name, **pointers)
             if name == "instant" and table is not None:

@@ -134,7 +134,7 @@ class DesignEngine:
 
     def __reduce__(self) -> tuple[Callable[..., DesignEngine], tuple[object, ...]]:
         """Sent to another process, an engine is compiled there."""
-        peaks = PEAK_SEARCHES[self.sampled]
+        peaks = "sampled" if self.sampled else "exact"
         return DesignEngine.compiled, (self.program, self.times.timing, self.method, peaks)
 
     @property

@@ -276,14 +276,11 @@ def _quantity(
     if place is None:
         output = Output.of(name)
         return columns[output], output.unit(data.kinds)
-    names = table_of(data.space).forces
-    if place.kind == "section" and place.member not in names:
-        raise UnknownNameError("section force", place.member, names, place=name)
     inside, here = data.section(place.link, columns, p), Place(ca.SX(place.ratio))
-    section = {force: inside.at(force, here, END["double"]) for force in names}
     if place.kind == "section":
+        check_known("section force", [place.member], table_of(data.space).forces, place=name)
         output = Output("section", place.link, place.member)
-        return section[place.member], output.unit(data.kinds)
+        return inside.at(place.member, here, END["double"]), output.unit(data.kinds)
     check_known("link with a beam", [place.link], data.content.materials, place=name)
     link = data.link(place.link, p)
     assert link.beam is not None
@@ -292,7 +289,7 @@ def _quantity(
     cell = int(np.clip(np.searchsorted(breaks, place.ratio, "right") - 1, 0, len(breaks) - 2))
     fibres = sections.fibres(cell).names
     check_known("fibre", [place.member], fibres, place=name)
-    forces = [section[force] for force in sections.forces]
+    forces = [inside.at(force, here, END["double"]) for force in sections.forces]
     normal, _, _ = sections.stresses(cell, place.ratio, [fibres.index(place.member)], forces)
     elasticity = link.beam.material.needs(f"quantity '{name}'", "elasticity")[0]
     return normal / elasticity, "1"

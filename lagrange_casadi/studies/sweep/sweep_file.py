@@ -70,9 +70,7 @@ def joining(
 
         def append(contents: Sequence[bytes]) -> None:
             _, _, where = next(slabs)
-            corner = tuple(
-                place.start or 0 if isinstance(place, slice) else place for place in where
-            )
+            corner = tuple(place.start for place in where)
             for (dataset, rest), content in zip(datasets, contents, strict=True):
                 dataset.id.write_direct_chunk((*corner, *rest), content)
             os.fsync(bytes_.fileno())  # else all of it waits for the disk in the end

@@ -49,9 +49,9 @@ def glb(solution: Solution, frames: int, seconds: float, *, forces: bool = False
     where none of the forces that are asked for is known.
     """
     t = solution.t
-    spread = np.linspace(0, t.size - 1, min(t.size, frames + 1)).round()
-    chosen = np.isin(np.arange(t.size), spread)
-    shown, size = solution.during(chosen), size_of(drawing(Poses.of(solution)))
+    keyed = np.linspace(0, t.size - 1, min(t.size, frames + 1)).round()
+    shown = solution.during(np.isin(np.arange(t.size), keyed))
+    size = size_of(drawing(Poses.of(solution)))
     poses = Poses.of(shown)
     keys = (shown.t - t[0]) / (t[-1] - t[0]) * seconds
     file = _File()

@@ -51,14 +51,16 @@ def draw_optimum(scene: Scene, optimum: Optimum, file: BinaryIO, ending: str) ->
     table.axis("off")
     lines = [f"{optimum.minimised} = {optimum.objective:.6g} {optimum.unit}", ""]
     for limit in optimum.limits:
+        active = "active" if limit.active else ""
         lines.append(
-            f"{limit.constraint!s:<{_TEXT}} {limit.value:>11.5g} {'active' * bool(limit.active):<6}"
+            f"{limit.constraint!s:<{_TEXT}} {limit.value:>11.5g} {active:<6}"
             f" {limit.multiplier:>11.4g}"
         )
     for name, multiplier in optimum.bounds.items():
+        active = "active" if multiplier else ""
         lines.append(
-            f"{'bounds of ' + name:<{_TEXT}} {optimum.values[name]:>11.5g}"
-            f" {'active' * bool(multiplier):<6} {multiplier:>11.4g}"
+            f"{'bounds of ' + name:<{_TEXT}} {optimum.values[name]:>11.5g} {active:<6}"
+            f" {multiplier:>11.4g}"
         )
     table.text(0.0, 0.98, "\n".join(lines), va="top", fontsize=8, family="monospace")
     table.set_title("limits: value, whether active, multiplier", fontsize=10, loc="left")
