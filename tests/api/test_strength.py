@@ -24,7 +24,7 @@ from lagrange_casadi import (
     sweep,
 )
 from lagrange_casadi.errors import DeclarationError, NoDesignError
-from lagrange_casadi.motion import harmonic
+from lagrange_casadi.motion import harmonic, polynomial
 from lagrange_casadi.peaks import refine_safety
 
 BAR = beams.rectangle(0.012, 0.006)
@@ -45,7 +45,19 @@ def test_a_notch_counts_in_fatigue_by_its_sensitivity():
 
 I_SECTION = beams.i_section(0.04, 0.03, 0.004, 0.005)
 
+
+def stub():
+    """A short bar with thin flanges, where shear counts as much as bending does."""
+    m = Mechanism("stub")
+    shape = beams.i_section(0.04, 0.03, 0.008, 0.001)
+    bar = m.link("bar", length=0.02, beam=beams.Beam(shape, STEEL))
+    m.revolute("O", m.ground, bar)
+    m.force("load", bar.tip, y=4e3)
+    return Scene(m, {"O": polynomial(0.0, 1.0)}, t=(0, 1, 11)), "bar"
+
+
 LINKS = {
+    "short": stub,
     "held at its drive": lambda: (slider(), "crank"),
     "rectangle": lambda: (press(beams.rectangle(0.03, 0.012)), "rod"),
     "sliding": lambda: (press(I_SECTION, sliding=True), "rod"),
@@ -66,7 +78,7 @@ LINKS = {
 }
 
 
-@pytest.mark.sampled(6)
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", LINKS)
 def test_series_are_the_largest_along_the_link(name):
     """Against all zeros of slopes along the link and its elastic curve, by other code; a
