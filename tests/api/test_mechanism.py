@@ -6,7 +6,7 @@ import casadi as ca
 import pytest
 from mechanisms import pins_of, slider_crank
 
-from lagrange_casadi import Mechanism, Scene, SpatialMechanism, derive
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, bearings, derive, elements
 from lagrange_casadi.errors import (
     AssemblyError,
     DeclarationError,
@@ -31,6 +31,10 @@ def test_turns_in_sequence_are_carried():
     m, a = arm()
     joint = m.revolute("J", m.ground, a, turned=[("z", "90 deg"), ("x", "90 deg")])
     assert (joint.turned.x, joint.turned.y) == ((0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+def link(m, name="a"):
+    return m.link(name, length=1, mass=1)
 
 
 PLANE = {
@@ -62,6 +66,46 @@ PLANE = {
     ),
     "mechanism name '1st' must be": lambda m: Mechanism("1st"),
     "has no link and no point mass": lambda m: m.freeze(),
+    "contact 'c': friction must be at least 0, got -1": lambda m: m.contact(
+        "c", link(m), friction=-1.0, at=(0, 0)
+    ),
+    "drive 'd': expected a joint of one coordinate, got weld joint 'J'": lambda m: m.drive(
+        "d", m.weld("J", m.ground, link(m))
+    ),
+    "drive 'e': joint 'J' has one already, 'd'": lambda m: [
+        pin := m.revolute("J", m.ground, link(m)),
+        m.drive("d", pin, effort=1.0),
+        m.drive("e", pin, effort=1.0),
+    ],
+    "drive 'd': ratio must not be 0": lambda m: m.drive(
+        "d", m.revolute("J", m.ground, link(m)), ratio=0.0
+    ),
+    "load 'F': point mass 'p' has no axes; use a link": lambda m: m.force(
+        "F", m.point_mass("p", 1), x=1, turning=True
+    ),
+    "load 'k': joint 'J' has no angle for a torsion spring": lambda m: m.torsion_spring(
+        "k", m.prismatic("J", m.ground, link(m), axis=(1, 0)), stiffness=1.0
+    ),
+    "direction: expected a link, got 'p'": lambda m: m.direction(m.point_mass("p", 1)),
+    "place on 'a': a planar mechanism has no z, got 1": lambda m: m.revolute(
+        "J", m.ground, link(m).at(0, 0, 1)
+    ),
+    "non-holonomic constraint 'n' replaces the drive of joint 'J', which has no": lambda m: [
+        pin := m.revolute("J", m.ground, link(m)),
+        m.nonholonomic("n", m.rate(pin), replaces=pin),
+        Scene(m, {}),
+    ],
+    "cylinder 'c': its rod must be thinner than its bore, got 0.06 m in 0.05": lambda m: (
+        elements.cylinder(m, "c", m.ground, link(m), closed=0.3, open=0.5, bore=0.05, rod=0.06)
+    ),
+    "gears 'g': expected a second gear": lambda m: elements.gears(m, "g", link(m), []),
+    r"set 's': teeth must be three whole numbers, .*, got \(1, 2\)": lambda m: elements.planetary(
+        m, "s", link(m), link(m, "b"), m.ground, teeth=(1, 2), module=0.002, mass=0.1
+    ),
+    "joint 'J': the joint already has a rolling part": lambda m: [
+        pin := m.revolute("J", m.ground, link(m)),
+        *(bearings.fit(m, pin, bearings.Rolling(1e4, hours=1e3)) for _ in range(2)),
+    ],
 }
 SPACE = [
     (
@@ -143,6 +187,36 @@ SPACE = [
     (
         lambda m, a: m.coordinate(m.revolute("J", m.ground, a), "turn"),
         "joint 'J' has no coordinate 'turn'",
+    ),
+    (lambda m, a: m.link("b", between=1.0, mass=1.0), "link 'b': between must be two places"),
+    (
+        lambda m, a: m.link("b", length=1.0, mass=1.0, beside=Z),
+        "link 'b': beside needs between",
+    ),
+    (
+        lambda m, a: m.link("b", length=1.0, mass=1.0, accept_inertia=True),
+        "link 'b': accept_inertia needs centre= and inertia=",
+    ),
+    (
+        lambda m, a: m.contact("c", a, friction=0.5),
+        "contact 'c': 'a' has no position in the reference posture; expected at=",
+    ),
+    (
+        lambda m, a: m.revolute(
+            "J", m.ground, m.link("b", between=((0, 0, 0), Z), mass=1.0), at=Z, turned=[("x", 1)]
+        ),
+        "joint 'J': turned needs points of bodies; at= already sets the reference posture",
+    ),
+    (
+        lambda m, a: [
+            rod := m.cylindrical("J", m.ground, a, axis=Z),
+            m.nonholonomic("n", m.rate(rod, "turn"), replaces=rod),
+        ],
+        "expected a joint of one coordinate, those of joint 'J' are J:slide, J:turn; use",
+    ),
+    (
+        lambda m, a: elements.cylinder(m, "c", m.ground, a, closed=0.3, open=0.5, bore=0.05),
+        "cylinder 'c': only a mechanism in a plane has cylinders",
     ),
 ]
 OTHER = [

@@ -2,6 +2,7 @@
 make, are told in one line that says what was expected, whatever function they are given to.
 """
 
+import math
 import pickle
 
 import numpy as np
@@ -66,6 +67,7 @@ def sprung(**numbers):
 RECT = beams.rectangle(height=0.03, width=0.01)
 STEEL = beams.material("C45+QT")
 ONE = {"l": (0.2, 0.3)}
+LATE = (0, 4, 5)
 WRONG = {
     "open": (lambda s: Sweep.open(None), "open: path: expected a path, got None"),
     "out": (lambda s: sweep(s, ONE, out=3), "sweep: out: expected a path, got 3"),
@@ -205,6 +207,64 @@ WRONG = {
         lambda s: beams.Beam(RECT, STEEL, columns=1.0),
         "beam: expected two effective lengths, positive, got 1.0",
     ),
+    "corners": (
+        lambda s: beams.polygon([1, 2, 3]),
+        "polygon: expected corners (y, z), got [1, 2, 3]",
+    ),
+    "shapes along": (
+        lambda s: beams.along([0, 1], [RECT]),
+        "along: expected as many shapes as ratios, two or more, got 2 and 1",
+    ),
+    "a profile": (
+        lambda s: beams.Profile("x", {"width": 1.0}).shape("i_section"),
+        "profile 'x': a i_section has the dimensions height, width, web, flange, got width",
+    ),
+    "a shape": (
+        lambda s: beams.Shape("star", {}),
+        "'star' is no cross-section with these dimensions",
+    ),
+    "coefficients": (lambda s: motion.polynomial(), "polynomial: expected at least one"),
+    "mixed": (
+        lambda s: motion.polynomial("10 mm", "3 deg/s"),
+        "polynomial: mixes angles and lengths; expected the unit of one coordinate",
+    ),
+    "sampled": (
+        lambda s: motion.samples(range(4), range(4))(s.mechanism.time),
+        "a motion by samples depends on the time alone; expected lagrange_casadi.curve(x, y)",
+    ),
+    "of a text": (
+        lambda s: motion.polynomial(0, 1)("x"),
+        "motion: expected a casadi.SX expression, got 'x'",
+    ),
+    "no number": (
+        lambda s: evaluate(Scene(s.mechanism, {"O": motion.expression(lambda t: math.nan)})),
+        "the motion of joint 'O' is not a number; use CasADi's functions",
+    ),
+    "beyond samples": (
+        lambda s: evaluate(Scene(s.mechanism, {"O": motion.samples(range(4), range(4))}, t=LATE)),
+        "the samples of the motion of joint 'O' cover t from 0 to 3 s, but t from 0 to 4 s was",
+    ),
+    "of samples": (
+        lambda s: motion.samples([[1], [1, 2]], [0, 1]),
+        "motion samples: expected two rows of finite numbers, got [[1], [1, 2]] and [0, 1]",
+    ),
+    "a life": (
+        lambda s: prepare(s, wanted=["life:O"]),
+        "output 'life:O': prepared scenes have instants, but a life needs a whole cycle",
+    ),
+    "a number": (
+        lambda s: s.mechanism.number("x", {}),
+        "number: expected an expression in parameters, got 'x'",
+    ),
+    "a number's values": (
+        lambda s: s.mechanism.number(s.mechanism.parameters["l"].symbol, {}),
+        "number: expected values of all parameters, and l have none",
+    ),
+    "a number of time": (
+        lambda s: s.mechanism.number(s.mechanism.time, {"l": 0.3}),
+        "number: expected an expression of parameters only, got SX(t)",
+    ),
+    "no path": (lambda s: Sweep.open(""), "open: path: expected a path, got ''"),
 }
 
 
