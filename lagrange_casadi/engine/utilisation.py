@@ -243,12 +243,8 @@ def _ranked(
 
 
 def _in_order(marks: Sequence[ca.SX]) -> list[ca.SX]:
-    """Marks from the base to the tip: by numbers where they are numbers, else compared as they
-    move.
-    """
+    """Marks from the base to the tip, compared as they move."""
     found = list(marks)
-    if all(mark.is_constant() for mark in found):
-        return sorted(found, key=float)
     for end in range(len(found) - 1, 0, -1):
         for k in range(end):
             found[k], found[k + 1] = (

@@ -7,7 +7,6 @@ An expression is followed by its operations, so that nothing is taken for a poly
 from __future__ import annotations
 
 import itertools
-import math
 from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
@@ -21,9 +20,6 @@ from ..errors import DeclarationError
 
 Polynomial = tuple[Any, ...]
 """Coefficients of rising powers, each a ``casadi.SX``."""
-
-_MOST = 64
-"""The highest power that is multiplied out."""
 
 _HALVINGS = 30
 """Number of halvings of an interval with a zero of a derivative.
@@ -112,19 +108,6 @@ def _over(a: Polynomial, b: Polynomial) -> Polynomial:
     return tuple(x / b[0] for x in a)
 
 
-def _power(a: Polynomial, b: Polynomial) -> Polynomial:
-    """A power; a whole one may be of the symbol."""
-    if len(a) == len(b) == 1:
-        return (a[0] ** b[0],)
-    exponent = float(b[0]) if len(b) == 1 and b[0].is_constant() else math.nan
-    if not (0.0 <= exponent <= _MOST and exponent == int(exponent)):
-        raise _NoPolynomialError
-    found: Polynomial = (ca.SX(1),)
-    for _ in range(int(exponent)):
-        found = _times(found, a)
-    return found
-
-
 _POLYNOMIAL: dict[int, Callable[..., Polynomial]] = {
     ca.OP_ADD: _plus,
     ca.OP_SUB: lambda a, b: _plus(a, _negative(b)),
@@ -133,12 +116,12 @@ _POLYNOMIAL: dict[int, Callable[..., Polynomial]] = {
     ca.OP_NEG: _negative,
     ca.OP_SQ: lambda a: _times(a, a),
     ca.OP_TWICE: lambda a: tuple(2 * x for x in a),
-    ca.OP_POW: _power,
-    ca.OP_CONSTPOW: _power,
     ca.OP_ASSIGN: lambda a: a,
     ca.OP_CALL: lambda looked_up, x: _alone(looked_up.function)(x),
 }
-"""Operations that make polynomials of polynomials."""
+"""Operations that make polynomials of polynomials: CasADi writes whole powers up to 100 as
+products.
+"""
 
 
 def lowest(cell: Sequence[Expression], start: float, stop: float) -> tuple[ca.SX, ca.SX]:

@@ -264,6 +264,10 @@ WRONG = {
         lambda s: s.mechanism.number(s.mechanism.time, {"l": 0.3}),
         "number: expected an expression of parameters only, got SX(t)",
     ),
+    "t of two": (
+        lambda s: evaluate(s, t=(s.mechanism.parameters["l"].symbol, 1)),
+        "t: expected (start, stop, count), got (SX(l), 1)",
+    ),
     "no path": (lambda s: Sweep.open(""), "open: path: expected a path, got ''"),
 }
 

@@ -344,7 +344,8 @@ def test_angles_are_questioned_where_they_are_none():
     ):
         with pytest.raises(LagrangeCasadiError, match=says):
             refused()
-    assert evaluate(scene, over=("O", 0, "360 rad", 7)).over[-1] == 360.0
+    over = evaluate(scene, over=("O", 0, "360 rad", 7)).over
+    assert (2.0 * over)[-1] == 2.0 * np.asarray(over)[-1] == 720.0
     assert samples([0, 1, 2, 3], ["0 deg", "1 deg", "3 deg", "2 deg"]).unit == "rad"
 
 

@@ -280,6 +280,7 @@ HOLLOW = (0.05 + 0.008 * np.cos(12 * TURN))[:, None] * np.column_stack([np.cos(T
             r"profile: expected points \(x, y\), finite numbers, got an array of shape \(40, 1\)",
         ),
         ("roller", circle(math.nan, 0.0, 40), "profile: expected points"),
+        ("roller", circle(0.05, 0.0, 15)[[*range(15), 0]], "at least 16 points, got 15"),
         (
             "roller",
             circle(0.05, 0.06, 40),

@@ -324,6 +324,10 @@ def arm():
         (lambda: free(plane(0.1, 0.3, 1.0), steady=True), "'guide' slides"),
         (lambda: free(rotor(), steady=True, start=(0.0, 0.0)), "the speed at the start is 0"),
         (lambda: flywheel(rotor(), load=1.0), "needs no flywheel"),
+        (
+            lambda: free(four_bar(drives=["C"])),
+            "is driven at the joint whose motion is given, 'O', but drives= names C",
+        ),
     ],
 )
 def test_what_is_none_is_refused_by_name(ask, message):

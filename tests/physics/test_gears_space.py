@@ -229,6 +229,12 @@ def test_a_worm_drives_its_wheel(mu, hand):
         ({"worm": 0.02}, {"teeth": (1, 40)}, "0.02 m along its axis from the common perpendicular"),
         ({"third": 0.1}, {"helix_angle": "80 deg"}, "must be from -75 to 75 deg, got 80 deg"),
         ({"second": 0.0}, {"of": belt}, "parallel axes"),
+        (
+            {"askew": 0.0},
+            {"teeth": (60, 20), "radii": (0.05, 0.05)},
+            "radii and numbers of teeth do not fit the angle between its axes",
+        ),
+        ({"rack": 0.0}, {"radii": (0.1,)}, "rack must slide at right angles to the axis of its"),
     ],
 )
 def test_bad_gears_in_space_are_refused_by_name(at, more, says):
@@ -238,9 +244,12 @@ def test_bad_gears_in_space_are_refused_by_name(at, more, says):
         "second": shaft(m, "second", (0, 0, 0), (0, 1, 0), (0, 0, 1)),
         "third": shaft(m, "third", (0, 0.1, 0), (1, 0, 0), (0, 1, 0)),
         "worm": shaft(m, "worm", (0, 0, 0.1), (0, 1, 0), (0, 0, 1)),
+        "askew": shaft(m, "askew", (0, 0, 0.1), (0.9, 0.3, 0), (-0.3, 0.9, 0)),
+        "rack": m.link("rack", length=0.1, mass=1.0),
     }
+    m.prismatic("way", m.ground.at(0, 0, 0.1), shafts["rack"], axis=(1, 1, 0))
     ((name, place),) = at.items()
-    first = shafts["first"].at(0.0 if name == "worm" else 0.1)
+    first = shafts["first"].at(0.0 if name in ("worm", "askew") else 0.1)
     make = more.get("of", gears)
     options = {"radii": (0.04, 0.06)} | {k: v for k, v in more.items() if k != "of"}
     with pytest.raises(DeclarationError, match=says):

@@ -22,8 +22,9 @@ def numbers(system, *results, symbols=None):
     return f(NUMBERS[: inputs.numel()] if symbols is None else symbols).full().ravel()
 
 
-def crane():
-    """A trolley of mass M drives along a rail; a rope of length L carries a load m.
+def crane(pushed=0.0):
+    """A trolley of mass M drives along a rail, where it is ``pushed``; a rope of length L carries a
+    load m, which is pushed along the rope.
 
     The rope's tension is wanted.
     """
@@ -34,31 +35,36 @@ def crane():
     e, ed = ca.SX.sym("e"), ca.SX.sym("ed")
     place = ca.vertcat(x + (L + e) * ca.sin(a), -(L + e) * ca.cos(a))
     speed = ca.jtimes(place, ca.vertcat(x, a, e), ca.vertcat(xd, ad, ed))
+    w = ca.SX.sym("w", 2) if pushed else speed
+    by = {"velocities": w, "velocity_graphs": speed, "forces": ca.vertcat(pushed, 0)}
+    by = {**by, "mobility_forces": pushed} if pushed else {}
     return LagrangeSystem(
-        kinetic=M * xd**2 / 2 + m * ca.sumsqr(speed) / 2,
+        kinetic=M * xd**2 / 2 + m * ca.sumsqr(w) / 2,
         force_function=-m * g * place[1],
         coordinates=ca.vertcat(x, a),
         rates=ca.vertcat(xd, ad),
         accelerations=ca.vertcat(xdd, add),
         mobilities=e,
         mobility_rates=ed,
+        **by,
     ), (M, m, L, g)
 
 
-def test_rope_tension_of_a_crane():
+@pytest.mark.parametrize("pushed", [0.0, 7.0])
+def test_rope_tension_of_a_crane(pushed):
     """An extension of the rope releases its tension: -T = m (L'' - ...) by Newton's second law
     along the rope.
     """
-    system, (M, m, L, g) = crane()
+    system, (M, m, L, g) = crane(pushed)
     along, across = system.terms()
     _, a, _, ad, xdd, add = NUMBERS
     drive, swing, released = numbers(system, along, across)
     assert drive == pytest.approx(
-        (M + m) * xdd + m * L * (add * np.cos(a) - ad**2 * np.sin(a)), rel=1e-14
+        (M + m) * xdd + m * L * (add * np.cos(a) - ad**2 * np.sin(a)) - pushed, rel=1e-14
     )
     assert swing == pytest.approx(m * L * (L * add + xdd * np.cos(a) + g * np.sin(a)), rel=1e-14)
     tension = m * (g * np.cos(a) + L * ad**2 - xdd * np.sin(a))
-    assert released == pytest.approx(-tension, rel=1e-14)
+    assert released == pytest.approx(-tension - pushed, rel=1e-14)
 
 
 @pytest.mark.parametrize(

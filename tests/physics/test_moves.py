@@ -24,6 +24,7 @@ from lagrange_casadi.motion import (
     polynomial,
     s_curve,
     samples,
+    trapezoid,
 )
 
 pytestmark = pytest.mark.usefixtures("interpreted")
@@ -283,6 +284,11 @@ SOON = {"speed": 4.0, "acceleration": 60.0}
             lambda: moves([move(1.0, time=1.0)], advance=1.0),
             "advance= needs cyclic=True",
         ),
+        (
+            lambda: moves([move(by="10 mm", time=1.0), move(by="3 deg", time=1.0)]),
+            "moves: mixes angles and lengths; expected the unit of one coordinate",
+        ),
+        (lambda: trapezoid(2.0), r"trapezoid: share must be above 0 and at most 0\.5, got 2\.0"),
         (
             lambda: moves([move(1.0, time=0.2, law="cycloidal", **SOON)]),
             (
