@@ -66,6 +66,20 @@ def test_a_limit_that_is_none_is_refused(fresh_cache, monkeypatch, capsys, text)
     assert capsys.readouterr().err.startswith(says)
 
 
+def test_a_limit_of_0_keeps_nothing(fresh_cache, monkeypatch):
+    monkeypatch.setenv(cache.VARIABLE, "0")
+    evaluate(slider_crank(["effort"]), backend="c")
+    assert not fresh_cache.exists()
+
+
+def test_a_folder_that_cannot_be_is_told(fresh_cache):
+    fresh_cache.parent.mkdir(exist_ok=True)
+    fresh_cache.write_text("a file")
+    says = rf"cannot write into the cache folder {fresh_cache}: File exists; nothing is kept"
+    with pytest.warns(UserWarning, match=says):
+        assert cache.folder() is None
+
+
 def test_what_is_not_ours_stays(fresh_cache, monkeypatch, capsys):
     put(fresh_cache, NAMES[0], 1000, 5)
     (fresh_cache / "notes.txt").write_text("mine")
@@ -228,14 +242,22 @@ def test_every_change_of_a_declaration_has_another_name():
     assert name_of(pendulum()) == names[0]
 
 
-def test_a_damaged_graph_is_derived_again_and_said(fresh_cache):
+DAMAGES = {
+    "was damaged": lambda path, whole: path.write_bytes(whole[:-20]),
+    r"was\ damaged": lambda path, whole: path.write_bytes(b"\xff" + whole),
+    r"is not trusted \(others may write into .*\)": lambda path, whole: path.chmod(0o666),
+}
+
+
+@pytest.mark.parametrize("says", DAMAGES)
+def test_a_damaged_graph_is_derived_again_and_said(fresh_cache, says):
     first = evaluate(pendulum())
     (path,) = fresh_cache.glob("*.graph")
-    whole = path.read_text()
-    path.write_text(whole[:-20])
-    with pytest.warns(UserWarning, match=r"the cached .*\.graph was damaged and is made again"):
+    whole = path.read_bytes()
+    DAMAGES[says](path, whole)
+    with pytest.warns(UserWarning, match=rf"the cached .*\.graph {says} and is made again"):
         again = evaluate(pendulum())
-    assert path.read_text() == whole
+    assert path.read_bytes() == whole
     assert np.array_equal(again.effort("pin"), first.effort("pin"))
 
 

@@ -46,6 +46,18 @@ FAILS = {
         r"""printf 'version \351\n'; printf 'x.c:1: error: d\351fini \377\n' >&2; test "$1" = --version""",  # noqa: E501
         "fake-cc failed with status 1: x\\.c:1: error: d\ufffdfini \ufffd ",
     ),
+    "does not run": (
+        "exit 3",
+        r"^\$CC = '.*fake-cc' does not run; unset it, or name a compiler such",
+    ),
+    "builds no library": (
+        f'{TELLS} while test "$1" != -o; do shift; done; echo no > "$2"',
+        "the library built by .*fake-cc does not load",
+    ),
+    "builds an empty library": (
+        f'{TELLS} while test "$1" != -o; do shift; done; {{real}} -shared -x c /dev/null -o "$2"',
+        "the library built by .*fake-cc does not load",
+    ),
     "says much": (f"{TELLS} printf 'error: %05000d' 0 >&2; exit 1", r"error: 0{100,900}[^0]"),
 }
 
@@ -75,7 +87,7 @@ def test_a_compiler_that_fails_is_quoted_and_leaves_nothing(
         evaluate(slider_crank(["effort"]), backend="c")
     if pid.exists():
         sweeps.wait_for(lambda: gone(pid))
-    assert not list(fresh_cache.glob("*.so"))
+    assert name.endswith("library") or not list(fresh_cache.glob("*.so"))
     if name == "refuses":
         assert [path.read_text() for path in fresh_cache.glob("*.log")] == ["x.c:1: error: no\n"]
 

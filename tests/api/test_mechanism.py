@@ -317,6 +317,11 @@ def test_a_mechanism_freezes_in_a_scene():
             ParameterError,
             ("mechanism 'slider_crank' has neither mass"),
         ),
+        (
+            {"m2": 1.7e308, "m3": 1.7e308},
+            ParameterError,
+            "'slider_crank': its whole mass must be finite and positive, got inf kg",
+        ),
     ],
 )
 def test_what_the_values_of_parameters_refuse(values, error, says):
