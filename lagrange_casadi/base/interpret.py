@@ -72,15 +72,7 @@ class Arithmetic:
 
 @functools.lru_cache(maxsize=64)
 def steps(function: ca.Function) -> tuple[Step, ...]:
-    """The instructions of an SX function.
-
-    Raises :class:`DeclarationError` for a function of another kind.
-    """
-    if not function.is_a("SXFunction"):
-        raise DeclarationError(
-            f"function '{function.name()}' cannot be followed: it is not written in scalars"
-            " (casadi.SX)"
-        )
+    """The instructions of an SX function."""
     found: list[Step] = []
     written: Any = None
     for k in range(function.n_instructions()):

@@ -113,25 +113,19 @@ def _together(
             if not one.is_zero():
                 force, *moment = ca.vertsplit(found[j])
                 arm = (places[j] - places[i]) * length
-                found[i] += _where(one, column([force, *(m + arm * force for m in moment)]))
-                found[j] = _where(ca.logic_not(one), found[j])
+                moved = column([force, *(m + arm * force for m in moment)])
+                found[i] += ca.if_else(one, moved, 0.0)
+                found[j] = ca.if_else(ca.logic_not(one), found[j], 0.0)
     for k, place in enumerate(places):
         accelerated = place > END["double"]
         # A sum that is never open stays, for it is smooth where its place passes the base.
         if not accelerated.is_one() and is_open(
             sum(load for load, same in zip(loads, twice[k], strict=True) if same)
         ):
-            found[k] = _where(accelerated, found[k])
+            found[k] = ca.if_else(accelerated, found[k], 0.0)
     return found
 
 
 def _twice(here: ca.SX, there: ca.SX, coordinates: Sequence[Coordinate]) -> bool:
     """Return whether two places are one that is written in two ways, by random values."""
     return bool(np.abs(drawn(here - there, coordinates)).max() <= _TWICE)
-
-
-def _where(truth: ca.SX, load: ca.SX) -> ca.SX:
-    """A load where something is true, and nothing elsewhere."""
-    if truth.is_constant():
-        return load if float(truth) else ca.SX.zeros(load.numel())
-    return ca.if_else(truth, load, 0.0)

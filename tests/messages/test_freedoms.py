@@ -3,8 +3,9 @@
 import math
 
 import pytest
+from mechanisms import links_of, pins_of
 
-from lagrange_casadi import Mechanism, Scene, evaluate
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate
 from lagrange_casadi.errors import LagrangeCasadiError
 from lagrange_casadi.motion import polynomial
 
@@ -50,6 +51,24 @@ def on_a_point():
     return m, ["P"]
 
 
+def in_a_slot():
+    m = Mechanism("slotted")
+    a, b = links_of(m, a=(0.1, 1), b=(0.3, 1))
+    pins_of(m, O=(m.ground, a), A=(a.tip, b))
+    m.slot("G", m.ground, b.tip)
+    return m, ["G"]
+
+
+def on_rods():
+    m = SpatialMechanism("on_rods")
+    plate = m.link("plate", length=0.1, mass=1.0, centre=(0, 0, 0), inertia=(1, 1, 1))
+    for k in range(6):
+        rod = m.link(f"rod{k}", length=1.0, mass=1.0)
+        m.spherical(f"S{k}", m.ground.at(k % 2, k // 2, 0), rod)
+        m.spherical(f"T{k}", rod.tip, plate.at(0.1 * (k % 2), 0.1 * (k // 2), 0))
+    return m, []
+
+
 REFUSED = [
     (lambda: slides((0, 0.7, 1.9), []), r"has 1 degree.* \(by the rank .* and 0 drive"),
     (lambda: slides((0, 0.7, 1.9), ["S0", "S1"]), r"has 1 degree.* \(by the rank .* and 2 drive"),
@@ -57,6 +76,8 @@ REFUSED = [
     (pinned, r"has 0 degree\(s\) of freedom .* and 1 drive"),
     (twice, "the drive of joint 'Y' is redundant"),
     (on_a_point, "'a' is connected by sliding on a point only"),
+    (in_a_slot, "joint 'G' is a slot and cannot be driven; drive another joint of its loop"),
+    (on_rods, "'plate' is connected by two-force links only; declare a free"),
 ]
 
 

@@ -336,6 +336,14 @@ def test_angles_are_questioned_where_they_are_none():
             lambda: sweep(scene, {"r": ["10 deg"]}, out="x.h5"),
             "grid of r: '10 deg' is an angle; expected a length",
         ),
+        (
+            lambda: sweep(scene, {"p": ["350 kPa", "1 mm"]}, out="x.h5"),
+            "grid of p: expected values of one unit, got some in Pa and some in m",
+        ),
+        (
+            lambda: optimise(scene, minimise="p", over={"p": (1.0, 4.0)}, subject_to=["p>=3 mm"]),
+            r"limit of p: its number is in m, a length; expected a pressure or a stress \[bar\]",
+        ),
         (lambda: sweep(scene, {"lean": "steep"}, out="x.h5"), "grid of lean: expected .*numbers"),
         (
             lambda: prepare(scene, wanted=np.array([1.0])),
@@ -359,7 +367,10 @@ def test_functions_of_math_name_casadis(function):
         m.force("push", arm.tip, x=function(m.time))
 
 
+X = ca.SX.sym("x")
+CALLED = ca.Function("called", [X], [3.0 * ca.sin(X), X * X], {"never_inline": True})
 FUNCTIONS = [
+    lambda t: sum(CALLED(t)) if isinstance(t, ca.SX) else 3.0 * np.sin(t) + t * t,
     lambda t: np.hypot(t, 0.4) + np.arctan2(t, -0.3) + np.deg2rad(t) + np.sin(t),
     lambda t: np.where(t > 0.55, 3.0 * t, -1.0) + np.heaviside(t - 0.5, 0.25),
     lambda t: np.interp(t, [0.3, 0.5, 0.9], [1.0, 4.0, -2.0]) + np.clip(t, 0.35, 0.75),

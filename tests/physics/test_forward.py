@@ -37,11 +37,13 @@ def elliptic(k):
     return math.pi / (2.0 * a)
 
 
-def rotor(inertia=0.5, stop=2.0):
+def rotor(inertia=0.5, stop=2.0, rolls=False):
     m = Mechanism("rotor")
     m.set_gravity(0.0, 0.0)
     disc = m.link("disc", length=0.2, mass=3.0, centre=(0.0, 0.0), inertia=inertia)
-    m.revolute("O", m.ground, disc)
+    pin = m.revolute("O", m.ground, disc)
+    if rolls:
+        m.nonholonomic("roll", m.rate(pin), replaces=pin)
     return Scene(m, {"O": polynomial(0.0, 10.0)}, t=(0.0, stop, 41))
 
 
@@ -327,6 +329,10 @@ def arm():
         (
             lambda: free(four_bar(drives=["C"])),
             "is driven at the joint whose motion is given, 'O', but drives= names C",
+        ),
+        (
+            lambda: free(rotor(rolls=True)),
+            "non-holonomic constraints of 'rotor' are out of scope: roll",
         ),
     ],
 )
