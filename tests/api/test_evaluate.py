@@ -210,6 +210,7 @@ REFUSED = [
     ({"over": ("O", 0, 1)}, DeclarationError, "over: expected (joint, start, stop, count), got"),
     ({"over": "O=0:1:5"}, DeclarationError, "over: expected (joint, start, stop, count), got"),
     ({"over": ("O", 0, 1, 1)}, DeclarationError, "over: COUNT must be 2 or more"),
+    ({"over": ("O", 1, 1, 1)}, DeclarationError, "over: COUNT must be 2 or more, got 1"),
     ({"over": ("O", 0, 1, 0)}, DeclarationError, "COUNT must be a whole number from 1 to 2^63 - 1"),
     ({"over": ("O", 1, 1, 5)}, DeclarationError, "over: STOP must be after START, got 1 and 1"),
     ({"over": ("O", 0, math.inf, 5)}, DeclarationError, "over: START and STOP must be finite"),

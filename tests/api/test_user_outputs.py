@@ -95,6 +95,11 @@ def test_what_equilibrium_leaves_open_leaves_them_open():
             "section: 'ground' is not a link",
         ),
         (
+            lambda m, p: m.results.friction("gas"),
+            UnknownNameError,
+            "unknown friction of mechanism 'engine' 'gas'",
+        ),
+        (
             lambda m, p: m.results.load("gas"),
             DeclarationError,
             "expected the load that its declaration returned, got its name 'gas'",

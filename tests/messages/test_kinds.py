@@ -17,6 +17,7 @@ from lagrange_casadi import (
     bearings,
     best,
     check,
+    curve,
     derive,
     elements,
     evaluate,
@@ -267,6 +268,14 @@ WRONG = {
     "t of two": (
         lambda s: evaluate(s, t=(s.mechanism.parameters["l"].symbol, 1)),
         "t: expected (start, stop, count), got (SX(l), 1)",
+    ),
+    "no range": (
+        lambda s: evaluate(s, over=("O", *[s.mechanism.parameters["l"].symbol] * 2, 3)),
+        "over: STOP must not be START, got l for both",
+    ),
+    "near points": (
+        lambda s: curve([0, 1e-310, 1, 2], [0, 1, 0, 2]),
+        "curve: the points are so close to each other that the slopes overflow",
     ),
     "no path": (lambda s: Sweep.open(""), "open: path: expected a path, got ''"),
 }
