@@ -18,6 +18,7 @@ from lagrange_casadi import (
     bearings,
     evaluate,
     load,
+    prepare,
     save,
 )
 from lagrange_casadi.elements import two_bearings, two_bushes
@@ -125,6 +126,8 @@ def test_what_is_open_is_told():
     ]
     with pytest.raises(DeclarationError, match="not evaluated; add reaction:O too"):
         evaluate(scene, wanted=["effort"]).safety("O")
+    with pytest.raises(DeclarationError, match="'safety:O': prepared scenes have no strength of"):
+        prepare(scene, wanted=["safety:O"])
 
 
 @pytest.fixture(scope="module")

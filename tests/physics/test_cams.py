@@ -208,10 +208,12 @@ SHORT = moves([move(0.02, time=0.5), move(0.0, time=0.5), dwell()], cyclic=True,
         ({"lift": lambda x: "high"}, "lift cannot be made as an expression of the cam's angle"),
         ({"base_radius": -0.05}, r"base_radius must be positive, got -0\.05 m"),
         ({"roller": 0.0}, r"roller must be positive, got 0 m"),
+        ({"offset": 0.06}, "cannot touch the base circle, because the follower is too short or"),
     ],
 )
 def test_misuse_is_named(options, says):
-    m, main, lead, _ = guided("knife", 0.0, (0.0, 0.0))
+    options = {"offset": 0.0, **options}
+    m, main, lead, _ = guided("knife", options.pop("offset"), (0.0, 0.0))
     parts = m.joints | m.links
     told = {"cam": main, "follower": lead, "lift": lambda x: 0.0 * x, "base_radius": 0.05}
     told |= {word: parts[x] if isinstance(x, str) else x for word, x in options.items()}
@@ -342,14 +344,16 @@ def test_what_is_no_profile_is_told(kind, points, says):
             DeclarationError,
             r"p\.csv, line 2, column 'y': expected a finite number, got 'two'",
         ),
+        ("x,y\n1,\xe9\n", PathError, r"p\.csv: cannot be read as text"),
         (None, PathError, r"p\.csv: no such file"),
     ],
 )
 def test_a_file_that_is_no_profile_is_told(here, text, error, says):
     if text is not None:
-        (here / "p.csv").write_text(text)
+        (here / "p.csv").write_text(text, encoding="latin-1")
+    m, main, lead, options = guided("roller")
     with pytest.raises(error, match=says):
-        read_profile("p.csv")
+        profile_lift(m, main, lead, "p.csv", **options)
 
 
 def test_other_units_and_columns_are_read(here):
