@@ -39,12 +39,12 @@ def held(**forces):
     return Scene(m, {}, t=(0, 0, 1), xi=(0, 1, 5), elastic=True)
 
 
-def three_cranks(beam, bar=None, elastic=True):
+def three_cranks(beam, bar):
     m = Mechanism("three_cranks")
     cranks = [m.link(name, length=0.2, beam=beam) for name in "abc"]
-    bar = m.link("bar", length=1.0, **({"beam": bar} if bar else {"mass": 1.0}))
+    bar = m.link("bar", length=1.0, **bar)
     for k, link in enumerate(cranks):
         m.revolute(f"G{k}", m.ground.at(0.5 * k, 0.0), link)
         m.revolute(f"B{k}", link.tip, (bar.base, bar.at(0.5), bar.tip)[k])
     posture = {"a": 1.2, "b": 1.2, "c": 1.2, "bar": 0.0}
-    return Scene(m, {"G0": harmonic(1.2, 0.3, 1.0)}, posture=posture, t=(0, 1, 5), elastic=elastic)
+    return Scene(m, {"G0": harmonic(1.2, 0.3, 1.0)}, posture=posture, t=(0, 1, 5), elastic=True)

@@ -47,16 +47,30 @@ def test_a_beam_held_at_both_ends():
     assert set(map(str, solution.elasticity.completed)) >= {"reaction:A:fy", "section:bar:law:m0"}
 
 
-def test_a_link_without_a_beam_leaves_open_what_goes_through_it_and_is_named():
-    scene = three_cranks(made(beams.round_bar(0.01)))
+UNKNOWN = made(beams.round_bar(0.01), beams.Material("odd", 1e3))
+
+
+@pytest.mark.parametrize(
+    ("bar", "why"),
+    [
+        ({"mass": 1.0}, "they go through 'bar', which has no beam"),
+        (
+            {"mass": 1.0, "centre": (0.5, 0.0), "inertia": 0.1},
+            "they go through 'bar', which has no beam",
+        ),
+        (
+            {"beam": UNKNOWN},
+            "material 'odd' has no elasticity and no shear_modulus, which elastic link 'bar' needs",
+        ),
+    ],
+)
+def test_a_link_without_a_beam_leaves_open_what_goes_through_it_and_is_named(bar, why):
+    scene = three_cranks(made(beams.round_bar(0.01)), bar)
     solution, plain = evaluate(scene), evaluate(scene, elastic=False)
     assert set(solution.undetermined) == set(plain.undetermined)
     assert np.isnan(solution.reaction("B1").fx).all()
-    assert solution.elasticity.reasons == ("they go through 'bar', which has no beam",)
-    assert (
-        "elasticity does not determine some forces: they go through 'bar', which has no beam"
-        in solution.notes
-    )
+    assert solution.elasticity.reasons == (why,)
+    assert f"elasticity does not determine some forces: {why}" in solution.notes
     assert solution.certified
 
 
