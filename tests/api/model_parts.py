@@ -78,6 +78,9 @@ MJCF_ARM = """
 MJCF_PLAIN = MJCF_ARM.format("", "")
 
 
+TENDON = '<tendon><fixed name="t"><joint joint="p" coef="1"/></fixed></tendon>'
+
+
 def numbers(chance):
     return " ".join(map(repr, chance.uniform(-1, 1, 3).tolist()))
 

@@ -304,6 +304,10 @@ NOTED = {
         assembly({"G": ORIGIN}, {"part": PLACED},
                  {"tie": ("AngleJoint", "G", "part/M", ("theIzJz", 0.1745))}, {}), "tie",
     ),
+    "drawn only": (
+        changed((*FOUR_BAR, ORIGIN, (0.0, 2.0, 0.5)), ("SimulationParameters", "Parameters"))
+        + "TimeSeries\tnone\n", r"t=\(0\.0, 1\.0, 101\)",
+    ),
     "long names": (
         assembly(*wheels("3*time", GEAR)).replace("one", LONG_NAME), LONG_NAME
     ),

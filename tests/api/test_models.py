@@ -22,6 +22,7 @@ from model_parts import (
     MJCF_ARM,
     MJCF_PLAIN,
     MOVE,
+    TENDON,
     TURN,
     WEIGHT,
     P,
@@ -82,6 +83,10 @@ READ = {
     "urdf gravity": (
         arm(P(), '<gazebo reference="a"><gravity>false</gravity></gazebo>'), TURN, []
     ),
+    "urdf no axis": (
+        arm(P()).replace('<axis xyz="0 -1 0"/>', ""), 0.1,
+        ["Not given, so as the format says: axis 1 0 0 (p)."],
+    ),
     "urdf drives": (
         arm(
             P(),
@@ -132,6 +137,19 @@ READ = {
     "sdf slide": (
         sdf_arm(dynamics=DRAGGED, kind="prismatic"), 1.0 + 2.0 * 0.4 + 5.0 * (0.3 - 0.1) + 3.0, []
     ),
+    "sdf no axis": (
+        sdf_arm().replace("<xyz>0 -1 0</xyz>", ""), TURN,
+        ["Not given, so as the format says: axis 0 0 1 (p)."],
+    ),
+    "sdf no spring": (
+        sdf_arm(dynamics=dynamics(damping=-1, spring_reference=0.1)), TURN + SDF_WEIGHT,
+        ["Not read of world/model/joint/axis/dynamics: damping, spring_reference (p)."],
+    ),
+    "sdf fixed": (
+        sdf_arm().replace("</model>", sdf_link("f", centre="0 0 0 0 0 0", inertia="0.3 0.3 0.3")
+                          + sdf_joint("q", "a", "f", "", "fixed") + "</model>"),
+        TURN + SDF_WEIGHT + 0.3, [],
+    ),
     "sdf static": (
         sdf_arm(before='<model name="ground_plane"><static>true</static></model>'),
         TURN + SDF_WEIGHT, ["Not read of world: model (ground_plane)."],
@@ -161,6 +179,11 @@ READ = {
     "xml weld without torque": (
         mjcf(SLIDING, more=WELD.format('torquescale="0" active="false"')), AT_REST, []
     ),
+    "xml weld sites": (
+        mjcf(HELD.replace("<geom", '<site name="s" pos="1 0 0"/><geom', 1).replace(
+                 "<freejoint/>", '<freejoint/><site name="t"/>'),
+             more='<equality><weld site1="s" site2="t"/></equality>'), AT_REST - 2 * 9.81, [],
+    ),
     "xml no gravity": (
         mjcf(MJCF_PLAIN, more='<option><flag gravity="disable"/></option>'), 0.0, []
     ),
@@ -180,7 +203,8 @@ READ = {
     "xml not read": (
         mjcf(MJCF_ARM.format("", 'frictionloss="1" armature="0.1" range="-1 1"'),
              '<body mocap="true"/>',
-             more='<option density="1000"/><actuator><motor joint="p"/></actuator>'),
+             more='<option density="1000"/><actuator><motor joint="p"/><motor tendon="t"/>'
+                  "</actuator>" + TENDON),
         AT_REST,
         [f"{words}: not read." for words in (
             "Limits of joints",

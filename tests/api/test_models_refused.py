@@ -34,6 +34,7 @@ from model_parts import (
     MOVE,
     ONE,
     PENDULUM,
+    TENDON,
     WEIGHT,
     P,
     arm,
@@ -168,6 +169,12 @@ def own_arm(**change):
 PLAIN = link("a")
 
 
+BELT = (
+    '<coupling name="belt"><predecessor link="a"/><successor link="{}"/><ratio value="2"/>'
+    "</coupling>"
+)
+
+
 POSED = '<frame name="{}"><pose relative_to="{}">0 0 0 0 0 0</pose></frame>'
 
 
@@ -265,6 +272,14 @@ REFUSED = {
     "urdf mimic of itself": (
         arm(P(more='<mimic joint="p"/>')), "<mimic>: couples joint 'p' to itself"
     ),
+    "urdf nameless": (urdf("<link/>"), "<link>: lacks name="),
+    "urdf belt of the root": (
+        arm(P(), BELT.format("base")), "<coupling name='belt'>: link 'base' has no joint"
+    ),
+    "urdf belt of a train": (
+        arm(P(), link("b"), joint("q", "a", "b"), BELT.format("b")),
+        "<coupling name='belt'>: is supported only if both its links have the same parent",
+    ),
     "urdf twice": (urdf(BASE, BASE), "<link name='base'>: the name is taken"),
     "urdf impossible inertias": (arm(P(), *IMPOSSIBLE), "; ".join(BAD_BODIES)),
     "sdf no model": ('<sdf version="1.7"/>', "<sdf>: lacks <model>"),
@@ -288,6 +303,21 @@ REFUSED = {
     "sdf circle": (
         sdf(POSED.format("f", "g"), POSED.format("g", "f"), sdf_link("a", more=' relative_to="f"')),
         "its pose is relative to itself",
+    ),
+    "sdf circle of bodies": (
+        sdf(POSED.format("f", "a").replace("><", ' attached_to="f"><', 1), sdf_link("a"),
+            sdf_joint("J", "world", "f")),
+        "<child>: unknown link 'f'; valid: world, a",
+    ),
+    "sdf no carrier": (
+        sdf(sdf_link("a"), sdf_link("b"), sdf_joint("J", "world", "a"), sdf_joint("K", "a", "b"),
+            sdf_joint("box", "a", "b", "", "gearbox",
+                      "<gearbox_reference_body>world</gearbox_reference_body>")),
+        "<joint name='box'>: its child has no joint on the reference body 'world'",
+    ),
+    "sdf quaternion": (
+        sdf(sdf_link("a", more=' rotation_format="quat_xyzw"')),
+        "<pose>: rotation_format: expected euler_rpy",
     ),
     "sdf a long chain": (
         sdf('<frame name="f0"/>', *(POSED.format(f"f{k}", f"f{k - 1}") for k in range(1, 999)),
@@ -337,6 +367,14 @@ REFUSED = {
              more='<equality><joint joint1="k" joint2="p" polycoef="0 0 1 0 0"/></equality>'),
         "equality 'equality_0': is not supported: it does not couple two joints linearly",
     ),
+    "xml tendon": (
+        mjcf(MJCF_PLAIN, more=TENDON + '<equality><tendon tendon1="t"/></equality>'),
+        "equality 'equality_0': is not supported; valid: connect, weld, joint",
+    ),
+    "xml many files": (
+        mjcf(more="".join(f'<include file="{k}"/>' for k in range(3001))),
+        "names too many files or folders",
+    ),
     "asmt another file": (
         changed(FOUR_BAR, ("OndselSolver", "solid")), "expected the first line of an assembly"
     ),
@@ -367,6 +405,22 @@ REFUSED = {
         changed(FOUR_BAR, ("0.0\t1.0\t0.0", "0.0\t1.0\t0.5")),
         "RotationMatrix: axes: expected three directions",
     ),
+    "asmt two axes": (
+        changed(FOUR_BAR, ("\t0.0\t0.0\t1.0\n", "\n")), "RotationMatrix: expected three"
+    ),
+    "asmt no part": (
+        changed(FOUR_BAR, ("\tPart\n", "\tGroup\n")), "Group: is not supported here; expected a"
+    ),
+    "asmt order of turns": (
+        changed((*FOUR_BAR[:3],
+                 {"drive": ("GeneralMotion", "Marker1", "Part3/Marker2", "000", "000")}),
+                ("1\t2\t3", "3\t2\t1")),
+        "GeneralMotion drive: is supported only with the RotationOrder 1 2 3",
+    ),
+    "asmt no wheel": (
+        changed(wheels("time", (*GEAR[:4], ("radiusJ", 0.0)))),
+        "GearJoint tie: a radius of zero is impossible",
+    ),
     "asmt mass": (
         changed(FOUR_BAR, ("\t\t\t\t\t0.2\n", "\t\t\t\t\t-0.2\n")),
         "body 'Part1': a mass of -0.2 kg is imp",
@@ -396,6 +450,23 @@ REFUSED = {
     "json none": ("{", "no JSON"),
     "json another schema": (
         own_arm(version=2), 'expected "schema": "lagrange_casadi.model", "version"'
+    ),
+    "json units": (own_arm(units="mm"), """units: expected "SI", got 'mm'"""),
+    "json no body": (own_arm(bodies=[], joints=[]), "has no body that moves"),
+    "json no list": (own_arm(notes="one"), "notes: expected a list, got 'one'"),
+    "json no object": (own_arm(bodies=["arm"]), "bodies[0]: expected an object, got 'arm'"),
+    "json no text": (own_arm(notes=[3]), "notes: expected a text, got 3"),
+    "json one place": (
+        own_arm(bodies=[ROD_BODY | {"rod": [[0, 0, 0]]}]), "bodies[0].rod: expected two places"
+    ),
+    "json askew inertia": (
+        own_arm(bodies=[{"name": "arm", "mass": 2, "inertia": [[1, 0, 1], [0, 1, 0], [0, 0, 1]]}]
+        ),
+        "bodies[0].inertia: expected three moments or three rows, symmetric",
+    ),
+    "json no instants": (
+        own_arm(time={"start": 0, "stop": 1, "count": 0}),
+        "time.count: expected 1 to 1000000, got 0",
     ),
     "json unknown key": (own_arm(links=[]), "unknown key 'links'; valid: schema, version"),
     "json no joints": ({k: v for k, v in ARM.items() if k != "joints"}, "lacks 'joints'"),
