@@ -131,6 +131,7 @@ REFUSED = {
             ("section:rod:bending", "give a ratio too, as in 'section:rod:bending@0.5'"),
             ("section:rod:bending@1.5", "expected section:LINK:FORCE@RATIO"),
             ("effort:O@0.5", "expected section:LINK:FORCE@RATIO"),
+            ("section:rod:bending@x", "expected section:LINK:FORCE@RATIO"),
             ("section:rod:twist@0.5", "unknown section force 'twist'; valid: axial, shear, bend"),
         )
     },
@@ -199,6 +200,12 @@ REFUSED |= {
             evaluate(load_case("slider_crank").scene, **LEAN | {"wanted": ["effort"]}), "O"
         ),
         "reaction of joint 'O' was not evaluated",
+    ),
+    "slides": (
+        lambda s, _: bearing_loads(
+            evaluate(load_case("slider_crank").scene, t=(0, 0.08, 5)), "guide"
+        ),
+        "joint 'guide' does not turn, or its motion was not evaluated",
     ),
     "rows": (lambda s, _: of_sleigh(), "along which directions blade act"),
     "other": (

@@ -243,6 +243,30 @@ IMPOSSIBLE = {
         "times that increase, got 3 s and then 2.99 s in rows 1 and 2",
     ),
     "no rows": (lambda s, g: Measurements(g.t[:0], {}), "at least 8 rows of measurements, got 0"),
+    "rows": (
+        lambda s, g: Measurements(g.t, {"A": g.t[:3]}), "'A': expected 301 values, .* got 3"
+    ),
+    "noise": (
+        lambda s, g: Measurements(g.t, {"A": g.t}, noise={"A": -1.0}),
+        "noise of 'A': expected a number that is not negative, got -1",
+    ),
+    "no noise": (
+        lambda s, g: identify(s, Measurements(g.t, g.columns, noise={"effort:A": 0.0})),
+        "noise of 'effort:A': expected a number above 0",
+    ),
+    "no force": (
+        lambda s, g: identify(s, Measurements(g.t, {name: g.columns[name] for name in "AB"})),
+        "expected a column of a force, as effort:A; got A, B",
+    ),
+    "gaps": (
+        lambda s, g: identify(s, more(g, A=np.where(g.t % 3.0 == 0.0, g.columns["A"], np.nan))),
+        "column 'A': expected at least . values, got 2",
+    ),
+    "no motion": (
+        lambda s, g: excite(platform(), dict.fromkeys(("d0", "d1", "d2"), (9.0, 99.0, 1e3, 1e5))),
+        "cannot follow any of .* random motions within the limits",
+    ),
+    "no effort": (lambda s, g: excite(s, LIMITS, ["m1"], quantities=["effort:A"]), NOTHING),
     "no values": (
         lambda s, g: Measurements(g.t, {"A": np.full(301, np.nan)}), "column 'A' has no values"
     ),

@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from mechanisms import pins_of
+from mechanisms import pendulum, pins_of
 from strong import BARS, arms
 
 from lagrange_casadi import Mechanism, Scene, beams, evaluate, size
@@ -93,6 +93,8 @@ def test_a_link_is_stiff(scene):
             "link 'upper': no profile has a factor of 50; the most, 'bar 22', has .* against fat"),
         ({"deflection": 1e-4}, NoDesignError,
             r"a deflection of 0\.0001 of its length at most; the most, 'bar 22', has"),
+        ({"scene": pendulum(polynomial(0.0))}, DeclarationError,
+            "size: no link has a cross-section, so there is nothing to size"),
         ({"scene": arms(shared=True)}, DeclarationError,
             "links 'upper' and 'fore' share parameter 'd1'; give each its own"),
     ],

@@ -24,6 +24,9 @@ pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
         (lambda s: s.peak("reaction:Q:resultant"), "unknown quantity 'reaction:Q:resultant'"),
         (lambda s: s.array("reaction:O:fz"), "unknown quantity 'reaction:O:fz'"),
         (lambda s: s.output("x"), "valid: none are declared"),
+        (lambda s: s.multiplier("x"), "unknown constraint or row with a multiplier 'x'"),
+        (lambda s: s.during(3), "during: expected a slice, or True or False for each instant"),
+        (lambda s: s.safety("O"), "nothing is fitted to joint 'O'; joints with a pin .*: none"),
     ],
 )
 def test_unknown_names_list_the_valid(solution, asked, says):

@@ -251,9 +251,14 @@ def test_pictures_show_what_is_told():
     specs = [
         figures.StrengthPlot("strength_rod", "rod"),
         figures.UtilisationPlot("utilisation", ("rod",)),
+        figures.DeflectionPlot("deflection", "rod"),
     ]
-    assert {spec.name for spec in specs} <= {one.name for one in figures.default_figures(solution)}
-    strength, bars = (spec.draw(solution) for spec in specs)
+    assert {spec.name for spec in specs[:2]} <= {
+        one.name for one in figures.default_figures(solution)
+    }
+    strength, bars, bent = (spec.draw(solution) for spec in specs)
+    peak = solution.deflection("rod").peak().value
+    assert f"largest: {1e3 * peak:.4g} mm" in bent.axes[0].get_title().replace("\u2212", "-")
     mapped, diagram = strength.axes[:2]
     shown = np.ravel(mapped.collections[0].get_array())
     grid = solution.stress("rod").grid("von_mises").T.ravel() / 1e6

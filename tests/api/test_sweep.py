@@ -211,6 +211,9 @@ GRIDS = [
     ({"a": (0.0, 0.4, 5, True)}, DeclarationError, "a log range must begin above 0"),
     ({"a": []}, DeclarationError, "expected at least one value"),
     ({"a": [0.1, 0.2, 0.1]}, DeclarationError, r"the value 0\.1 is listed twice"),
+    ({"a": np.array([0.2, 0.2])}, DeclarationError, r"the value 0\.2 is listed twice"),
+    ({"a": {0.1, 0.2}}, DeclarationError, "grid of a: expected numbers, got"),
+    ({"a": (0.1, 0.4, 5, "log")}, DeclarationError, "expected True or False"),
     ({"a": "abc"}, DeclarationError, r"expected numbers, got \['abc'\]"),
     ({"q": [1.0], "k": [1.0]}, UnknownNameError, "unknown parameters 'q', 'k'; valid: a, b, c"),
     (None, DeclarationError, "expected a mapping by name"),
@@ -254,6 +257,7 @@ READS = [
     (lambda s: best(s, minimise=EFFORT, where="l"), "expected a condition like"),
     (lambda s: best(s, minimise=EFFORT, where="l<<3"), "expected a condition like"),
     (lambda s: best(s, minimise=EFFORT, count=0), "at least 1, got 0"),
+    (lambda s: s.axes_of(3), "columns: expected a name, or a list of names, got 3"),
 ]
 
 

@@ -287,6 +287,7 @@ BROKEN = {
     "text.h5": "mine",
     "raises.py": "1 / 0\n",
     "empty.py": "x = 1\n",
+    "numbers.csv": "0,1\n1,2\n",
     "leaves.py": "raise SystemExit(3)\n",
     "draws.py": (
         f"""
@@ -348,6 +349,7 @@ SENTENCES = [
     ("identify CASE empty.py --noise O=1 --noise O=2", 2, "--noise: column 'O' has two"),
     ("identify CASE empty.py --column O=a --column O=b", 2, "'O' is read from two columns"),
     ("identify CASE empty.py --column O", 2, "'--column': expected NAME=NAME, got 'O'"),
+    ("identify CASE numbers.csv", 2, "expected names of columns in the first line, as 't [s]'"),
     ("identify CASE empty.py --out raises.py", 2, "expected a name that ends in .h5"),
     ("identify CASE empty.py --out text.h5", 2, "cannot write text.h5: it is no file of HDF5"),
     ("loads CASE --link rod --out l --node A=1 --node A=2", 2, "--node: 'A' is named twice"),
@@ -359,6 +361,9 @@ SENTENCES = [
     ("free CASE --cycle -1", 2, "--cycle: expected a positive number of turns, got -1"),
     ("free CASE --drive torque=inf", 2, "--drive torque: expected a finite number, got 'inf'"),
     ("free CASE --fluctuation 95kN", 2, "'95kN' is a force; expected a number without a unit"),
+    ("size CASE --profiles x.csv --deflection 0/1", 2, "expected a share of the length, as 1/500"),
+    ("drive CASE --ratio O=0", 2, "expected numbers other than 0, as in 5 or 5,10,20, got"),
+    ("plot CASE --out ''", 2, "expected a path, got ''"),
     ("drive CASE --efficiency x", 2, "'--efficiency': expected a number, as in 0.05 or 5%, got"),
     ("drive CASE --lead 5kN", 2, "'--lead': '5kN' is a force; expected a length [m]"),
     ("free CASE --fluctuation 0.1 --t 0:1:5", 2, "expected it without --t"),

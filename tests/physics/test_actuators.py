@@ -162,6 +162,30 @@ def test_a_bad_line_of_a_catalogue_is_told(here, rows, heads, says):
             DeclarationError,
             "inertia must not be negative",
         ),
+        (
+            lambda s: duty_of(s, "J").inertia_ratio,
+            DeclarationError,
+            "inertia ratio of 'J': expected the inertia reflected to the drive",
+        ),
+        (
+            lambda s: duty_of(s, "J", carried=np.ones(3)).inertia_ratio,
+            DeclarationError,
+            "inertia ratio of 'J': expected the motor's inertia",
+        ),
+        (lambda s: duty_of(s, "J", carried=[1.0]), DeclarationError, "at each of the 3 instants"),
+        (lambda s: duty_of(s, "J", linear=True), DeclarationError, "a linear motor slides"),
+        (
+            lambda s: Motor("m", 1.0, 1.0, 1.0, 1.0, 1.0, -1.0),
+            DeclarationError,
+            "motor 'm': inertia: expected a number of at least 0, got -1.0",
+        ),
+        (
+            lambda s: select(
+                [Motor("m", 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, linear=True)], lambda *_: duty_of(s, "J")
+            ),
+            DeclarationError,
+            "motor 'm' is a linear one, and the duty of 'J' is that of a rotary one",
+        ),
         (lambda s: duty_of(s, "K"), UnknownNameError, "unknown drive 'K'; valid: J"),
         (lambda s: duty_of(s.during(slice(1)), "J"), DeclarationError, "two instants or more"),
         (lambda s: read_motors("none.csv"), PathError, "no such file"),

@@ -118,12 +118,15 @@ def test_in_space_the_force_along_the_pin_is_axial():
 
 
 def test_what_is_open_is_told():
-    scene = rotor(bearings.Plain(0.012, 0.02, heating=1e6), bearings.Rolling(5e3, hours=1.0))
+    pin, rolling = bearings.Pin(0.012, 0.02, 0.01, STEEL), bearings.Rolling(5e3, hours=1.0)
+    scene = rotor(bearings.Plain(0.012, 0.02, heating=1e6), rolling, pin)
     solution = evaluate(scene, wanted=["reaction:O"])
     assert [told.partition(":")[0] for told in solution.safety("O").not_evaluated] == [
         "plain bearing",
         "rolling bearing",
     ]
+    pressed = evaluate(rotor(bearings.Plain(0.012, 0.02, pressure=1e6)), wanted=["reaction:O"])
+    assert pressed.safety("O").governs.against == "pressure"
     with pytest.raises(DeclarationError, match="not evaluated; add reaction:O too"):
         evaluate(scene, wanted=["effort"]).safety("O")
     with pytest.raises(DeclarationError, match="'safety:O': prepared scenes have no strength of"):
@@ -155,6 +158,7 @@ def test_the_smallest_bearing_that_lives_long_enough(turning):
         long = bearings.rated_hours(bearing.dynamic, cubic, rpm) >= 20e3
         return long and bearing.static >= force.max()
 
+    assert {bearings.rated_hours(1e99, load, rpm) for load in (0.0, 1e-99)} == {math.inf}
     assert lives(best)
     assert best.bore >= 0.015
     assert not any(lives(one) for one in every if one.bore >= 0.015 and one.outer < best.outer)
@@ -288,6 +292,10 @@ def test_a_rod_in_two_bushes(space, values, tmp_path):
         (
             lambda m, rod, other: rotor(bearings.Plain(0.01, 0.02, speed=0.0)),
             "speed must be positive, got 0",
+        ),
+        (
+            lambda m, rod, other: bearings.equivalent_load([1.0, 2.0], [1.0]),
+            "equivalent_load: expected two rows of one length, finite and not negative",
         ),
         (
             lambda m, rod, other: rotor(3.0),

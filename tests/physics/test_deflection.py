@@ -208,6 +208,13 @@ def pressed(place):
             "material 'paper' has no elasticity, which output 'deflection:bar' needs",
         ),
         (
+            lambda: (
+                evaluate(strong.press(SHAPES[0]), t=(0, 0.2, 3)).deflection("rod").at("across", 2)
+            ),
+            DeclarationError,
+            "deflection: expected ratios xi/l from 0 to 1, a row for each of",
+        ),
+        (
             lambda: pressed("ram"),
             DeclarationError,
             "tool_deflection: expected a point of the mechanism, got 'ram'",

@@ -266,6 +266,11 @@ def test_no_place_of_a_link_is_worse_than_the_one_that_is_found(name, criterion,
             "unknown fatigue criterion 'find'.*goodman, gerber, soderberg, morrow, findley",
         ),
         (
+            lambda: strength.critical_plane(np.zeros((2, 5))),
+            DeclarationError,
+            r"critical_plane: expected finite stresses \(3, t\), got",
+        ),
+        (
             lambda: strength.rainflow([1.0, math.nan]),
             DeclarationError,
             "expected a row of finite numbers",

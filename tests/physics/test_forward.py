@@ -324,6 +324,16 @@ def arm():
             "depends on the time",
         ),
         (lambda: free(plane(0.1, 0.3, 1.0), steady=True), "'guide' slides"),
+        (lambda: free(rotor(), t=(0, 0, 1)), "t: a free machine needs two instants or more"),
+        (lambda: free(rotor(), inertia=-1.0), "inertia: expected a number of at least 0, got -1"),
+        (
+            lambda: free(rotor(), drive=forward.expression(lambda t, a, w: ca.sqrt(0.5 - t))),
+            "its motion cannot be followed beyond t = 0.[45]",
+        ),
+        (
+            lambda: free(rotor(), drive=forward.expression(lambda t, a, w: 1 + w**2), steady=True),
+            "no steady cycle was found near .*; the machine gains speed each turn",
+        ),
         (lambda: free(rotor(), steady=True, start=(0.0, 0.0)), "the speed at the start is 0"),
         (lambda: flywheel(rotor(), load=1.0), "needs no flywheel"),
         (
