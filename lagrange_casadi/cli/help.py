@@ -41,8 +41,7 @@ class Command(click.Command):
 
     def invoke(self, ctx: click.Context) -> object:
         """Run the command."""
-        if ctx.obj is not None:
-            ctx.obj |= ctx.params
+        ctx.obj |= ctx.params
         return super().invoke(ctx)
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:

@@ -185,8 +185,6 @@ class Solver:
         shares = (found.t[:, k] - even[:, 0]) / (even[:, -1] - even[:, 0])
         moved = np.where(np.abs(shares - point.share) <= _BESIDE_MOST, shares - point.share, 0.0)
         drift = np.where(np.abs(moved) > _STILL, moved / directions, 0.0)
-        if not drift.any():
-            return point
         return replace(point, share=float(point.share - drift @ x), drift=tuple(drift.tolist()))
 
     def following(
