@@ -7,6 +7,7 @@ import json
 import struct
 import sys
 import xml.etree.ElementTree as ElementTree
+from base64 import b64encode
 from dataclasses import replace
 
 import numpy as np
@@ -167,6 +168,8 @@ def test_an_svg_moves_by_itself_and_tells_the_peaks(tmp_path):
         [f"section:{link}:bending" for link in ("crank", "rod")],
     )
     most = [max(abs(solution.peak(name).value) for name in names) for names in quantities]
+    shown = solution.animate(tmp_path / "b.svg", film)._repr_html_()
+    assert b64encode((tmp_path / "b.svg").read_bytes()).decode() in shown
     texts = [one.text for one in root.iter(f"{SVG}text")]
     assert texts[-1] == (
         f"arrows: up to {most[0]:.3g} N \N{MIDDLE DOT} drive torques: up to {most[1]:.3g} N m"

@@ -72,6 +72,9 @@ def test_a_view_is_the_report_in_a_frame_that_reaches_nothing_else():
         repr(found)
         == "<View of press: a notebook shows it; solution.report('press.html') writes it>"
     )
+    peak = solution.peak("effort:O")
+    for told in ("<svg", "<b>press</b>", f"{peak.value:.5g} N m", f"{peak.t:.5g} s"):
+        assert told in solution._repr_html_()
     for height in (0, -1, 2.5, True, "tall"):
         with pytest.raises(DeclarationError, match=r"expected a (whole number|height in points)"):
             solution.view(height)

@@ -62,8 +62,6 @@ class Term:
 
         Raises :class:`DeclarationError`.
         """
-        if not isinstance(text, str):
-            raise DeclarationError(f"expected a text such as 'peak:effort:O', got {text!r}")
         word, _, name = text.strip().partition(":")
         for kind in KINDS:
             if word == kind and name:

@@ -163,8 +163,6 @@ def draw(
     chosen, folder = specs or default_figures(solution), Path(folder)
     ending = ".svg" if svg else ".png"
     for spec in chosen:
-        if not isinstance(spec, Spec):
-            raise DeclarationError(f"expected specs of lagrange_casadi.figures, got {spec!r}")
         if not _FILE.fullmatch(spec.name) or sum(other.name == spec.name for other in chosen) > 1:
             raise DeclarationError(
                 f"figure '{spec.name}': expected letters, digits, underscores and hyphens, each"

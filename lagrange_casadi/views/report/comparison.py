@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from ...base.arrays import Json
-from ...errors import DeclarationError, shown
+from ...errors import DeclarationError
 from ...results.ordering import error_of, ordered
 from ...results.solution import Solution
 from .array_block import Arrays
@@ -41,10 +41,8 @@ def write_comparison(
     Raises
     ------
     DeclarationError
-        For anything but two solutions, and for two that have no quantity in common.
+        For two that have no quantity in common.
     """
-    if len(solutions) != 2 or not all(isinstance(one, Solution) for one in solutions):
-        raise DeclarationError(f"report: expected two solutions, got {shown(solutions)}")
     first, second = solutions
     words = tuple(names) or _names(first, second)
     write_page(Path(path), lambda: _page((first, second), words))

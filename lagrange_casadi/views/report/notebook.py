@@ -28,7 +28,7 @@ def view(solution: Solution, height: int = 760) -> View:
 
     Raises :class:`.DeclarationError` for no height, and as :func:`.page` does.
     """
-    if isinstance(height, bool) or not isinstance(height, int) or height < 1:
+    if height < 1:
         raise DeclarationError(
             f"view: expected a height in points, a whole number above 0, got {height!r}"
         )

@@ -19,7 +19,7 @@ from ...base.units import vocabulary
 from ...engine.derive import compile_scene
 from ...engine.identity import identity_of, sources
 from ...engine.model_data import template
-from ...errors import DeclarationError, shown
+from ...errors import DeclarationError
 from ...model.scene import Scene, Wanted
 from ...model.wanted_names import SENSITIVITY
 from ...results.store.untrusted import reported_as, structured
@@ -63,8 +63,6 @@ def write_sweep_report(
     that evaluates it. Raises :class:`.DeclarationError` for the scene of another sweep, for a sweep
     without columns to show, and what :func:`.write_report` raises.
     """
-    if not (scene is None or isinstance(scene, Scene)):
-        raise DeclarationError(f"report: scene: expected a Scene, got {shown(scene)}")
     write_page(Path(path), lambda: _page(sweep, scene, command))
 
 

@@ -108,10 +108,6 @@ def write_report(
     does not end in .html; :class:`.PathError` and :class:`.StoreError` where the file cannot be
     written.
     """
-    if not isinstance(solution, Solution) or not isinstance(path, (str, os.PathLike)):
-        raise DeclarationError(
-            f"report: expected a solution and a path, got {solution!r} and {path!r}"
-        )
     write_page(Path(path), lambda: page(solution, live))
 
 
