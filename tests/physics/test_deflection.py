@@ -99,6 +99,7 @@ def test_a_cantilever_in_space():
     }
     found = solution.deflection("arm")
     assert {name: found.tip[name][0] for name in told} == pytest.approx(told, rel=1e-9)
+    assert {name: found.base[name][0] for name in told} == dict.fromkeys(told, 0.0)
     for largest in (found.largest()[0], solution.series["deflection:arm:across"]):
         assert largest[0] == pytest.approx(np.hypot(told["across_y"], told["across_z"]), rel=1e-9)
 
@@ -119,8 +120,9 @@ def test_a_beam_in_space_held_at_both_ends():
         -1e4 * l / (4 * E * p.area),
         30.0 * (l**3 / (192 * E * p.iy) + l / (4 * G * p.shear_z)),
     ]
-    found = tool_deflection(scene, bar.at(l / 2)).moved[0]
-    assert found == pytest.approx(told, rel=1e-9)
+    found = tool_deflection(scene, bar.at(l / 2))
+    assert found.moved[0] == pytest.approx(told, rel=1e-9)
+    assert found.largest == pytest.approx(np.linalg.norm(told), rel=1e-9)
 
 
 def test_a_rod_that_moves_by_fine_sums():

@@ -266,6 +266,16 @@ def test_no_place_of_a_link_is_worse_than_the_one_that_is_found(name, criterion,
             "unknown fatigue criterion 'find'.*goodman, gerber, soderberg, morrow, findley",
         ),
         (
+            lambda: shaft(wave(0, 1)).stress("bar").grid("von_mises", [2.0]),
+            DeclarationError,
+            "stress: expected a row of ratios xi/l from 0 to 1, got",
+        ),
+        (
+            lambda: shaft(wave(0, 1)).stress("bar").peak("von_mises", notches=True),
+            DeclarationError,
+            "the beam of link 'bar' has no notches",
+        ),
+        (
             lambda: strength.critical_plane(np.zeros((2, 5))),
             DeclarationError,
             r"critical_plane: expected finite stresses \(3, t\), got",
