@@ -70,7 +70,16 @@ LINKS = {
         "rod",
     ),
     "tapered rectangle": lambda: (
-        press(beams.tapered(beams.rectangle(0.06, 0.02), beams.rectangle(0.02, 0.03))),
+        press(
+            beams.along(
+                [0.0, 0.4, 1.0],
+                [
+                    beams.rectangle(0.06, 0.02),
+                    beams.rectangle(0.03, 0.02),
+                    beams.rectangle(0.012, 0.01),
+                ],
+            )
+        ),
         "rod",
     ),
     "tube in space": lambda: (robot(beams.tube(0.04, 0.003)), "upper"),
