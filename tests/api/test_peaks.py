@@ -47,7 +47,8 @@ def test_peaks_over_a_drive_are_those_over_time(speed, start, sign, count):
     found = evaluate(scene, backend="vm")
     peak = refined(scene, found, ["effort:pin"])["effort:pin"]
     assert abs(peak.value) == pytest.approx(MASS * G * LENGTH / 2, rel=1e-12)
-    assert abs(math.remainder(peak.over, math.pi)) < 1e-6
+    away = abs(math.remainder(peak.over, math.pi))
+    assert away < (1e-6 if peak.t in found.t else 1e-11)
     assert peak.t == pytest.approx((peak.over - start) / (sign * speed), abs=1e-9)
     assert (np.diff(found.over.values) * sign > 0).all()
 
