@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from mechanisms import links_of, pins_of
 
-from lagrange_casadi import Mechanism, Scene, derive, elements, evaluate, motion
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, derive, elements, evaluate, motion
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
 
 pytestmark = pytest.mark.usefixtures("interpreted")
@@ -43,6 +43,28 @@ def test_what_is_wanted_brings_what_it_is_made_of_and_costs_little_more():
     asked = (derive(scene, wanted).instructions for wanted in (["output:power"], ["effort"]))
     power, effort = (sum(instructions.values()) for instructions in asked)
     assert power <= effort + 3
+
+
+def test_a_point_of_a_bar_between_two_balls_accelerates_as_it_moves():
+    """By fourth-order differences of its place."""
+    m = SpatialMechanism("bar")
+    crank, bar, rocker = links_of(m, crank=(0.1, 0.4), bar=(0.4, 0.8), rocker=(0.25, 0.6))
+    m.revolute("O", m.ground, crank, axis=(0, 0, 1))
+    m.spherical("A", crank.tip, bar)
+    m.spherical("B", bar.tip, rocker.tip)
+    axis, along, across = (0.48, 0.8, 0.36), (0.6, 0.0, -0.8), (-0.64, 0.6, -0.48)
+    m.revolute("Q", m.ground.at(0.3, -0.1, 0.2), rocker, axis=axis, turned=(along, across))
+    point = bar.at(0.13)
+    for k, (x, a) in enumerate(zip(m.place(point), m.results.acceleration(point), strict=True)):
+        m.output(f"x{k}", x, unit="m")
+        m.output(f"a{k}", a, unit="m/s^2")
+    laws, (times, step) = {"O": motion.polynomial(0.4, 10.0)}, ((0.0, 0.2, 401), 5e-4)
+    found = evaluate(Scene(m, laws, ["output"], t=times, posture={"Q": 2.9}))
+    for k in range(3):
+        x, weights = found.output(f"x{k}"), np.array([-1, 16, -30, 16, -1]) / (12 * step**2)
+        np.testing.assert_allclose(
+            found.output(f"a{k}")[2:-2], np.convolve(x, weights, "valid"), atol=1e-4
+        )
 
 
 def test_what_equilibrium_leaves_open_leaves_them_open():
