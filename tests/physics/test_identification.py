@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import runpy
 
 import numpy as np
@@ -110,6 +111,10 @@ def test_outliers_count_little_in_hubers_loss():
         off[robust] = np.abs([one.value for one in result.base] - combined(result, ARM)).max()
     assert off[True] < 0.1 * off[False]
     assert result.outliers["effort:A"] > result.outliers["effort:B"]
+    # Without outliers a standard error grows by what Huber's loss gives away: 1/0.95 of a variance.
+    plain, robust = (identify(scene, given, robust=huber) for huber in (False, True))
+    for one, other in zip(plain.base, robust.base, strict=True):
+        assert other.error == pytest.approx(one.error / math.sqrt(0.95), rel=0.1)
 
 
 def test_missing_values_a_filter_and_a_second_record_change_no_truth():
