@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import strong
 
-from lagrange_casadi import beams, evaluate
+from lagrange_casadi import Mechanism, Scene, beams, evaluate, motion
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
 
 pytestmark = pytest.mark.usefixtures("interpreted")
@@ -173,3 +173,18 @@ def test_what_has_no_stress(ask, says):
     solution = evaluate(ask(), t=(0, 0.2, 5), certificate=False)
     with pytest.raises((DeclarationError, UnknownNameError), match=words):
         solution.stress(link).peak(kind)
+
+
+def test_a_beam_that_tapers_in_two_parts_is_worst_where_its_modulus_says():
+    """A load F across the tip of a bar of height h(u): 6 F l (1 - u) / (b h^2)."""
+    m, b, places, heights = Mechanism("held"), 0.02, [0.0, 0.5, 1.0], [0.06, 0.04, 0.012]
+    course = beams.along(places, [beams.rectangle(h, b) for h in heights])
+    bar = m.link("bar", length=0.3, beam=beams.Beam(course, beams.material("S235")))
+    m.revolute("O", m.ground, bar)
+    m.force("load", bar.tip, x=0.0, y=4e3)
+    m.set_gravity(0.0, 0.0)
+    scene = Scene(m, {"O": motion.polynomial(0.0)}, t=(0, 0, 1), wanted=["section:bar"])
+    u = np.linspace(0, 1, 100_001)
+    worst = (6 * 4e3 * 0.3 * (1 - u) / (b * np.interp(u, places, heights) ** 2)).max()
+    found = evaluate(scene, backend="vm").stress("bar").largest("von_mises")
+    assert found.value == pytest.approx([worst], rel=1e-8)
