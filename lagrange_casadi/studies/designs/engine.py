@@ -264,7 +264,7 @@ class DesignEngine:
                 for rows, values in zip(out, p, strict=True):
                     indeterminate = undetermined(program, rows, values, self.method)
                     rows[[program.outputs[output] for output in indeterminate]] = np.nan
-            unwind(program, np.moveaxis(out, 1, 0))
+            unwind(program, out.swapaxes(0, 1))
 
     def _results(self, n: int, columns: Array | None) -> Results:
         """Arrays for what is kept of n designs, and the columns that histories are made of."""
