@@ -35,15 +35,15 @@ def laws_of(
     coordinates = mechanism.coordinates
     for name, laws in motion.items():
         given = tuple(laws) if isinstance(laws, (tuple, list)) else (laws,)
+        check_kind("motion", name, "a name of a joint, a path or a body", str)
         names, what, wanted = [name], "joint", "one law"
         if name in mechanism.joints:
             joint = mechanism.joints[name]
             names = [axis.coordinate for axis in joint.axes]
             if not names:
-                weld = joint.kind == "weld"
                 why = (
                     "weld has no coordinate"
-                    if weld
+                    if joint.kind == "weld"
                     else "revolute joint at a point mass has no angle"
                 )
                 raise DeclarationError(f"joint '{name}' cannot be driven: a {why}")

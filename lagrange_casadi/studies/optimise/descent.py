@@ -248,16 +248,16 @@ class Descent:
         added, sampled = False, evaluated.sampled
         assert sampled is not None
         near = _SAME * sampled.step
-        for k, held_term in enumerate(held):
-            term, points = held_term.constraint.term, evaluated.points[held_term.constraint.term]
+        for k, each in enumerate(held):
+            term, points = each.constraint.term, evaluated.points[each.constraint.term]
             if not points:
                 continue
             largest = points[0][1] * points[0][0].value
             least = KEEP * largest if largest > 0.0 else largest / KEEP
             if not everything:
                 # Only what may exceed what the program found.
-                level = largest if k == 0 else held_term.bound
-                least = max(least, level - _NEAR * held_term.scale)
+                level = largest if k == 0 else each.bound
+                least = max(least, level - _NEAR * each.scale)
             high = [(point, sign) for point, sign in points if sign * point.value >= least]
             found = self.solver.following(term, high or points[:1], sampled)
             first, sign = found[0]
@@ -273,9 +273,9 @@ class Descent:
                     sign,
                 )
             for point, sign in found if high else ():
-                added |= held_term.add(point, sign, near)
-            if not held_term.points:
-                added |= held_term.add(*found[0], near)
+                added |= each.add(point, sign, near)
+            if not each.points:
+                added |= each.add(*found[0], near)
         for row in sampled.closures():
             k = int(np.argmin(row))
             point = sampled.instant(k)

@@ -177,7 +177,7 @@ class NonlinearProgram:
 
         ``averages`` are all instants, for means.
         """
-        many = max([len(held_term.points) for held_term in held] + [len(closures), 1])
+        many = max([len(each.points) for each in held] + [len(closures), 1])
         capacity = _FEW
         while capacity < many:
             capacity *= 2
@@ -187,9 +187,9 @@ class NonlinearProgram:
         given = np.concatenate(
             [np.array([(each.bound / each.scale, 1.0 / each.scale) for each in held]).ravel()]
             + [
-                self._packed(held_term.points, capacity, self.values.of(output).size)
-                for held_term in held
-                if held_term.points and (output := held_term.constraint.term.output)
+                self._packed(each.points, capacity, self.values.of(output).size)
+                for each in held
+                if each.points and (output := each.constraint.term.output)
             ]
             + [self._packed([(point, 1.0) for point in closures], capacity, 1)]
             * (self.closures is not None)
@@ -205,8 +205,8 @@ class NonlinearProgram:
         at, by_g, by_x = (found[name].full().ravel() for name in ("x", "lam_g", "lam_x"))
         scale = held[0].scale
         multipliers = tuple(
-            float(np.sum(by_g[rows])) * scale / held_term.scale
-            for rows, held_term in zip(built.rows[1:], held[1:], strict=True)
+            float(np.sum(by_g[rows])) * scale / each.scale
+            for rows, each in zip(built.rows[1:], held[1:], strict=True)
         )
         shares = np.clip(at[:n], 0.0, 1.0)
         found_conditions = conditions(
@@ -274,8 +274,8 @@ class NonlinearProgram:
 
         guesses = ca.MX.sym("guesses", nz, self.instants)
         best: Any = level
-        for number, held_term in enumerate(held):
-            term, (limit, over) = held_term.constraint.term, (limits[0, number], limits[1, number])
+        for number, each in enumerate(held):
+            term, (limit, over) = each.constraint.term, (limits[0, number], limits[1, number])
             if not term.pointed:
                 if term in self.energies:
                     value = self.energies[term](p)
@@ -283,7 +283,7 @@ class NonlinearProgram:
                     value = self._average(term, p, guesses)
                 else:
                     value = term.of_parameters(self.values.program.data)(p)
-                row = (-value if held_term.constraint.least else value) * over - limit
+                row = (-value if each.constraint.least else value) * over - limit
                 best = value * over if number == 0 else best
                 held_rows = ca.MX(0, 1) if number == 0 else row
             else:

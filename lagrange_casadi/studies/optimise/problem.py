@@ -157,7 +157,11 @@ class Question:
         """Read what a user says. Raises what :func:`.optimise` does for mistakes."""
         declared = scene.parameters
         texts = [minimise] if isinstance(minimise, str) else minimise
-        if not isinstance(texts, (list, tuple)) or not texts:
+        if (
+            not isinstance(texts, (list, tuple))
+            or not texts
+            or not all(isinstance(text, str) for text in texts)
+        ):
             raise DeclarationError(
                 f"minimise: expected a text such as 'peak:effort:O', or several, got {minimise!r}"
             )
