@@ -17,7 +17,7 @@ Numbers = npt.NDArray[np.intp]
 _MOST_PLACES = 0.95
 """Fraction of instants at which sizes are no larger than their reference."""
 
-_SAMPLES = 401
+_SAMPLES = 101
 """Number of instants that show the usual sizes of a path."""
 
 _FALLS = 0.95

@@ -47,14 +47,26 @@ static search_real search_furthest(const search_real* row, long long i, long lon
 
 static search_real search_floor(search_real x) { return x - x == 0 ? (search_real) floor((double) x) : x; }
 
+/* The first of a watched argument's numbers, which increase, that is not below x. */
+static int search_from(const search_now* now, int watch, search_real x) {
+  const lagrange_casadi_curves* curves = now->curves;
+  int first = curves->watch_first[watch], last = curves->watch_first[watch + 1], middle;
+  while (first < last) {
+    middle = (first + last)/2;
+    if (curves->watch_at[middle] < x) first = middle + 1;
+    else last = middle;
+  }
+  return first;
+}
+
 /* How many kinks one of the watched has in step i of a panel, 2 for more; or SEARCH_MANY where it may do anything. Unless it may have a
    kink itself there, as bent says, one that bends little beside how far it goes stays between its ends. */
 #define SEARCH_MANY 100
 #define SEARCH_NUMBERED(kind) ((kind) == SEARCH_IS_SWITCH || (kind) == SEARCH_IS_KNOT)
 static int search_kinks(const search_now* now, const search_panel* panel, int watch, long long i, int bent) {
-  const search_real *row = search_watched(now, panel, watch), *at = now->curves->watch_at + now->curves->watch_first[watch];
+  const search_real *row = search_watched(now, panel, watch), *at = now->curves->watch_at;
   const search_real a = row[i], b = row[i + 1], least = search_lower(a, b), most = search_upper(b, a);
-  const int kind = now->curves->watch[watch], count = now->curves->watch_first[watch + 1] - now->curves->watch_first[watch];
+  const int kind = now->curves->watch[watch], last = now->curves->watch_first[watch + 1];
   const long long n = panel->n;
   search_real low, high, nearest, turned;
   long long j;
@@ -86,7 +98,8 @@ static int search_kinks(const search_now* now, const search_panel* panel, int wa
     return 0;
   }
   if (SEARCH_NUMBERED(kind)) {
-    for (k = 0; k < count; ++k) {
+    high = search_upper(high, most);
+    for (k = search_from(now, watch, search_lower(low, least)); k < last && at[k] < high; ++k) {
       if ((a > at[k]) != (b > at[k])) {
         kinks += kinks < 2;
       } else if (a > at[k] && b > at[k] ? low < at[k] : high > at[k]) {
@@ -102,8 +115,8 @@ static int search_kinks(const search_now* now, const search_panel* panel, int wa
     return nearest > 1 ? 2 : nearest > 0;
   }
   if (kind == SEARCH_IS_SOFT) {
-    if ((high > most + SEARCH_CHANGE || low < least - SEARCH_CHANGE) && low < at[0] && high > -at[0]) return SEARCH_MANY;
-    return most - least > SEARCH_CHANGE && least < at[0] && most > -at[0];
+    if ((high > most + SEARCH_CHANGE || low < least - SEARCH_CHANGE) && low < at[last - 1] && high > -at[last - 1]) return SEARCH_MANY;
+    return most - least > SEARCH_CHANGE && least < at[last - 1] && most > -at[last - 1];
   }
   nearest = -SEARCH_LARGEST;
   for (j = 0; j < n; ++j) nearest = row[j] > nearest ? row[j] : nearest;
@@ -139,11 +152,12 @@ static search_real search_shaken(const search_real* row, long long step, long lo
 static search_real search_gap(const search_now* now, int watch, search_real x) {
   const lagrange_casadi_curves* curves = now->curves;
   search_real gap = SEARCH_LARGEST;
-  int k;
+  int j, k;
   if (curves->watch[watch] == SEARCH_IS_STEP) return search_magnitude(x - search_floor(x + SEARCH_HALF));
   if (curves->watch[watch] == SEARCH_IS_ROOT) return search_magnitude(x);
-  for (k = curves->watch_first[watch]; k < curves->watch_first[watch + 1]; ++k) {
-    gap = search_lower(search_magnitude(x - curves->watch_at[k]), gap);
+  for (k = search_from(now, watch, x), j = k - 1; j <= k; ++j) {
+    if (j < curves->watch_first[watch] || j == curves->watch_first[watch + 1]) continue;
+    gap = search_lower(search_magnitude(x - curves->watch_at[j]), gap);
   }
   return gap;
 }
@@ -151,13 +165,9 @@ static search_real search_gap(const search_now* now, int watch, search_real x) {
 /* On which side of the numbers at which it switches one of the watched is: twice as many as are below it, and one more at one. */
 static search_real search_side(const search_now* now, int watch, search_real x) {
   const lagrange_casadi_curves* curves = now->curves;
-  search_real side = 0;
-  int k;
+  const int k = search_from(now, watch, x);
   if (curves->watch[watch] == SEARCH_IS_STEP) return 2*search_floor(x) + (search_floor(x) == x);
-  for (k = curves->watch_first[watch]; k < curves->watch_first[watch + 1]; ++k) {
-    side += 2*(curves->watch_at[k] < x) + (curves->watch_at[k] == x);
-  }
-  return side;
+  return (search_real) (2*k + (k < curves->watch_first[watch + 1] && curves->watch_at[k] == x));
 }
 
 static int search_is_switching(const search_now* now, int watch) {

@@ -97,9 +97,9 @@ static int search_rounded(const search_now* now, int curve) {
   if (all->n < 2*SEARCH_QUIET) return 0;
   for (i = 1; i < all->n - 1; ++i) {
     bend = search_bend(row + i);
-    if (search_kinked(now, all, i - 1) || search_kinked(now, all, i) ||
-        !(search_magnitude(bend) > SEARCH_RAGGED*search_upper(search_magnitude(row[i]),
-                                                               search_upper(search_magnitude(row[i - 1]), search_magnitude(row[i + 1]))))) {
+    if (!(search_magnitude(bend) > SEARCH_RAGGED*search_upper(search_magnitude(row[i]),
+                                                               search_upper(search_magnitude(row[i - 1]), search_magnitude(row[i + 1])))) ||
+        search_kinked(now, all, i - 1) || search_kinked(now, all, i)) {
       bend = 0;
     }
     turns += (bend < 0 && before > 0) || (bend > 0 && before < 0);

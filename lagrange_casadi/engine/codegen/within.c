@@ -125,7 +125,7 @@ static int search_find_sides(search_now* now, const search_panel* panel, long lo
       low = search_lower(row[step], row[step + 1]);
       high = search_upper(row[step], row[step + 1]);
       if (!(high - low <= SEARCH_LARGEST) || (!numbered && search_floor(high) != search_floor(low) + 1)) continue;
-      for (j = curves->watch_first[k]; j < (numbered ? curves->watch_first[k + 1] : curves->watch_first[k] + 1); ++j) {
+      for (j = search_from(now, k, low); j < (numbered ? curves->watch_first[k + 1] : curves->watch_first[k] + 1); ++j) {
         level = numbered ? curves->watch_at[j] : search_floor(high);
         if (search_beyond(kind, low, level) || !search_beyond(kind, high, level)) continue;
         if (search_undecided(now, panel, k, step)) continue;
