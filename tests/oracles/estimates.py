@@ -90,15 +90,18 @@ def methods(scene):
     }
 
 
-def looked_at(scene, words, **given):
-    """Estimates over true errors of a scene by one method, by quantity; none where it is refused:
-    steps may be too few for any solution.
+def looked_at(scene, several, **given):
+    """Estimates over true errors of a scene, by quantity, for each of several methods; none where
+    it is refused: steps may be too few for any solution.
     """
-    try:
-        solution = evaluate(scene, **words, **given)
-    except LagrangeCasadiError:
-        return {}
-    return ratios(solution, truth(scene, solution.t, given.get("parameters")))
+    exact = None
+    for words in several:
+        try:
+            solution = evaluate(scene, **words, **given)
+        except LagrangeCasadiError:
+            continue
+        exact = exact or truth(scene, solution.t, given.get("parameters"))
+        yield ratios(solution, exact)
 
 
 def random(kind, seed):
@@ -133,20 +136,21 @@ def main():
         " % | within a factor of ten |"
     )
     print("| --- | --- | --- | --- | --- | --- | --- |")
+    groups = {"": [(load_case(CASES / name).scene, {}) for name in PLANAR]}
+    if told.scenes:
+        groups = {kind: [random(kind, seed) for seed in range(told.scenes)] for kind in KINDS}
     for method in told.method or METHODS:
         option, every = f"`{OPTIONS.get(method, f'--{method}')}`", []
-        if told.scenes:
-            for kind in KINDS:
-                found = []
-                for seed in range(told.scenes):
-                    scene, given = random(kind, seed)
-                    found += looked_at(scene, METHODS[method], **given).values()
+        for kind, many in groups.items():
+            found = [
+                value
+                for scene, given in many
+                for one in looked_at(scene, [METHODS[method]] * (method in methods(scene)), **given)
+                for value in one.values()
+            ]
+            every += found
+            if kind:
                 print(row(f"{kind.replace('_', ' ')}, {option}", found), flush=True)
-                every += found
-        else:
-            for scene in (load_case(CASES / name).scene for name in PLANAR):
-                if method in methods(scene):
-                    every += looked_at(scene, METHODS[method]).values()
         print(row(option if not told.scenes else f"all, {option}", every), flush=True)
 
 

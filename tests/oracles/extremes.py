@@ -43,23 +43,15 @@ class Extreme:
         """The scene evaluated."""
         return evaluate(self.scene(), parameters=self.values, t=self.t, wanted=["all"], **options)
 
-    @functools.cached_property
-    def chosen(self):
-        """Whether an instant is that of the largest condition, or another one that is chosen."""
-        solution = self.solution(backend="vm")
-        condition = solution.certificate.get("condition", solution.t)
-        n = solution.t.size
-        return np.isin(np.arange(n), [n // 3, np.argmax(condition)])
-
-    @functools.cached_property
-    def exact(self):
-        """What is true at these instants."""
-        scene, t = replace(self.scene(), t=self.t), self.solution(backend="vm").t[self.chosen]
-        return truth(scene, t, scene.mechanism.values(self.values))
-
     def judged(self, solution):
-        """The largest error of every quantity, and its share of the peak of the quantity's kind."""
-        errors, peaks = true_errors(solution.during(self.chosen), self.exact), {}
+        """The largest error of every quantity, at the instant of the largest condition and another
+        one, and its share of the peak of the quantity's kind.
+        """
+        n, scene = solution.t.size, replace(self.scene(), t=self.t)
+        worst = np.argmax(solution.certificate.get("condition", solution.t))
+        some = solution.during(np.isin(np.arange(n), [n // 3, worst]))
+        exact = truth(scene, some.t, scene.mechanism.values(self.values))
+        errors, peaks = true_errors(some, exact), {}
         for name in errors:
             peaks[kind(name)] = max(peaks.get(kind(name), 0.0), abs(solution.peak(name).value))
         # What is smaller than the smallest normal number is no error.
