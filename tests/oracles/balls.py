@@ -17,7 +17,7 @@ def locked(drawn: Drawn, name: str, t: float) -> Drawn:
     """The same, with a joint's three turns told from where its second one is at a right angle at an
     instant.
     """
-    joint, poses = drawn.mechanism.joint(name), drawn.solve(t).poses
+    joint, poses = drawn.mechanism.joint(name), drawn.move(t)[0]
     (R, S), (u, v, w) = (
         (
             np.asarray(poses[b].R, float) if b in poses else np.eye(3)

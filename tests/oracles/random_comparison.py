@@ -241,14 +241,15 @@ class Comparison:
             self.units[extra.name] = max(acts, default=0.0) or 1.0
         ratios = self._ratios(exact, model.places(exact))
         rounding = 64 * ROUNDING / exact.steadiness**2
+        told = self._told(i, ratios)
         for name, value in self._named(exact, model, ratios).items():
-            mine, loose = self._mine(name, i), _open(exact, self._source(name)[0])
-            if mine is None:
-                self.withheld[name.partition("@")[0]].append(loose)
+            full, loose = name.partition("@")[0], _open(exact, self._source(name)[0])
+            if not self.solution.determined(full):
+                self.withheld[full].append(loose)
             elif loose:
                 self.faults.append(f"'{name}' is given, and is not unique at t = {t:g} s")
             else:
-                whole = name.endswith(":angle") or (name in self.angles)
+                mine, whole = told[name], name.endswith(":angle") or name in self.angles
                 gap = (
                     math.remainder(mine - value, math.tau)
                     if whole and math.isfinite(mine)
@@ -256,19 +257,15 @@ class Comparison:
                 )
                 self.found[name].append(_Gap(t, gap, value, rounding, exact, ratios))
 
-    def _mine(self, name: str, i: int) -> float | None:
-        """What the solution says; None where it calls it undetermined."""
-        full, _, ratio = name.partition("@")
-        if not self.solution.determined(full):
-            return None
-        if not ratio:
-            return float(self.solution.series[full][i])
-        _, link, force = full.split(":")
-        return float(
-            self.solution.section(link)
-            .law.during(slice(i, i + 1))
-            .at(force, np.array([[float(ratio)]]))[0, 0]
-        )
+    def _told(self, i: int, ratios: dict[str, list[float]]) -> dict[str, float]:
+        """What the solution says of everything, by full name; of section forces at ratios."""
+        told = {name: float(values[i]) for name, values in self.solution.series.items()}
+        for link, some in ratios.items():
+            law = self.solution.section(link).law.during(slice(i, i + 1))
+            for force in oracle.SECTION:
+                names = [f"section:{link}:{force}@{u!r}" for u in some]
+                told |= zip(names, law.at(force, np.array([some]))[0].tolist(), strict=True)
+        return told
 
     def _named(self, exact, model, ratios) -> dict[str, float]:
         """What the oracle says of all that the solution has or should have, by full name; of

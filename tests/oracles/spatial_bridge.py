@@ -137,7 +137,7 @@ def declared(
         if drawn.pushed is None or one.rows
         else [coordinate(one.joint(name), k) for name, k in drawn.pushed]
     )
-    posture = postures(drawn, t)
+    posture = postures(drawn, drawn.move(t)[0])
     rough = {name: posture[name] for name in m.coordinates if name in posture and name not in laws}
     if drawn.hard:
         rough = {
@@ -173,12 +173,10 @@ def declared_axes(drawn: Drawn, body: str, pose) -> np.ndarray:
     return np.column_stack([x, y, np.cross(x, y)])
 
 
-def postures(drawn: Drawn, t: float) -> dict[str, float]:
-    """The coordinates at an instant, by the package's names, as they follow from the oracle's
-    poses.
-    """
+def postures(drawn: Drawn, poses) -> dict[str, float]:
+    """The coordinates by the package's names, as they follow from the oracle's poses."""
     motion = Motion(drawn.mechanism, drawn.laws)
-    poses = drawn.solve(t).poses | {GROUND: motion.ground}
+    poses = poses | {GROUND: motion.ground}
     return {
         coordinate(joint, k): float(value)
         for joint in drawn.mechanism.joints

@@ -139,6 +139,14 @@ class Drawn:
             idle=without(spun.idle),
         )
 
+    def move(self, t, guess=None):
+        """Poses, coordinates and the factored slope of the motion at t; see :meth:`solve`."""
+        return solve_motion(
+            Motion(self.mechanism, self.laws, self.pushed or ()),
+            self.drives(t),
+            guess or self.followed(t),
+        )
+
     def followed(self, t) -> dict:
         """The nearest of the postures that are followed from the one at 0; none of an open tree,
         which needs none.
@@ -155,10 +163,7 @@ class Drawn:
         """
         guess, found = self.guess, []
         for k in range(self.steps + 1):
-            motion = Motion(self.mechanism, self.laws, self.pushed or ())
-            poses, coordinates, slope = solve_motion(
-                motion, self.drives(self.span * k / self.steps), guess
-            )
+            poses, coordinates, slope = self.move(self.span * k / self.steps, guess)
             guess = {b.name: (poses[b.name].r, poses[b.name].R) for b in self.mechanism.bodies}
             guess |= {key: q for key, (q, *_) in coordinates.items()}
             found.append((guess, slope))

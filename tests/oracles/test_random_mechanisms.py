@@ -6,6 +6,7 @@ printed as Python to paste, with what is wrong; ``random_verdict`` says what rig
 reactions, section forces, peaks between instants, certificates and stated errors.
 """
 
+import contextlib
 import functools
 
 import pytest
@@ -15,6 +16,7 @@ from random_mechanisms import KINDS, draw
 from random_verdict import compare, judge, peaks_off
 
 from lagrange_casadi import derive, evaluate
+from lagrange_casadi.errors import LagrangeCasadiError
 from lagrange_casadi.peaks import forces
 
 COUNT, LONG, QUICK = 10, 100, 2
@@ -87,9 +89,10 @@ def test_exported_c_has_the_same(several, tmp_path):
     for kind, seed in several:
         drawn = draw(seed, kind)
         given = {**drawn.keywords, "backend": "vm", "certificate": False}
-        moves = (drawn.draft.laws or drawn.draft.guides) and "wanted" not in given
-        if moves and judge(drawn, backend="vm").kind == "right":
-            many.append((drawn, drawn.scene(), evaluate(drawn.scene(), **given)))
+        scene, moves = drawn.scene(), drawn.draft.laws or drawn.draft.guides
+        with contextlib.suppress(LagrangeCasadiError):
+            if moves and "wanted" not in given:
+                many.append((drawn, scene, evaluate(scene, **given)))
     assert len(many) >= len(several) / 2
     for drawn, solution, off in by_exported_c(many, tmp_path):
         found = compare(drawn, solution)
