@@ -7,6 +7,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+import pytest
 from conftest import CASES
 
 from lagrange_casadi.cli import main
@@ -26,6 +27,15 @@ def python(program, *words):
     """What a program prints in a process of its own."""
     asked = [sys.executable, "-c", program, *words]
     return subprocess.run(asked, capture_output=True, text=True, check=True).stdout
+
+
+def run_here(function, *given, folder, **_):
+    """What a function gives that the package runs apart, in a process that takes a second to
+    begin.
+    """
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        return function(*given)
 
 
 def missing(stated, printed):

@@ -7,6 +7,7 @@ import re
 
 import numpy as np
 import pytest
+from commands import run_here
 from internals import case_of
 
 from lagrange_casadi import Scene, errors, evaluate
@@ -211,7 +212,8 @@ def drawn(seed):
 
 @pytest.mark.sampled(41)
 @pytest.mark.parametrize("seed", range(400))
-def test_efforts_are_those_of_mujoco_or_a_note_says_why_not(seed, tmp_path):
+def test_efforts_are_those_of_mujoco_or_a_note_says_why_not(seed, tmp_path, monkeypatch):
+    monkeypatch.setattr("lagrange_casadi.interop.formats.mjcf.run_apart", run_here)
     draw, path = drawn(seed), tmp_path / "model.xml"
     path.write_text(draw.text)
     model = compiled(draw.text)
