@@ -6,6 +6,8 @@ import math
 
 import casadi as ca
 import numpy as np
+import pytest
+from conftest import NAMES
 from operations import EACH, X, Y
 
 from lagrange_casadi import Mechanism, Scene, curve
@@ -16,6 +18,16 @@ MOTION = polynomial(0.2, 3.0, 4.0)
 INSTANT = 0.3
 
 PIN = Mechanism.revolute
+
+PLAIN = [
+    pytest.param(
+        name,
+        marks=[pytest.mark.long]
+        * (name in ("delta", "parallel_leg", "quadruped", "stewart_gough", "v6")),
+    )
+    for name in NAMES
+]
+"""All cases as parameters, the large ones, whose joints are in others too, only with ``--long``."""
 
 
 def links_of(m, **rows):
