@@ -20,7 +20,9 @@ FACTORS = (-1.0, 1.0 + 1e-4)
 
 
 def missed(scene, groups=GROUPS, **keywords):
-    """The names of outputs that may be wrong by a factor, and the certificate does not notice."""
+    """The names of outputs that may be wrong by one factor or the other, by turns, and the
+    certificate does not notice.
+    """
     solution = evaluate(scene, **keywords)
     declared = declaration(scene, solution)
     assert max(gaps.max() for gaps in certify(solution, declared).values()) < 1e-9
@@ -37,13 +39,11 @@ def missed(scene, groups=GROUPS, **keywords):
         if not size > max(0.05 * largest[output.group, solution.unit(output)], 1e-12):
             continue
         # A motion run backwards needs the same forces, where none depends on rates.
-        for factor in (
-            FACTORS[1:] if output.group == "motion" and output.member == "rate" else FACTORS
-        ):
-            tried += 1
-            residuals = certify(solution, declared, {output: factor * values})
-            if not max(gaps.max() for gaps in residuals.values()) > 1e-9:
-                found.append(f"{output} times {factor}")
+        tried += 1
+        factor = FACTORS[tried // 2 % 2 if output.member != "rate" else 1]
+        residuals = certify(solution, declared, {output: factor * values})
+        if not max(gaps.max() for gaps in residuals.values()) > 1e-9:
+            found.append(f"{output} times {factor}")
     assert tried
     return found
 
