@@ -31,7 +31,7 @@ def shelf(x, length, parameters=True):
     return Scene(m, {"O": polynomial(0.0)}, t=(0.0, 1.0, 3), xi=(0.0, 1.0, 3))
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=6, deadline=None)
 @given(parts=st.lists(st.integers(1, 999), min_size=2, max_size=12))
 def test_a_station_that_misses_an_end_by_rounding_is_there(parts):
     """However a length is summed up: the weight is in the section at the very tip, and what is at
@@ -45,9 +45,9 @@ def test_a_station_that_misses_an_end_by_rounding_is_there(parts):
         np.testing.assert_allclose(section.shear, -weight, rtol=1e-14)
         moments = -weight * length * np.array([1.0, 0.5, 0.0])
         np.testing.assert_allclose(section.bending[0], moments, rtol=1e-14, atol=1e-13 * length)
-        solution = evaluate(shelf(0.0, 0.3), parameters={"x": forward - backward, "l": forward})
-        np.testing.assert_array_equal(solution.section("arm").shear, np.zeros((3, 3)))
-        assert solution.certified
+    solution = evaluate(shelf(0.0, 0.3), parameters={"x": forward - backward, "l": forward})
+    np.testing.assert_array_equal(solution.section("arm").shear, np.zeros((3, 3)))
+    assert solution.certified
 
 
 def test_a_part_in_1e9_beyond_an_end_is_beyond():

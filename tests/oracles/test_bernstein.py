@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from internals import bernstein
 
-COUNT = 3000
+COUNT = 1000
 
 
 def drawn(draw, degree):

@@ -6,6 +6,7 @@ the cosine rule in forty digits.
 """
 
 import cmath
+import functools
 import math
 import subprocess
 
@@ -34,6 +35,7 @@ def law(m, start):
     )
 
 
+@functools.cache
 def four_bar(crossed=False, space=False, iterated=False):
     """A crank, a coupler, a rocker, and a ground of any lengths, in one of both assemblies."""
     m = (SpatialMechanism if space else Mechanism)("four_bar")

@@ -2,6 +2,8 @@
 have a kink, and only there.
 """
 
+import functools
+
 import casadi as ca
 import numpy as np
 import pytest
@@ -18,6 +20,7 @@ VALUES = (0.0, 0.3, 1.0)
 TIMES = np.linspace(0.0, 1.0, 4001)[None]
 
 
+@functools.cache
 def judged(seed):
     """A drawn expression, a value of its parameter, whether it is broken, and its values; None
     where that is not clear.

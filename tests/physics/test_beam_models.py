@@ -10,7 +10,7 @@ import pytest
 from mechanisms import crank_and_rod
 from strong import robot
 
-from lagrange_casadi import beams, evaluate, link_load_cases, load_case, write_load_cases
+from lagrange_casadi import beams, evaluate, link_load_cases, write_load_cases
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -104,7 +104,6 @@ def press():
 
 
 CASES = {
-    "connecting_rod": (lambda: load_case("connecting_rod").scene, ("rod",)),
     "press": (press, ("b",)),
     "robot": (lambda: robot(beams.rectangle(0.25, 0.2)), ("upper",)),  # in space
 }

@@ -289,6 +289,7 @@ def arm():
                 inertia=60.0,
                 start=(math.pi / 2, -6.0),
                 steady=True,
+                accuracy=1e-6,
             ),
             "'punch_press' stalls, because it loses speed each turn: from -",
         ),
@@ -331,7 +332,12 @@ def arm():
             "its motion cannot be followed beyond t = 0.[45]",
         ),
         (
-            lambda: free(rotor(), drive=forward.expression(lambda t, a, w: 1 + w**2), steady=True),
+            lambda: free(
+                rotor(),
+                drive=forward.expression(lambda t, a, w: 1 + w**2),
+                steady=True,
+                accuracy=1e-6,
+            ),
             "no steady cycle was found near .*; the machine gains speed each turn",
         ),
         (lambda: free(rotor(), steady=True, start=(0.0, 0.0)), "the speed at the start is 0"),
