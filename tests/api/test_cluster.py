@@ -6,6 +6,7 @@ import multiprocessing
 import os
 import signal
 import sys
+import tempfile
 from concurrent.futures import ProcessPoolExecutor
 
 import pytest
@@ -39,32 +40,39 @@ PLAIN, WITHOUT = RUN.format("sys"), RUN.format("sys.modules['lagrange_casadi'] =
 OTHER = RUN.format("import h5py; h5py.__version__ = '0.0'")
 """Dask where this package is not, and where another version of what it needs is."""
 
-QUIET = {"env": {**os.environ, "DASK_LOGGING__DISTRIBUTED": "critical"}}
+QUIET = {
+    "cwd": tempfile.gettempdir(),
+    "env": {**os.environ, "DASK_LOGGING__DISTRIBUTED": "critical"},
+}
 ONE = ("--nworkers", "1", "--nthreads", "1", "--no-dashboard", "--no-nanny")
 
 
 @contextlib.contextmanager
-def started(folder, workers):
-    """The address of a scheduler, its process, and those of workers, each by the program that it
-    runs.
-    """
+def scheduling(folder):
+    """The address of a scheduler, which needs nothing but Dask, and its process."""
     told = folder / "scheduler.json"
     begun = ("scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard")
     begun += ("--scheduler-file", str(told))
-    with contextlib.ExitStack() as stack:
-
-        def process(program, *words):
-            asked = (sys.executable, "-c", program, *words)
-            return stack.enter_context(sweeps.process(*asked, cwd=folder, **QUIET))
-
-        scheduler = process(WITHOUT, *begun)
+    with sweeps.process(sys.executable, "-c", WITHOUT, *begun, **QUIET) as scheduler:
         sweeps.wait_for(lambda: told.exists() and told.read_text().endswith("}"))
-        address = json.loads(told.read_text())["address"]
-        found = [process(program, "worker", address, *ONE) for program in workers]
-        if workers:
-            with distributed.Client(address, set_as_default=False) as client:
-                client.wait_for_workers(len(workers))
-        yield address, scheduler, found
+        yield json.loads(told.read_text())["address"], scheduler
+
+
+@contextlib.contextmanager
+def working(address, *programs, timeout=30):
+    """A client of the scheduler at an address, and workers of it, each by the program that it
+    runs.
+    """
+    with contextlib.ExitStack() as stack:
+        found = [
+            stack.enter_context(
+                sweeps.process(sys.executable, "-c", program, "worker", address, *ONE, **QUIET)
+            )
+            for program in programs
+        ]
+        client = distributed.Client(address, set_as_default=False, timeout=timeout)
+        stack.enter_context(client).wait_for_workers(len(programs))
+        yield client, found
 
 
 @pytest.fixture(scope="module")
@@ -76,16 +84,9 @@ def whole(slider_crank, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def cluster(tmp_path_factory):
-    """A scheduler needs nothing but Dask."""
-    with started(tmp_path_factory.mktemp("cluster"), [PLAIN]) as (address, *_):
+    """The address of a scheduler."""
+    with scheduling(tmp_path_factory.mktemp("cluster")) as (address, _):
         yield address
-
-
-@contextlib.contextmanager
-def client(address):
-    """A client of the scheduler at an address."""
-    with distributed.Client(address, set_as_default=False) as found:
-        yield found
 
 
 @pytest.fixture(scope="module")
@@ -123,15 +124,16 @@ def test_the_command_line_connects_to_a_scheduler(cluster, tmp_path, monkeypatch
     monkeypatch.chdir(tmp_path)
     words = ["sweep", "slider_crank", "--grid", "l=0.2:0.4:9", "--want", "effort", "--quiet"]
     assert main([*words, "--out", "here.h5"]) == 0
-    assert main([*words, "--out", "there.h5", "--dask", cluster]) == 0
+    with working(cluster, PLAIN):
+        assert main([*words, "--out", "there.h5", "--dask", cluster]) == 0
     assert (tmp_path / "there.h5").read_bytes() == (tmp_path / "here.h5").read_bytes()
     assert capsys.readouterr().err == ""
 
 
 @pytest.mark.long
-def test_a_worker_that_is_killed_is_done_without(slider_crank, whole, tmp_path):
+def test_a_worker_that_is_killed_is_done_without(slider_crank, cluster, whole, tmp_path):
     path, killed = tmp_path / "x.h5", []
-    with started(tmp_path, [PLAIN] * 2) as (address, _, workers), client(address) as executor:
+    with working(cluster, PLAIN, PLAIN) as (executor, workers):
 
         def progress(_what, done, _total):
             if done and not killed:
@@ -149,13 +151,9 @@ NUMBERS = "a worker would give other numbers than this machine: versions h5py wa
 
 @pytest.mark.parametrize(("program", "says"), [(WITHOUT, LACKING), (OTHER, NUMBERS)])
 def test_workers_that_cannot_give_the_same_numbers_are_refused(
-    slider_crank, tmp_path, program, says
+    slider_crank, cluster, tmp_path, program, says
 ):
-    with (
-        started(tmp_path, [program]) as (address, *_),
-        client(address) as executor,
-        pytest.raises(ClusterError, match=says),
-    ):
+    with working(cluster, program) as (executor, _), pytest.raises(ClusterError, match=says):
         sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", executor=executor)
     assert not (tmp_path / "x.h5").exists()
 
@@ -164,8 +162,8 @@ def test_workers_that_cannot_give_the_same_numbers_are_refused(
 def test_what_is_stopped_or_lost_is_one_line_and_loses_nothing(slider_crank, whole, tmp_path, lost):
     path, asked = tmp_path / "x.h5", []
     with (
-        started(tmp_path, [PLAIN]) as (address, scheduler, _),
-        distributed.Client(address, set_as_default=False, timeout=2) as executor,
+        scheduling(tmp_path) as (address, scheduler),
+        working(address, PLAIN, timeout=2) as (executor, _),
     ):
 
         def progress(_what, done, _total):

@@ -36,19 +36,20 @@ TYPES = {"pipe": "a pipe", "null": "a device"}
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory, interpreted):
-    """A case, a run and a sweep."""
+    """A case, a run, its figures and a sweep."""
     folder = tmp_path_factory.mktemp("made")
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
         Path("arm.py").write_text(ARM)
         assert command(f"{RUN} --no-figures") == 0
         assert command(SWEEP) == 0
+        assert command("plot x.h5 --out f") == 0
     return folder
 
 
 @pytest.fixture
 def folder(made, here, capfd):
-    """An own copy of the three, which is the working directory."""
+    """An own copy of the four, which is the working directory."""
     shutil.copytree(made, here, dirs_exist_ok=True, ignore=shutil.ignore_patterns("__pycache__"))
     return here
 
@@ -153,7 +154,6 @@ def test_what_is_a_file_or_a_folder_is_no_node(folder, capfd, node):
 
 @pytest.mark.parametrize("kind", ["pipe", "folder", "link"])
 def test_what_is_among_figures_and_not_a_file_is_not_replaced(folder, capfd, kind):
-    assert command("plot x.h5 --out f") == 0
     first, *others = sorted((folder / "f").glob("*.png"))
     first.unlink()
     makers = {"pipe": os.mkfifo, "folder": os.mkdir, "link": lambda path: path.symlink_to("x")}

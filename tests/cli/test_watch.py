@@ -222,7 +222,7 @@ def test_a_page_follows_what_is_saved_and_stays_as_its_reader_has_it(followed):
         save(CASE.replace("m.revolute", "m.revolut", 1))
         alive.wait(one, f"{text}.includes(\"'revolut'\")")
         assert one.run(f"document.querySelector('.picture') !== null && {bar}.value") == "300"
-        for k in range(100):
+        for k in range(30):
             save(CASE + f"# {k}\n")
             time.sleep(0.02)
         shown(CASE + "# the last\n")

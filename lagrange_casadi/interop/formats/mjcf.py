@@ -21,9 +21,9 @@ import numpy as np
 from ...base.apart import LostError, run_apart
 from ...base.arrays import Array
 from ...errors import PathError, shown
+from ..mujoco_model import compiled
 from .file_elements import Element, parsed
 from .file_frames import Frame
-from .mujoco_model import compiled
 from .record import GROUND, Body, Coupling, Joint, Model, Spring
 
 LIMITS: dict[str, Any] = {"seconds": 120.0, "busy": 12.0, "most": 2e9}

@@ -1,4 +1,6 @@
-"""Models that MuJoCo has compiled, as plain numbers: what is returned to another process."""
+"""Models that MuJoCo has compiled, as plain numbers: what is returned to another process, which
+imports no more of the package than this.
+"""
 
 from __future__ import annotations
 
@@ -8,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...base.arrays import Array
-from ...errors import MissingPackageError, one_line
+from ..base.arrays import Array
+from ..errors import MissingPackageError, one_line
 
 if TYPE_CHECKING:
     from mujoco import MjModel
