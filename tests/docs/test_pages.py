@@ -4,6 +4,7 @@ of other pages are run too.
 
 import contextlib
 import io
+import itertools
 import os
 import re
 import shlex
@@ -46,12 +47,9 @@ def run_python(text, names):
     return printed.getvalue()
 
 
-def own(text):
-    """Return lines that are commands of this package alone, and need no shell; else None."""
-    lines = text.replace("\\\n", " ").splitlines()
-    bare = (re.sub("'[^']*'", "", line) for line in lines)
-    plain = all(re.fullmatch(r"lagrange-casadi [^|<>;&$*`]+", line) for line in bare)
-    return lines if plain else None
+def is_own(line):
+    """Whether a line is a command of this package alone, and needs no shell."""
+    return re.fullmatch(r"lagrange-casadi [^|<>;&$*`]+", re.sub("'[^']*'", "", line)) is not None
 
 
 def run_commands(text):
@@ -59,17 +57,19 @@ def run_commands(text):
 
     Our own need no process that imports the package anew.
     """
-    if lines := own(text):
-        printed = io.StringIO()
-        with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed):
-            status = [main(shlex.split(line)[1:]) for line in lines][-1]
-        assert status == 0 or "error:" in printed.getvalue(), printed.getvalue()
-        return printed.getvalue()
     folders = [str(Path(sys.executable).parent), os.environ["PATH"]]
-    environment = os.environ | {"PATH": os.pathsep.join(folders)}
-    done = subprocess.run(["bash", "-c", text], capture_output=True, text=True, env=environment)
-    assert done.returncode == 0 or "error:" in done.stderr, done.stderr
-    return done.stdout + done.stderr
+    environment, printed = os.environ | {"PATH": os.pathsep.join(folders)}, io.StringIO()
+    for own, lines in itertools.groupby(text.replace("\\\n", " ").splitlines(), is_own):
+        if own:
+            with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed):
+                status = [main(shlex.split(line)[1:]) for line in lines][-1]
+        else:
+            asked = ["bash", "-c", "\n".join(lines)]
+            done = subprocess.run(asked, capture_output=True, text=True, env=environment)
+            printed.write(done.stdout + done.stderr)
+            status = done.returncode
+    assert status == 0 or "error:" in printed.getvalue(), printed.getvalue()
+    return printed.getvalue()
 
 
 @pytest.mark.parametrize("page", PAGES)
