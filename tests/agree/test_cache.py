@@ -261,7 +261,8 @@ def test_a_damaged_graph_is_derived_again_and_said(fresh_cache, says):
     assert np.array_equal(again.effort("pin"), first.effort("pin"))
 
 
-def test_a_motion_by_a_callback_is_not_kept(fresh_cache):
+def test_a_motion_by_a_callback_is_not_kept(fresh_cache, monkeypatch):
+    monkeypatch.setattr("lagrange_casadi.model.corners._SAMPLED", 41)
     scene = pendulum(law=Motion(doubled))
     assert name_of(scene) is None
     for _ in range(2):

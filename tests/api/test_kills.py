@@ -117,9 +117,10 @@ def exported(folder, later):
 
 
 def drawn(folder, later):
-    """Other figures than before, none of which takes long."""
-    path = folder.parent / f"{later}.h5"
-    save(evaluate(turning("reaction" if later else "effort"), backend="vm"), path)
+    """Other figures than before, none of which takes long, of a file that is made once."""
+    path = folder.parents[1] / f"{later}.h5"
+    if not path.exists():
+        save(evaluate(turning("reaction" if later else "effort"), backend="vm"), path)
     with contextlib.redirect_stderr(io.StringIO()) as said:
         status = command("plot", path, "--out", folder / "figures")
     if status:
