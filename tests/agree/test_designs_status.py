@@ -33,6 +33,12 @@ SAYS = {
 }
 
 
+@pytest.fixture(autouse=True)
+def _bare(monkeypatch):
+    """Tell of a refusal its reason alone, for to draw how far parts are apart takes longest."""
+    monkeypatch.setattr("lagrange_casadi.studies.solving.explain", lambda *_: None)
+
+
 def quarter():
     """A slider-crank whose crank goes from along its guide to right across."""
     law = {"O": polynomial(0.0, math.pi / 2)}
