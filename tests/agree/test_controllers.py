@@ -59,12 +59,11 @@ def test_the_header_for_controllers_passes_its_test(name, precision, tmp_path):
     strict = ["-O0", "-pedantic", "-Wall", "-Wextra", "-Werror"]
     test = tmp_path / f"{prefix}_control_test.cpp"
 
+    subprocess.run(["gcc", "-std=c99", "-O0", "-c", f"{prefix}.c"], cwd=tmp_path, check=True)
+
     def run():
-        for command in (
-            ["gcc", "-std=c99", "-O0", "-c", f"{prefix}.c"],
-            ["g++", "-std=c++11", *strict, test.name, f"{prefix}.o", "-o", "test", "-lm"],
-        ):
-            subprocess.run(command, cwd=tmp_path, check=True)
+        built = ["g++", "-std=c++11", *strict, test.name, f"{prefix}.o", "-o", "test", "-lm"]
+        subprocess.run(built, cwd=tmp_path, check=True)
         return subprocess.run(["./test"], cwd=tmp_path, capture_output=True, text=True, check=False)
 
     assert (done := run()).returncode == 0, done.stdout

@@ -187,7 +187,7 @@ def changed(told, *replaced):
     return text
 
 
-def moved(file, motion, times):
+def moved(file, motion, times=(0.3, 1.7)):
     """The values of a law of a file, at two times."""
     told = own([own_body("arm")], [own_joint("hinge", "ground", "arm")], motions={"hinge": motion})
     asked = {"t": (*times, 2), "wanted": ["motion"], "certificate": False}

@@ -51,9 +51,9 @@ ONE = ("--nworkers", "1", "--nthreads", "1", "--no-dashboard", "--no-nanny")
 def scheduling(folder):
     """The address of a scheduler, which needs nothing but Dask, and its process."""
     told = folder / "scheduler.json"
-    begun = ("scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard")
-    begun += ("--scheduler-file", str(told))
-    with sweeps.process(sys.executable, "-c", WITHOUT, *begun, **QUIET) as scheduler:
+    begun = (sys.executable, "-c", WITHOUT, "scheduler", "--host", "127.0.0.1", "--port", "0")
+    words = ("--no-dashboard", "--scheduler-file", str(told))
+    with sweeps.process(*begun, *words, **QUIET) as scheduler:
         sweeps.wait_for(lambda: told.exists() and told.read_text().endswith("}"))
         yield json.loads(told.read_text())["address"], scheduler
 

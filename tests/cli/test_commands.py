@@ -136,9 +136,8 @@ def test_the_whole_of_the_papers_case(here, capfd):
         assert command(f"{line} {more}") == 0
     plain, refined = re.findall(r"  effort:O +(\S+) N m  at", capfd.readouterr().out)
     assert Path("refined.h5").read_bytes() == Path("plain.h5").read_bytes()
-    scene = load_case(CASES / "slider_crank").scene
     asked = {"t": (0, 0.08, 100_001), "wanted": ["effort"], "certificate": False}
-    solution = evaluate(scene, **asked)
+    solution = evaluate(load_case(CASES / "slider_crank").scene, **asked)
     assert refined == f"{solution.peak('effort:O').value:.6g}" != plain
     assert command("run CASE --over O=0:360deg:37 --want effort --out o.h5 --no-figures") == 0
     with h5py.File("o.h5") as file:
