@@ -35,7 +35,7 @@ EXPORTED = [(name, way) for name in SCENES for way in ("double", "single")]
 EXPORTED += [("press", "table"), ("press", "single table"), ("press", "slopes")]
 EXPORTED += [("iterated", "newton"), ("truss_platform", "newton"), ("truss_platform", "slopes")]
 EXPORTED += [("laws", "slopes")]
-SANITIZED = ["-O1", "-g", "-ffp-contract=off", "-fsanitize=address,undefined"]
+SANITIZED = ["-O0", "-g", "-ffp-contract=off", "-fsanitize=address,undefined"]
 SANITIZED += ["-fno-sanitize-recover=all"]
 
 
