@@ -108,12 +108,6 @@ def test_the_slot_of_a_rigid_body_ends_too(axis):
     assert evaluate(replace(scene, t=(0.6, 0.8, 9)), wanted=["motion"]).notes == ()
 
 
-def test_a_part_of_a_turn_is_noted_from_where_the_drive_begins():
-    (note,) = evaluate(replace(slotted(), t=(0.0, 0.5, 11)), wanted=["effort"]).notes
-    asked = "instants over O=11.4592deg:371.459deg:11 make it a whole number"
-    assert note == f"drive 'O' makes 0.477 of a revolution; {asked}"
-
-
 def test_angles_go_on_over_turns(slider_crank):
     turns = evaluate(slider_crank.scene, t=(0, 0.8, 2001), wanted=["motion"])
     crank = turns.pose("crank").angle
