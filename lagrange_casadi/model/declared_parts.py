@@ -117,20 +117,20 @@ class Point(Brief):
         return Place(self.body.name, self.place)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Roller(Brief):
-    """A roller that pictures show: its centre, and its radius [m]."""
-
-    centre: Point
-    radius: Expression
-
-
 @dataclass(frozen=True)
 class Place:
     """A place on a body by its name, in the body's axes [m]."""
 
     body: str
     at: Vector
+
+
+@dataclass(frozen=True)
+class Roller:
+    """A roller that pictures show: its centre, and its radius [m]."""
+
+    centre: Place
+    radius: Expression
 
 
 @dataclass(frozen=True)

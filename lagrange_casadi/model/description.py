@@ -8,7 +8,7 @@ hide. Places and directions have three components; a plane is z = 0.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from typing import Any, Literal, TypeAlias
@@ -16,14 +16,15 @@ from typing import Any, Literal, TypeAlias
 import casadi as ca
 import numpy as np
 
-from ..base.arrays import Expression, Json
+from ..base.arrays import Json
 from ..base.brief import Brief
 from ..base.quantities import Kinds
+from ..base.templates import mapped
 from ..base.vectors import ZERO
 from .beams.beam import Beam, Notch
 from .beams.material import Material
 from .beams.shape import Course, Shape
-from .declared_parts import Link, PitchCircles, Point, PointMass, RigidMass, Track
+from .declared_parts import Link, PitchCircles, PointMass, RigidMass, Roller, Track
 from .declared_parts import Place as Place
 from .drives import Drive
 from .fitted import Fittings, Pin, Plain, Rolling
@@ -53,14 +54,6 @@ class ParameterNumbers:
     unit: str
     low: float
     high: float
-
-
-@dataclass(frozen=True)
-class RollerNumbers:
-    """A roller that pictures show: its centre, and its radius [m]."""
-
-    centre: Place
-    radius: float
 
 
 @dataclass(frozen=True)
@@ -236,7 +229,7 @@ class Description(Brief):
     outputs: Mapping[str, str] = field(default_factory=dict)
     paths: Mapping[str, Place] = field(default_factory=dict)
     outlines: Mapping[str, tuple[tuple[Pair, ...], ...]] = field(default_factory=dict)
-    rollers: Mapping[str, RollerNumbers] = field(default_factory=dict)
+    rollers: Mapping[str, Roller] = field(default_factory=dict)
     pitch_circles: Mapping[str, PitchCircles] = field(default_factory=dict)
     tracks: Mapping[str, Track] = field(default_factory=dict)
     losses: tuple[str, ...] = ()
@@ -265,12 +258,12 @@ class Description(Brief):
         return cls(
             name=mechanism.name,
             space=mechanism.space,
-            gravity=_vector(mechanism.gravity),
+            gravity=_numbers(mechanism.gravity),
             parameters={
-                name: ParameterNumbers(_number(one.symbol), one.unit, one.low, one.high)
+                name: ParameterNumbers(_numbers(one.symbol), one.unit, one.low, one.high)
                 for name, one in mechanism.parameters.items()
             },
-            bodies={body.name: _body(mechanism, body) for body in mechanism.moving},
+            bodies={body.name: _body(body) for body in mechanism.moving},
             joints={name: _joint(mechanism, one) for name, one in mechanism.joints.items()},
             loads={name: _load(load) for name, load in mechanism.loads.items()},
             motors={name: _drive(one) for name, one in mechanism.drives.items()},
@@ -281,17 +274,12 @@ class Description(Brief):
                 name for name in (drives or usual) if not drives or name in mechanism.coordinates
             ),
             outputs={name: output.unit for name, output in mechanism.outputs.items()},
-            paths={name: _place(path.point) for name, path in mechanism.paths.items()},
+            paths={name: _numbers(path.point.on_body) for name, path in mechanism.paths.items()},
             outlines={
-                body: tuple(
-                    tuple((_number(x), _number(y)) for x, y in outline) for outline in outlines
-                )
+                body: tuple(tuple(_numbers((x, y)) for x, y in outline) for outline in outlines)
                 for body, outlines in mechanism.outlines.items()
             },
-            rollers={
-                name: RollerNumbers(_place(roller.centre), _number(roller.radius))
-                for name, roller in mechanism.rollers.items()
-            },
+            rollers=_numbers(mechanism.rollers),
             pitch_circles=dict(mechanism.pitch_circles),
             tracks=dict(mechanism.tracks),
             losses=tuple(
@@ -300,7 +288,7 @@ class Description(Brief):
                 if one.transmission is not None and one.transmission.loss is not None
             ),
             beside={
-                name: _vector(link.beside)
+                name: _numbers(link.beside)
                 for name, link in mechanism.links.items()
                 if link.beside is not None
             },
@@ -443,39 +431,28 @@ class Description(Brief):
 
 DESCRIBED = (
     *(AxisNumbers, BodyNumbers, Description, DriveNumbers, JointNumbers, LoadNumbers),
-    *(NumericDensity, ParameterNumbers, PitchCircles, Place, RollerNumbers, Track),
+    *(NumericDensity, ParameterNumbers, PitchCircles, Place, Roller, Track),
     *(Beam, Course, Shape, Material, Notch, Fittings, Pin, Plain, Rolling),
 )
 """Kinds of what a description is made of."""
 
 
-def _number(value: Expression) -> Any:
-    return ca.SX(value)
+def _numbers(tree: Any) -> Any:
+    """A tree in which every number is an expression."""
+    return mapped(tree, lambda leaf: leaf if isinstance(leaf, str | None) else ca.SX(leaf))
 
 
-def _vector(components: Iterable[Expression]) -> Triple:
-    x, y, z = map(_number, components)
-    return x, y, z
-
-
-def _place(point: Point) -> Place:
-    return Place(point.body.name, _vector(point.place))
-
-
-def _body(mechanism: Mechanism, body: Link | PointMass) -> BodyNumbers:
+def _body(body: Link | PointMass) -> BodyNumbers:
+    mass = body.mass
     if isinstance(body, PointMass):
-        return BodyNumbers(None, _number(mass_of(body)))
-    length, mass = _number(body.length), body.mass
+        return BodyNumbers(None, _numbers(mass_of(body)))
     if isinstance(mass, RigidMass):
-        rows = _rows(map(_vector, mass.inertia))
-        return BodyNumbers(length, _number(mass_of(body)), _vector(mass.centre), rows)
+        return BodyNumbers(*_numbers((body.length, mass_of(body), mass.centre, mass.inertia)))
     return BodyNumbers(
-        length,
-        _number(mass_of(body)),
-        density=mass.at(_number, body.length),
-        slices=tuple(
-            one.at(_number, body.length) for one in (mass.slices.each if mass.slices else ())
-        ),
+        _numbers(body.length),
+        _numbers(mass_of(body)),
+        density=mass.at(body.length),
+        slices=tuple(one.at(body.length) for one in (mass.slices.each if mass.slices else ())),
         beam=None if body.beam is None else replace(body.beam, shape=body.beam.course),
     )
 
@@ -485,42 +462,35 @@ def _joint(mechanism: Mechanism, joint: Joint) -> JointNumbers:
     return JointNumbers(
         joint.name,
         joint.kind,
-        _place(joint.parent),
-        _place(joint.child),
-        _rows(map(_vector, joint.triad)),
-        _rows(map(_vector, (turned.x, turned.y, turned.z))),
-        tuple(AxisNumbers(a.coordinate, a.kind, _vector(a.direction)) for a in joint.axes),
-        _number(joint.pitch),
+        _numbers(joint.parent.on_body),
+        _numbers(joint.child.on_body),
+        _numbers(joint.triad),
+        _numbers((turned.x, turned.y, turned.z)),
+        tuple(AxisNumbers(a.coordinate, a.kind, _numbers(a.direction)) for a in joint.axes),
+        _numbers(joint.pitch),
         mechanism.fitted.get(joint.name),
         mechanism.turning.get(joint.name) or None,
     )
 
 
-def _rows(rows: Iterable[Triple]) -> Rows:
-    x, y, z = rows
-    return x, y, z
-
-
 def _load(load: Load) -> LoadNumbers:
-    found = type(load).__name__.lower(), tuple(map(_place, load.points))
+    found = type(load).__name__.lower(), tuple(_numbers(point.on_body) for point in load.points)
     if isinstance(load, Friction):
-        numbers = {word: _number(value) for word, value in load.numbers.items()}
+        numbers = _numbers(load.numbers)
         return LoadNumbers(*found, coordinate=load.axis.coordinate, friction=numbers)
     symbols: tuple[str, ...] = ()
-    closed: float | None = None
     if isinstance(load, Spring):
         parts = {"spring": load.stiffness, "damper": load.damping}
         symbols = tuple(name for name, x in parts.items() if not ca.SX(x).is_zero())
-        closed = None if load.closed is None else _number(load.closed)
     elif isinstance(load, Torque) and load.coiled:
         symbols = ("spring",)
-    return LoadNumbers(*found, getattr(load, "turning", False), symbols=symbols, closed=closed)
+    turning, closed = getattr(load, "turning", False), _numbers(getattr(load, "closed", None))
+    return LoadNumbers(*found, turning, symbols=symbols, closed=closed)
 
 
 def _drive(drive: Drive) -> DriveNumbers:
-    limits = (None if one is None else _number(one) for one in (drive.effort, drive.speed))
-    inertia = _number(drive.reflected), _number(drive.spin)
-    return DriveNumbers(drive.axis.coordinate, *inertia, *limits)
+    numbers = drive.reflected, drive.spin, drive.effort, drive.speed
+    return DriveNumbers(drive.axis.coordinate, *_numbers(numbers))
 
 
 def _lies_by_default(joint: Joint) -> bool:

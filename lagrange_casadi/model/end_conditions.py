@@ -7,7 +7,7 @@ from __future__ import annotations
 from typing import Literal
 
 from ..base.arguments import public
-from ..errors import check_kind, check_known
+from ..errors import check_known
 from .description import Description
 
 _END = 1e-9
@@ -63,7 +63,6 @@ def effective_lengths(description: Description, link: str) -> tuple[float, float
     2 if an end is free. These are the theoretical numbers (Timoshenko and Gere, *Theory of Elastic
     Stability*, section 2.4).
     """
-    check_kind("effective_lengths", description, "the description of a solution", Description)
     check_known("link", [link], description.links)
     ends = held_ends(description, link)
     if description.space:

@@ -9,7 +9,7 @@ From a section at u to the tip the moments of the material are combinations of T
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Annotated, Any
@@ -140,14 +140,12 @@ class Density(Brief):
         """
         return self.cells[int(np.searchsorted(self.breaks, u, side="right")) - 1]
 
-    def at(self, number: Callable[[Expression], float], length: float) -> NumericDensity:
-        """Return the density at given parameters.
+    def at(self, length: Expression) -> NumericDensity:
+        """Return the density as expressions.
 
         Parameters
         ----------
-        number : callable
-            Gives the value of an expression.
-        length : float
+        length : casadi.SX or float
             Length of the link [m].
 
         Returns
@@ -156,9 +154,8 @@ class Density(Brief):
             Mass per unit of the ratio [kg].
         """
         scale = length if self.per_length else 1.0
-        return NumericDensity(
-            self.breaks, tuple(tuple(number(c) * scale for c in cell) for cell in self.cells)
-        )
+        cells: Any = tuple(tuple(ca.SX(c) * scale for c in cell) for cell in self.cells)
+        return NumericDensity(self.breaks, cells)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -65,15 +65,6 @@ class Measures:
         """All symbols of accelerations, one by one."""
         return [symbol for measure in self.asked.values() for symbol in measure.accelerations]
 
-    @property
-    def symbols(self) -> list[ca.SX]:
-        """All symbols of places and rates, one by one."""
-        return [
-            symbol
-            for measure in self.asked.values()
-            for symbol in (*measure.places, *measure.rates)
-        ]
-
     def _found(
         self,
         key: Hashable,

@@ -38,7 +38,7 @@ class Move:
     to: Expression | str | None
     by: Expression | str | None
     time: Expression | None
-    law: object
+    law: str | RestLaw | None
     limits: Limits
 
 

@@ -10,7 +10,7 @@ from typing import get_args
 
 import casadi as ca
 
-from ..base.scalars import column
+from ..base.scalars import column, entries
 from ..base.units import unlike
 from ..errors import DeclarationError
 from .constraints import Constraint, Row
@@ -151,11 +151,12 @@ class Ownership:
 
         A number in a ``unit`` may be a text, as ``"100 mm"``; a parameter alone must be in it.
         """
-        declared = self.declared
+        declared, measures = self.declared, self.declared.measures
         symbols = [parameter.symbol for parameter in declared.parameters.values()]
-        symbols += [declared.time, *declared.measures.symbols] if moving else []
+        state = (declared.time, measures.places, measures.rates)
+        symbols += entries(column(state)) if moving else []
         symbols += (
-            [*declared.measures.accelerations, *(asked.symbol for asked in declared.asked.values())]
+            [*measures.accelerations, *(asked.symbol for asked in declared.asked.values())]
             if found
             else []
         )

@@ -287,17 +287,12 @@ LAWS = (*_LAWS,)
 """The names of all laws."""
 
 
-def rest_law(what: str, law: object) -> RestLaw:
+def rest_law(what: str, law: str | RestLaw) -> RestLaw:
     """A law by its name, or one of :func:`trapezoid` and :func:`s_curve`.
 
     Raises :class:`DeclarationError`, naming ``what``.
     """
     if isinstance(law, RestLaw):
         return law
-    if not isinstance(law, str):
-        raise DeclarationError(
-            f"{what}: law: expected a name, trapezoid(SHARE) or s_curve(SHARE, ROUNDING), got"
-            f" {law!r}"
-        )
     check_known("law", [law], LAWS, place=what)
     return _LAWS[law]

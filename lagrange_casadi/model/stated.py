@@ -14,7 +14,7 @@ import casadi as ca
 import numpy as np
 
 from ..base.arrays import Array, Expression
-from ..base.scalars import called, column
+from ..base.scalars import called, column, entries
 from ..base.symbolic import Graphs, symbolic
 from ..base.templates import Template
 from ..base.vectors import ZERO
@@ -28,8 +28,6 @@ from .meshes import Transmission, Wrench
 from .motion_laws import Motion
 
 EntryKind = Literal["coordinate", "x", "y", "z", "direction"]
-
-LoadKind = Literal["force", "torque", "spring", "lineload"]
 
 _COMPONENTS: tuple[EntryKind, ...] = ("x", "y", "z")
 
@@ -48,7 +46,7 @@ class Entry:
 @dataclass(frozen=True, eq=False)
 class Touch:
     """A mesh as numbers: the bodies' names, places in the carrier's axes, and forces and couples
-    for units of lambda and of s.
+    for units of lambda and of s over instants, which :meth:`Equation.touching` puts in.
 
     Of its friction, ``loss`` are the arm and the lean, and ``rotations`` the coordinates whose
     rates it follows, with their signs.
@@ -57,14 +55,14 @@ class Touch:
     first: str
     second: str
     carrier: str
-    centre: Triple
-    reach: Triple
-    along: tuple[Triple, Triple]
-    apart: tuple[Triple, Triple]
-    braking: tuple[Triple, Triple]
     slack: float
     loss: tuple[float, float]
     rotations: tuple[tuple[int, str], ...]
+    centre: Any = None
+    reach: Any = None
+    along: Any = None
+    apart: Any = None
+    braking: Any = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,15 +82,15 @@ class Equation(Graphs):
     ``values(places, rates, accelerations, t, p)`` gives the equation and, of a constraint, its
     first and second total time derivative; ``slopes(places, rates, t, p)`` what it changes by an
     entry: by its place, or of a row by its rate. ``wrenches(places, p)`` are those of the touches,
-    each after where it acts, in a column, where they depend on places; else the touches have them.
+    each after where it acts, in a column.
     """
 
     name: str
     row: bool
-    p: tuple[float, ...]
+    p: tuple[Any, ...]
     entries: tuple[Entry, ...]
     touches: tuple[Touch, ...]
-    wrenches: ca.Function | None
+    wrenches: ca.Function
     values: ca.Function
     slopes: ca.Function
 
@@ -133,15 +131,13 @@ class Equation(Graphs):
         for _ in range(0 if row else 2):
             changes.append(ca.jtimes(changes[-1], moving, speed))
         slopes = ca.densify(ca.jacobian(expression, rates if row else places).T)
-        wrenches = ca.densify(_wrenches(transmission))
-        varying = ca.depends_on(wrenches, places)
         return cls(
             name=name,
             row=row,
-            p=_parameters(mechanism),
+            p=(*entries(mechanism.symbols),),
             entries=tuple(one.entry for one in found),
-            touches=_touches(transmission, varying=varying),
-            wrenches=ca.Function("wrenches", [places, p], [wrenches]) if varying else None,
+            touches=_touches(transmission),
+            wrenches=ca.Function("wrenches", [places, p], [ca.densify(_wrenches(transmission))]),
             values=ca.Function(
                 "values", [places, rates, accelerations, t, p], [ca.densify(ca.vertcat(*changes))]
             ),
@@ -149,16 +145,14 @@ class Equation(Graphs):
         )
 
     def touching(self, moved: Callable[[], Array]) -> Iterator[Touch]:
-        """The touches with what acts there; if it varies, by the places that entries ``moved``
-        to, the first rows of what they measure.
+        """The touches with what acts there, by the places that entries ``moved`` to, the first
+        rows of what they measure.
         """
-        if self.wrenches is None:
-            yield from self.touches
-            return
-        found = called(self.wrenches, moved()[0], np.c_[[*self.p]])
-        each = found.reshape(len(self.touches), 4, 2, 3, -1)
-        for touch, ((at, to), along, apart, braking) in zip(self.touches, each, strict=True):
-            yield replace(touch, centre=at, reach=to, along=along, apart=apart, braking=braking)
+        if self.touches:
+            found = called(self.wrenches, moved()[0], np.c_[[*self.p]])
+            each = found.reshape(len(self.touches), 4, 2, 3, -1)
+            for touch, ((at, to), along, apart, braking) in zip(self.touches, each, strict=True):
+                yield replace(touch, centre=at, reach=to, along=along, apart=apart, braking=braking)
 
     def at(self, moved: Array, t: Array) -> Array:
         """The equation over instants and, of a constraint, its derivatives: a row each, from the
@@ -177,29 +171,23 @@ class LoadLaw(Graphs):
     ``values(places, rates, t, p)``.
 
     A force and a torque have three; a spring its stiffness, length and damping; a load along a link
-    the length on which it acts, and three for each power of its polynomial. They are on the body's
-    own axes where ``turning``, else on those of the ground.
+    the length on which it acts, and three for each power of its polynomial.
     """
 
     name: str
-    kind: LoadKind
-    turning: bool
-    p: tuple[float, ...]
+    p: tuple[Any, ...]
     entries: tuple[Entry, ...]
     values: ca.Function
 
     @classmethod
     def of(cls, mechanism: Mechanism, load: Force | Torque | Spring | LineLoad) -> LoadLaw:
         """The law of a load, from the expressions as they were declared."""
-        kind, coefficients = _kind_and_numbers(load)
-        numbers = ca.densify(ca.vertcat(*map(ca.SX, coefficients)))
+        numbers = ca.densify(ca.vertcat(*map(ca.SX, _coefficients(load))))
         found = _seen(mechanism, numbers)
         given = [*_columns(found), mechanism.time, mechanism.symbols]
         return cls(
             load.name,
-            kind,
-            getattr(load, "turning", False),
-            _parameters(mechanism),
+            (*entries(mechanism.symbols),),
             tuple(one.entry for one in found),
             ca.Function("values", given, [numbers]),
         )
@@ -250,10 +238,6 @@ NOTHING = Stated()
 """Nothing is known of it, as of a mechanism in a file."""
 
 
-def _parameters(mechanism: Mechanism) -> tuple[Any, ...]:
-    return tuple(parameter.symbol for parameter in mechanism.parameters.values())
-
-
 def _seen(mechanism: Mechanism, expression: ca.SX) -> list[_Measured]:
     """Measured symbols in an expression."""
     return [
@@ -290,22 +274,16 @@ def _columns(found: Sequence[_Measured]) -> tuple[ca.SX, ca.SX]:
     return column(one.place for one in found), column(one.rate for one in found)
 
 
-def _kind_and_numbers(
-    load: Force | Torque | Spring | LineLoad,
-) -> tuple[LoadKind, Sequence[Expression]]:
-    """The kind of a load, and its numbers."""
+def _coefficients(load: Force | Torque | Spring | LineLoad) -> Sequence[Expression]:
     if isinstance(load, Spring):
-        return "spring", (load.stiffness, load.length, load.damping)
+        return load.stiffness, load.length, load.damping
     if isinstance(load, LineLoad):
-        return "lineload", (
-            load.reach,
-            *(x for power in zip(load.x, load.y, load.z, strict=True) for x in power),
-        )
-    return ("force" if isinstance(load, Force) else "torque"), load.components
+        return load.reach, *(x for power in zip(load.x, load.y, load.z, strict=True) for x in power)
+    return load.components
 
 
-def _touches(transmission: Transmission | None, *, varying: bool) -> tuple[Touch, ...]:
-    """The meshes of a transmission in expressions; of ``varying`` wrenches nothing is known yet."""
+def _touches(transmission: Transmission | None) -> tuple[Touch, ...]:
+    """The meshes of a transmission in expressions, without wrenches."""
     if transmission is None:
         return ()
     loss = transmission.loss
@@ -315,14 +293,9 @@ def _touches(transmission: Transmission | None, *, varying: bool) -> tuple[Touch
             first=mesh.first.body.name,
             second=mesh.second.body.name,
             carrier=mesh.carrier.name,
-            centre=ZERO if varying else mesh.centre,
-            reach=ZERO if varying else mesh.reach,
             slack=transmission.slack,
             loss=(0.0, 0.0) if loss is None else (loss.arm, loss.lean),
             rotations=tuple((sign, joint.name) for sign, joint in rotations),
-            along=_pair(None if varying else mesh.along),
-            apart=_pair(None if varying else mesh.apart),
-            braking=_pair(None if varying else mesh.braking),
         )
         for mesh in transmission.meshes
     )

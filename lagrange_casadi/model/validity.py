@@ -126,7 +126,7 @@ def _of(declared: Declaration, precision: Precision) -> ParameterConstraints:
     for body in declared.moving:
         found += _of_body(body, precision, space=declared.space)
     masses = [mass_of(body) for body in declared.moving]
-    if not any(_surely_positive(mass) for mass in masses):
+    if not any(mass.is_constant() and 0.0 < float(mass) < math.inf for mass in masses):
         loaded = any(not isinstance(load, Friction) for load in declared.loads.values())
         found.append(_some_mass(declared.name, masses, loaded=loaded))
     for joint in declared.joints.values():
@@ -174,12 +174,8 @@ def _numbers(declared: Declaration) -> Iterator[tuple[str, list[Expression]]]:
         numbers = [number for direction in directions for number in direction]
         yield f"joint '{joint.name}'", [*places, *numbers, joint.pitch]
     for load in declared.loads.values():
-        if isinstance(load, LineLoad):
-            numbers = [*load.between]
-        elif isinstance(load, Friction):
-            numbers = [*load.numbers.values()]
-        else:
-            numbers = [number for point in load.points for number in point.place]
+        places = [number for point in load.points for number in point.place]
+        numbers = [*load.numbers.values()] if isinstance(load, Friction) else places
         yield f"load '{load.name}'", numbers
     for drive in declared.drives.values():
         yield f"drive '{drive.name}'", [drive.ratio, *drive.numbers.values()]
@@ -311,16 +307,12 @@ def _of_density(
         return [Demand.saying(mass, False, f"{what}: mass must not be negative, got {{got}} kg")]
     spans = zip(density.breaks, density.breaks[1:], density.cells, strict=False)
     places = [lowest(cell, a, b) for a, b, cell in spans]
-    place, value = places[0]
-    for other_place, other in places[1:]:
-        lower = other < value
-        place, value = ca.if_else(lower, other_place, place), ca.if_else(lower, other, value)
 
     def refusal(number: Evaluator) -> str:
-        got = number(value) / (1.0 if density.per_length else number(length))
+        value, place = min((number(value), number(place)) for place, value in places)
+        got = value / (1.0 if density.per_length else number(length))
         return (
-            f"{what}: density must not be negative, got {readable(got)} kg/m at xi/l ="
-            f" {number(place):.6g}"
+            f"{what}: density must not be negative, got {readable(got)} kg/m at xi/l = {place:.6g}"
         )
 
     sizes = [sum(ca.fabs(ca.SX(c)) for c in cell) for cell in density.cells]
@@ -367,11 +359,6 @@ def _some_mass(name: str, masses: list[ca.SX], *, loaded: bool) -> Demand:
         )
 
     return Demand(total, not loaded, refusal)
-
-
-def _surely_positive(mass: ca.SX) -> bool:
-    """Return whether a mass is positive for all values of the parameters."""
-    return bool(mass.is_constant() and 0.0 < float(mass) < math.inf)
 
 
 def _of_axes(joint: Joint, precision: Precision) -> list[Demand]:

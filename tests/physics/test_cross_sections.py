@@ -339,7 +339,7 @@ def test_a_rectangle_is_its_closed_form():
 
 
 def test_what_lacks_is_named(monkeypatch):
-    monkeypatch.setitem(sys.modules, "sectionproperties.analysis.section", None)
+    monkeypatch.setitem(sys.modules, "sectionproperties", None)
     with pytest.raises(LagrangeCasadiError, match=r"pip install 'lagrange_casadi\[sections\]'"):
         beams.analysed(SQUARE)
 

@@ -12,16 +12,12 @@ from typing import Any
 
 from ...base.arguments import public
 from ...base.arrays import Operand
-from ...errors import DeclarationError, LagrangeCasadiError
+from ...base.packages import check_installed
+from ...errors import DeclarationError
 from .shape import Shape, given
 
 _PIECES = 400
 """Into how many triangles a cross-section is cut, about, where no size is said."""
-
-_NEEDS = (
-    "a cross-section of any outline needs sectionproperties; install it with: pip install"
-    " 'lagrange_casadi[sections]'"
-)
 
 
 @public
@@ -88,12 +84,11 @@ def _meshed(shape: Shape, mesh: float | None) -> Operand:
         raise DeclarationError(
             f"analysed: expected a polygon whose corners are numbers, got a {shape.kind}"
         )
-    try:
-        from sectionproperties.analysis.section import Section
-        from sectionproperties.pre.geometry import Geometry
-        from shapely import Polygon
-    except ImportError:
-        raise LagrangeCasadiError(_NEEDS) from None
+    check_installed("sectionproperties", "a cross-section of any outline", "sections")
+    from sectionproperties.analysis.section import Section
+    from sectionproperties.pre.geometry import Geometry
+    from shapely import Polygon
+
     geometry = Geometry(Polygon([(z, y) for y, z in zip(numbers[::2], numbers[1::2], strict=True)]))
     geometry.create_mesh(mesh_sizes=[float(shape.area) / _PIECES if mesh is None else mesh])
     return Section(geometry)

@@ -14,7 +14,7 @@ from math import pi
 from typing import Any
 
 from ...base.arguments import Symbolic, public
-from ...base.arrays import Expression, Operand
+from ...base.arrays import Operand
 from ...base.brief import Brief
 from ...base.units import quantity
 from ...errors import DeclarationError
@@ -72,7 +72,31 @@ class Shape:
 
     def parameter_constraints(self) -> Iterator[Demand]:
         """Conditions on the dimensions."""
-        return _demands(self.kind, self.dimensions)
+        kind, d = self.kind, self.dimensions
+        if kind == "polygon":
+            yield solid.polygon_area(_corners(d)), "area, of corners counter-clockwise,"
+            return
+        for name, value in d.items():
+            if name != "iyz":
+                yield value, name
+        if kind == "given":
+            yield d["iy"] * d["iz"] - d["iyz"] ** 2, "iy iz - iyz^2"
+        elif kind == "tube":
+            yield d["diameter"] - 2 * d["wall"], "inner diameter"
+        elif kind == "hollow_section":
+            for side in ("height", "width"):
+                yield d[side] - 2 * d["outer_radius"], f"straight part of the {side}"
+                inside = d[side] - 2 * d["wall"] - 2 * d["inner_radius"]
+                yield inside, f"straight part of the inner {side}"
+        elif kind in ("i_section", "c_section", "box"):
+            yield d["height"] - 2 * d["flange"], "height between the flanges"
+            yield (
+                d["width"] - (2 if kind == "box" else 1) * d["web"],
+                "width beside the web" + ("s" if kind == "box" else ""),
+            )
+        elif kind == "t_section":
+            yield d["height"] - d["flange"], "height of the web"
+            yield d["width"] - d["web"], "width beside the web"
 
     def mapped(self, change: Callable[[str, Operand], Operand]) -> Shape:
         """Return the shape with other dimensions.
@@ -645,30 +669,3 @@ _AREAS: dict[str, Callable[[Mapping[str, Any]], Any]] = {
     "polygon": lambda d: solid.polygon_area(_corners(d)),
     "given": lambda d: d["area"],
 }
-
-
-def _demands(kind: str, d: Mapping[str, Expression]) -> Iterator[Demand]:
-    if kind == "polygon":
-        yield solid.polygon_area(_corners(d)), "area, of corners counter-clockwise,"
-        return
-    for name, value in d.items():
-        if name != "iyz":
-            yield value, name
-    if kind == "given":
-        yield d["iy"] * d["iz"] - d["iyz"] ** 2, "iy iz - iyz^2"
-    elif kind == "tube":
-        yield d["diameter"] - 2 * d["wall"], "inner diameter"
-    elif kind == "hollow_section":
-        for side in ("height", "width"):
-            yield d[side] - 2 * d["outer_radius"], f"straight part of the {side}"
-            inside = d[side] - 2 * d["wall"] - 2 * d["inner_radius"]
-            yield inside, f"straight part of the inner {side}"
-    elif kind in ("i_section", "c_section", "box"):
-        yield d["height"] - 2 * d["flange"], "height between the flanges"
-        yield (
-            d["width"] - (2 if kind == "box" else 1) * d["web"],
-            "width beside the web" + ("s" if kind == "box" else ""),
-        )
-    elif kind == "t_section":
-        yield d["height"] - d["flange"], "height of the web"
-        yield d["width"] - d["web"], "width beside the web"

@@ -215,7 +215,7 @@ def disc_cam(
         output_pressure(mechanism, name, force, curved, width, stiffness)
     mechanism.outlines.setdefault(cam.child.body.name, []).append(_outline(made, cam.child))
     if roller is not None:
-        mechanism.rollers[name] = Roller(layout.held, layout.roller)
+        mechanism.rollers[name] = Roller(layout.held.on_body, layout.roller)
     profile = made.profile()
     if profile.undercut.any():
         raise DeclarationError(

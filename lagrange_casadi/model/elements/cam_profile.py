@@ -18,6 +18,7 @@ from ...base.arguments import public
 from ...base.arrays import Array
 from ...base.brief import Brief
 from ...base.files import writing
+from ...base.packages import check_installed
 from ...base.table_writers import TableFile
 from ...errors import DeclarationError, LagrangeCasadiError, shown
 
@@ -106,12 +107,9 @@ class CamProfile(Brief):
             If the file cannot be written.
         """
         self._refuse_undercut()
-        try:
-            from ezdxf.addons.r12writer import R12FastStreamWriter
-        except ImportError:
-            raise LagrangeCasadiError(
-                "a DXF needs ezdxf; install it with: pip install 'lagrange_casadi[dxf]'"
-            ) from None
+        check_installed("ezdxf", "a DXF", "dxf")
+        from ezdxf.addons.r12writer import R12FastStreamWriter
+
         text = io.StringIO()
         drawing = R12FastStreamWriter(text, fixed_tables=False)
         points = (_MILLIMETRES * np.column_stack([self.x, self.y])).tolist()

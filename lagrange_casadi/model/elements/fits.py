@@ -59,10 +59,6 @@ class Fits:
         """A number is not below another; an error has ``words``, and what is ``shown``."""
         self.same(f"{words}, got {{got}}", shown, shown + ca.fmax(low - value, 0.0), LEAST)
 
-    def not_negative(self, name: str, value: Expression, unit: str) -> None:
-        """A number is not negative."""
-        self.at_least(f"{name} must not be negative [{unit}]", value, 0.0, value)
-
     def share(self, value: Expression) -> None:
         """An efficiency is above 0, and 1 at most."""
         self.at_least("efficiency must be above 0", value, LEAST, value)

@@ -196,7 +196,7 @@ def geneva(
         mechanism.outlines.setdefault(axle.body.name, []).extend(
             [plus(axle.place, turned.apply(corner))[:2] for corner in one] for one in outlines
         )
-    mechanism.rollers[name] = Roller(centre, thick)
+    mechanism.rollers[name] = Roller(centre.on_body, thick)
     return Geneva(made, 2.0 * half, math.tau - 2.0 * half, mouth, depth)
 
 

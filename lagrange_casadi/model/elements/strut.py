@@ -165,8 +165,8 @@ def gas_spring(
         checked(f"{what}: {word}", value, "N s/m")
         for word, value in (("damping", damping), ("end_damping", end_damping))
     )
-    fits.not_negative("damping", slowed, "N s/m")
-    fits.not_negative("end_damping", held, "N s/m")
+    for word, value in (("damping", slowed), ("end_damping", held)):
+        fits.at_least(f"{word} must not be negative [N s/m]", value, 0.0, value)
     if end is not None:
         over = checked(f"{what}: end", end, "m")
         fits.positive("end", over)

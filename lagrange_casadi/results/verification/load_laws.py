@@ -58,16 +58,16 @@ def _apart(placed: Placed, one: Acts, other: Acts) -> Array:
 def _acting(placed: Placed, law: LoadLaw, moved: Array, t: Array) -> Acts:
     """The force and the couple of a load by its law, of what it measures (3, entries, t)."""
     numbers, load, reported = law.at(moved, t), placed.declared.loads[law.name], placed.reported
-    axes = placed.bodies[load.points[0].body].axes if law.turning else reported.ground
-    if law.kind == "spring":
+    axes = placed.bodies[load.points[0].body].axes if load.turning else reported.ground
+    if load.kind == "spring":
         stiffness, length, damping = numbers
         apart, closing = _stretched(placed, load)
         distance = size(apart)
         tension = stiffness * (distance - length) + damping * (dot(apart, closing) / distance)
         return (tension / distance) * apart, NIL
-    if law.kind == "lineload":
+    if load.kind == "lineload":
         return _summed(numbers, axes, placed.bodies[load.points[0].body].axes[0])
-    if law.kind == "force":
+    if load.kind == "force":
         return turn(axes, reported.straight(numbers)), NIL
     return NIL, turn(axes, reported.turning(numbers))
 
@@ -137,9 +137,10 @@ def _open(placed: Placed, law: LoadLaw, moved: Array, acts: Acts) -> Array:
                 acting.append(_acting(placed, law, there, t))
         for one in acting:
             found += np.nan_to_num(_apart(placed, one, acts))
-    if law.kind == "spring":
+    load = declared.loads[law.name]
+    if load.kind == "spring":
         stiffness, _, damping = np.abs(law.at(moved, t))
-        apart, closing = _stretched(placed, placed.declared.loads[law.name])
+        apart, closing = _stretched(placed, load)
         found += off * (stiffness * declared.extent + damping * fastest)
         lost = damping * size(closing) + 2.0 * size(acts[0])
         found += off * declared.extent * lost / size(apart)
