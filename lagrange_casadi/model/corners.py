@@ -70,21 +70,14 @@ class Corners(Graphs):
         constraints = {name: smooth for name, smooth in found.items() if smooth is not None}
         return cls(tuple(_smooth_laws(scene.laws, m.symbols)), constraints)
 
-    def refuse_laws(self, span: tuple[float, float], p: Sequence[float]) -> None:
-        """Raise :class:`.DeclarationError` for a motion with a kink within a span of time, for
-        parameters ``p``.
+    def refuse_laws(self, t: Array, p: Sequence[float], **asked: bool) -> None:
+        """Raise :class:`.DeclarationError` for a motion with a kink along instants ``t`` (t,), for
+        parameters ``p``, or one that is other at an instant than on both sides of it: not ``at``
+        instants where that is false, and with ``between`` also between them, where peaks may be
+        sought.
         """
         for smooth in self.laws:
-            smooth.refuse(np.linspace(*span, _SAMPLED)[None], p, at=False)
-
-    def refuse_isolated_laws(self, t: Array, p: Sequence[float], *, between: bool = False) -> None:
-        """Raise :class:`.DeclarationError` for a motion that is other at an instant ``t`` (t,) than
-        on both sides of it.
-
-        With ``between`` also for one that is so between instants, where peaks may be sought.
-        """
-        for smooth in self.laws:
-            smooth.refuse(t[None], p, between=between)
+            smooth.refuse(t[None], p, **asked)
 
     def refuse_constraints(
         self, arguments: Callable[[str], Array], p: Sequence[float], *, between: bool = False

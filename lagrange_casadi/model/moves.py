@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any, TypeAlias
 
 import casadi as ca
@@ -227,39 +228,32 @@ def _graph(
         held = held * sound(value > 0.0 if demand.positive else value >= 0.0)
 
     def graph(t: ca.SX) -> Expression:
-        x, gone = t, 0.0
-        begin = stretches[0].start
-        if period is not None:
+        x, gone, each = t, 0.0, [*stretches]
+        first, final = stretches[0], stretches[-1]
+        if period is None:
+            rest = replace(final, law=None, start=final.stop, at=last)
+            each = [replace(first, law=None), *stretches, rest]
+        else:
             # A remainder is exact; it is of the middle of the cycle.
-            middle = begin + period / 2.0
+            middle = first.start + period / 2.0
             x = ca.remainder(t - middle, period)
-            if _bends(stretches[0]) or _bends(stretches[-1]):
+            if _bends(first) or _bends(final):
                 # At the seam, as near to one middle as to the next, C takes the one and the other
                 # by turns. The acceleration jumps there: the next cycle begins, however it is
                 # evaluated.
                 x = x - period * (x >= period / 2.0)
             x = x + middle
             gone = advance * ca.floor((t - x) / period + 0.5)
-        starts = [stretch.start for stretch in stretches] + (
-            [] if period is not None else [stretches[-1].stop]
-        )
-        later = [x >= start for start in starts]
-        # A difference of two comparisons, the later of which holds only where the earlier does.
-        inside = [
-            here if k + 1 == len(later) else here - later[k + 1] for k, here in enumerate(later)
-        ]
-        places = [stretch.at for stretch in stretches]
-        if period is None:
-            at = [(x < starts[0], places[0]), *zip(inside, [*places, last], strict=True)]
-        else:
-            # By rounding an instant may be before the first seam.
-            inside[0] = x < starts[1] if len(starts) > 1 else ca.SX(1)
-            at = list(zip(inside, places, strict=True))
-        going = [(here, s) for here, s in zip(inside, stretches, strict=False) if s.law is not None]
+        later = [x >= stretch.start for stretch in each[1:]]
+        # By rounding an instant may be before the first seam. Then a difference of two comparisons,
+        # the later of which holds only where the earlier does.
+        begun = x < each[1].start if later else ca.SX(1)
+        inside = [begun, *(here - gone_by for here, gone_by in pairwise([*later, ca.SX(0)]))]
+        going = [(here, s) for here, s in zip(inside, each, strict=True) if s.law is not None]
         share = (x - _chosen((here, s.start) for here, s in going)) * _chosen(
             (here, 1.0 / s.time) for here, s in going
         )
-        value = _chosen(at) + gone
+        value = _chosen((here, s.at) for here, s in zip(inside, each, strict=True)) + gone
         for law in dict.fromkeys(s.law for _, s in going if s.law is not None):
             value = value + _chosen((here, s.by) for here, s in going if s.law is law) * law.shape(
                 share

@@ -358,7 +358,7 @@ class ContinuousSolution(Brief):
         instants than on both sides.
         """
         corners, t, p = self.program.data.corners, self.solution.t, self.p.tolist()
-        corners.refuse_isolated_laws(t, p, between=True)
+        corners.refuse_laws(t, p, between=True)
         if corners.constraints:
             out = self.interpreter.columns(t, self.p, self.z)
             corners.refuse_constraints(

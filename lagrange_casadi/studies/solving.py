@@ -66,7 +66,7 @@ def solve(
     require("the outputs over time", (copies, len(program.columns) + _BESIDE, timing.count))
     _announce(program, timing.count, method, threads or cores())
     instants = instants_of(data.laws, timing, values)
-    data.corners.refuse_isolated_laws(instants.t, p.tolist())
+    data.corners.refuse_laws(instants.t, p.tolist())
 
     indeterminate: tuple[Output, ...] = ()
     if method.table is not None:

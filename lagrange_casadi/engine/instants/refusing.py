@@ -52,11 +52,10 @@ def refuse_laws(data: ModelData, span: tuple[float, float], p: tuple[float, ...]
 
     Also where it puts into a curve what is beyond the curve's ends.
     """
-    data.corners.refuse_laws(span, p)
-    laws = data.laws
+    laws, t = data.laws, np.linspace(*span, _SAMPLED)
+    data.corners.refuse_laws(t, p, at=False)
     if laws.beyond is None:
         return
-    t = np.linspace(*span, _SAMPLED)
     beyond = np.argwhere(~(laws.beyond(t[None], list(p)).full() <= BEYOND["double"]).T)
     if beyond.size:
         at, joint = beyond[0]
