@@ -49,7 +49,8 @@ class Declaration(Graphs):
     :class:`.Mechanism` has the methods that declare. ``rough`` are coordinates at which parts are
     turned as they were declared to be [rad or m]; ``snapped`` are by how much axes [rad] and places
     [m] of a part were moved to the exact ones. ``one_way`` are outputs of forces that cannot pull,
-    with what happens where they are negative.
+    with what happens where they are negative. ``shaken`` are outputs of shaking forces, with the
+    names of the bodies that they are of.
     """
 
     space: ClassVar[bool] = False
@@ -81,6 +82,7 @@ class Declaration(Graphs):
     rollers: dict[str, Roller] = field(default_factory=dict, init=False)
     pitch_circles: dict[str, PitchCircles] = field(default_factory=dict, init=False)
     tracks: dict[str, Track] = field(default_factory=dict, init=False)
+    shaken: dict[str, tuple[str, ...]] = field(default_factory=dict, init=False)
     strokes: dict[str, Stroke] = field(default_factory=dict, init=False)
     one_way: dict[str, str] = field(default_factory=dict, init=False)
     gravity: Vector = field(default=(0.0, -9.81, 0.0), init=False)

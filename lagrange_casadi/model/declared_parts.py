@@ -16,6 +16,7 @@ from ..base.brief import Brief
 from ..base.numerals import readable
 from ..base.quantities import Output
 from ..base.units import Number, number
+from ..base.vectors import ZERO
 from ..base.vectors import Expression as Expression
 from ..base.vectors import Vector as Vector
 from ..errors import NumberError, ParameterError, UnknownNameError
@@ -184,8 +185,8 @@ class RigidMass(Brief):
     """
 
     mass: Expression
-    centre: Vector
-    inertia: tuple[Vector, Vector, Vector]
+    centre: Vector = ZERO
+    inertia: tuple[Vector, Vector, Vector] = (ZERO,) * 3
     accepted: bool = False
 
 

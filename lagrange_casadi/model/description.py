@@ -56,17 +56,6 @@ class ParameterNumbers:
     high: float
 
 
-@dataclass(frozen=True)
-class MassNumbers:
-    """The mass of a body [kg], its centre [m], and the inertia about the centre [kg m^2], on the
-    body's axes.
-    """
-
-    mass: float
-    centre: Triple = ZERO
-    inertia: Rows = (ZERO,) * 3
-
-
 @dataclass(frozen=True, repr=False)
 class BodyNumbers(Brief):
     """A body: its length [m], None for a point mass, and its mass [kg].
@@ -95,23 +84,23 @@ class BodyNumbers(Brief):
         return self.length, self.density
 
     @cached_property
-    def whole(self) -> MassNumbers:
+    def whole(self) -> RigidMass:
         """Mass, centre and inertia; of a link with sections from the density.
 
         Not with the mass above, which is computed as the derivation does it.
         """
         if self.centre is not None and self.inertia is not None:
-            return MassNumbers(self.mass, self.centre, self.inertia)
+            return RigidMass(self.mass, self.centre, self.inertia)
         if self.length is None or self.density is None:
-            return MassNumbers(self.mass)
+            return RigidMass(self.mass)
         mass, first, second = (float(tail[0]) for tail in self.density.tails(np.zeros(1)))
         if mass == 0.0:
-            return MassNumbers(mass)
+            return RigidMass(mass)
         middle = first / mass
         across = (second - first * middle) * self.length**2
         yy, zz, yz = (one.mass for one in self.slices) if self.slices else ZERO
         inertia = (yy + zz, 0.0, 0.0), (0.0, across + zz, -yz), (0.0, -yz, across + yy)
-        return MassNumbers(mass, (middle * self.length, 0.0, 0.0), inertia)
+        return RigidMass(mass, (middle * self.length, 0.0, 0.0), inertia)
 
 
 @dataclass(frozen=True)

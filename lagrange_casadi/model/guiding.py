@@ -13,14 +13,14 @@ from collections.abc import Mapping, Sequence
 from typing import Literal
 
 from ..base.tables import ANGLE, LENGTH
-from ..base.vectors import AXES, ZERO
+from ..base.vectors import AXES
 from ..errors import DeclarationError, UnknownNameError, check_kind
 from .declared_parts import Body, Link, Point, PointMass, RigidMass
 from .joints import Joint
 from .mechanism import Mechanism
 from .motion_laws import Motion
 
-_NOTHING = RigidMass(0.0, ZERO, (ZERO, ZERO, ZERO))
+_NOTHING = RigidMass(0.0)
 
 
 def laws_of(

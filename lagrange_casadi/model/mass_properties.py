@@ -9,7 +9,6 @@ from typing import TypeAlias
 
 import casadi as ca
 
-from ..base.vectors import ZERO
 from ..errors import DeclarationError, check_kind
 from .beams.beam import Beam
 from .beams.shape import UNITS
@@ -24,7 +23,7 @@ Masses: TypeAlias = tuple[Expression, Density | None, Expression, Expression, bo
 ALL = "all"
 """Name of the mass of everything that moves."""
 
-UNDECLARED = RigidMass(math.nan, ZERO, (ZERO, ZERO, ZERO))
+UNDECLARED = RigidMass(math.nan)
 """The mass of a link of which none is declared so far."""
 
 
@@ -61,15 +60,12 @@ def mass_properties_of(
                 f"{what}: second moments of slices are for links in space; leave them out in a"
                 " plane"
             )
-        unit = "kg/m" if density.per_length else "kg"
-        checked_density = _checked(own, density, f"{what}: density", unit)
-        if density.slices is None:
-            return checked_density
-        slices = (
-            _checked(own, moment, f"{what}: second moments", "kg m")
-            for moment in density.slices.each
-        )
-        return replace(checked_density, slices=Slices(*slices))
+        slices, unit = density.slices, "kg/m" if density.per_length else "kg"
+        if slices is not None:
+            slices = Slices(
+                *(_checked(own, m, f"{what}: second moments", "kg m") for m in slices.each)
+            )
+        return replace(_checked(own, density, f"{what}: density", unit), slices=slices)
     if centre is not None:
         place, moments = own.vector(f"{what}: centre", centre, "m"), tensor(what, inertia, own)
         if reference is not None:

@@ -310,15 +310,56 @@ def _motion(
     elif advance and not periodic:
         raise DeclarationError(f"{name}: advance= needs periodic=True")
     (ahead,), unit_in = coordinates(f"{name}: offset", [(offset, "")])
-    found = parametric(f"{name}: ratio", ratio), ahead, parametric(f"{name}: stretch", stretch)
     # A ratio may make turns of lengths, and radians may be a rule's usual unit.
     if not unit_in and isinstance(ratio, float) and ratio == 1.0:
         unit_in = (
             "m" if not differs(recording.unit, "m") else "" if recording.unit == "rad" else "rad"
         )
-    noise = _noise(recording, smoothing)
-    cyclic = periodic or period is not None
-    return _law(recording, noise, points, cyclic, advance, found, unit_in)
+    ratio, stretch = parametric(f"{name}: ratio", ratio), parametric(f"{name}: stretch", stretch)
+    noise, periodic = _noise(recording, smoothing), periodic or period is not None
+    t, values, size = recording.t, recording.values, recording.size
+    whole = float(t[-1] - t[0])
+    climb = advance / whole
+    level = values - climb * (t - t[0])
+    if periodic:
+        gap = float(level[-1] - level[0])
+        if abs(gap) > max(_CLOSES * noise, _SAME * float(np.ptp(values))):
+            beyond = f"{advance:g} {recording.unit} beyond the first" if advance else "the first"
+            raise DeclarationError(
+                f"{recording.name}: the last value of a periodic motion must be {beyond}, but it"
+                f" is off by {gap:.6g} {recording.unit}; set advance=, or set period= if the last"
+                " row of the period is missing"
+            )
+        level[-1] = level[0]
+    found = _curve(recording.name, t, level, periodic, noise)
+    if points is not None:
+        require(f"{recording.name}: points", (points,))
+        even = np.linspace(t[0], t[-1], points)
+        found = _curve(recording.name, even, np.asarray(found(even)), periodic, 0.0)
+    off = float(np.abs(np.asarray(found(t)) - level).max())
+    start, rate = float(t[0]), climb * size
+
+    def graph(time: Expression) -> Expression:
+        at = time / stretch
+        return ahead + ratio * (size * found(at) + rate * (at - start))
+
+    every = f", resampled at {points} equally spaced times" if points else ""
+    smoothed = f", smoothed by {noise:.3g} {recording.unit}" if noise else ""
+    clock = recording.clock
+    since = f" since {clock.first}" if clock.first else ""
+    described = (
+        f"{t.size} samples of {recording.name} from {t[0]:g} to {t[-1]:g}"
+        f" s{since}{', repeated' if periodic else ''}"
+    )
+    return Motion(
+        graph,
+        description=f"{described}{smoothed}{every}, at most {off:.3g} {recording.unit} from them",
+        unit=unit_in,
+        note=f"times of {recording.file} are stamps in {clock.words}: its first row, {clock.first},"
+        " is t = 0"
+        if clock.first
+        else "",
+    )
 
 
 def _header(path: Path) -> tuple[int, dict[str, str]]:
@@ -359,61 +400,6 @@ def _noise(recording: Recording, smoothing: float | str) -> float:
     if found < 0.0:
         raise DeclarationError(f"{what}: expected a number of at least 0, got {smoothing!r}")
     return found
-
-
-def _law(
-    recording: Recording,
-    noise: float,
-    points: int | None,
-    periodic: bool,
-    advance: float,
-    scales: Sequence[Expression],
-    unit_in: str,
-) -> Motion:
-    t, values, size = recording.t, recording.values, recording.size
-    whole = float(t[-1] - t[0])
-    climb = advance / whole
-    level = values - climb * (t - t[0])
-    if periodic:
-        gap = float(level[-1] - level[0])
-        if abs(gap) > max(_CLOSES * noise, _SAME * float(np.ptp(values))):
-            beyond = f"{advance:g} {recording.unit} beyond the first" if advance else "the first"
-            raise DeclarationError(
-                f"{recording.name}: the last value of a periodic motion must be {beyond}, but it"
-                f" is off by {gap:.6g} {recording.unit}; set advance=, or set period= if the last"
-                " row of the period is missing"
-            )
-        level[-1] = level[0]
-    found = _curve(recording.name, t, level, periodic, noise)
-    if points is not None:
-        require(f"{recording.name}: points", (points,))
-        even = np.linspace(t[0], t[-1], points)
-        found = _curve(recording.name, even, np.asarray(found(even)), periodic, 0.0)
-    off = float(np.abs(np.asarray(found(t)) - level).max())
-    ratio, offset, stretch = scales
-    start, rate = float(t[0]), climb * size
-
-    def graph(time: Expression) -> Expression:
-        at = time / stretch
-        return offset + ratio * (size * found(at) + rate * (at - start))
-
-    every = f", resampled at {points} equally spaced times" if points else ""
-    smoothed = f", smoothed by {noise:.3g} {recording.unit}" if noise else ""
-    clock = recording.clock
-    since = f" since {clock.first}" if clock.first else ""
-    described = (
-        f"{t.size} samples of {recording.name} from {t[0]:g} to {t[-1]:g}"
-        f" s{since}{', repeated' if periodic else ''}"
-    )
-    return Motion(
-        graph,
-        description=f"{described}{smoothed}{every}, at most {off:.3g} {recording.unit} from them",
-        unit=unit_in,
-        note=f"times of {recording.file} are stamps in {clock.words}: its first row, {clock.first},"
-        " is t = 0"
-        if clock.first
-        else "",
-    )
 
 
 def _curve(name: str, t: Array, values: Array, periodic: bool, noise: float) -> Curve:

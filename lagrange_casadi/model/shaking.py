@@ -8,7 +8,6 @@ second moment J_ij that adds J_ij e_i x e_j'' to H'.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
 from ..base.arguments import public
 from ..base.arrays import Operand
@@ -18,13 +17,6 @@ from .declared_parts import Expression, Link, Point, PointMass, UserOutput
 from .link_density import Density
 from .mass_properties import second_moments
 from .mechanism import Mechanism
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Shaking(UserOutput):
-    """A component of a shaking force or moment, and the names of the bodies that it is of."""
-
-    bodies: tuple[str, ...]
 
 
 @public
@@ -89,27 +81,21 @@ def shaking(
         for axis, value in zip("xyz", moment, strict=True)
         if mechanism.space or axis == "z"
     }
-    found = []
-    for member, (value, unit) in named.items():
-        output = mechanism.output(f"{name}_{member}", value, unit=unit)
-        mechanism.outputs[output.name] = Shaking(
-            output.name, output.expression, output.unit, output.made_of, bodies
-        )
-        found.append(mechanism.outputs[output.name])
-    return tuple(found)
+    found = tuple(
+        mechanism.output(f"{name}_{member}", value, unit=unit)
+        for member, (value, unit) in named.items()
+    )
+    mechanism.shaken |= {output.name: bodies for output in found}
+    return found
 
 
 def refuse_late(mechanism: Mechanism) -> None:
     """Raise :class:`.DeclarationError` for a body that was declared after a shaking force."""
-    bodies = tuple(body.name for body in mechanism.moving)
-    for output in mechanism.outputs.values():
-        late = [
-            name for name in bodies if isinstance(output, Shaking) and name not in output.bodies
-        ]
-        if late:
+    for output, bodies in mechanism.shaken.items():
+        if late := [body.name for body in mechanism.moving if body.name not in bodies]:
             raise DeclarationError(
-                f"output '{output.name}': body '{late[0]}' was declared after it; call shaking"
-                " after all bodies"
+                f"output '{output}': body '{late[0]}' was declared after it; call shaking after all"
+                " bodies"
             )
 
 
@@ -134,14 +120,13 @@ def _mass_properties(
             pairs = ((yy, 0, 0), (zz, 1, 1), (yz, 0, 1), (yz, 1, 0))
             moments += [(moment, across[i], across[j]) for moment, i, j in pairs]
         return [(base, body.base), (tip, body.tip)], moments
-    mass_properties = body.mass
-    place = mass_properties.centre
+    rigid, place = body.mass, body.mass.centre
     centre = body.at(*place)
     axes = [(centre, body.at(*(x + (k == i) for k, x in enumerate(place)))) for i in range(3)]
     if not mechanism.space:
-        return [(mass_properties.mass, centre)], [(mass_properties.inertia[2][2], axes[0], axes[0])]
-    inertias = second_moments(mass_properties.inertia)
-    return [(mass_properties.mass, centre)], [
+        return [(rigid.mass, centre)], [(rigid.inertia[2][2], axes[0], axes[0])]
+    inertias = second_moments(rigid.inertia)
+    return [(rigid.mass, centre)], [
         (inertias[i][j], axes[i], axes[j]) for i in range(3) for j in range(3)
     ]
 

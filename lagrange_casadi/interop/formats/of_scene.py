@@ -112,7 +112,7 @@ def _body(name: str, body: BodyNumbers, frame: Frame, space: bool) -> Body:
     ):
         rod = np.zeros(3), np.array([body.length, 0.0, 0.0])
         return Body(name, whole.mass, *slender(whole.mass, *rod), frame, rod=rod)
-    inertia = np.array(whole.inertia)
+    inertia: Array = np.array(whole.inertia)
     if body.density is None and not space:
         # In a plane one moment is given; two more that a body may have.
         inertia[0, 0] = inertia[1, 1] = inertia[2, 2] / 2.0
