@@ -280,7 +280,7 @@ def texts(value: object) -> list[str] | None:
     return _each(value, _SIMPLE[str].read, _NO_TEXTS)
 
 
-def _array(value: object) -> Any:
+def array(value: object) -> Any:
     """A value as an array of doubles."""
     if isinstance(value, str | bytes | memoryview | Mapping | set | frozenset | ca.SX | ca.MX):
         return None
@@ -295,7 +295,7 @@ def _array(value: object) -> Any:
 
 def _line(value: object) -> Any:
     """Numbers of a row."""
-    found = _array(value)
+    found = array(value)
     return tuple(found.tolist()) if np.ndim(found) == 1 else None
 
 
@@ -318,7 +318,7 @@ def _pair(value: object) -> Any:
 
 def _wholes(value: object) -> Any:
     """A value as an array of whole numbers."""
-    found = _array(value)
+    found = array(value)
     if found is None or not (np.abs(found) < 2.0**53).all() or (found != np.rint(found)).any():
         return None
     return found.astype(np.int64)
@@ -363,7 +363,7 @@ _SIMPLE: dict[type, _Kind] = {
 }
 _SIMPLE[os.PathLike] = _SIMPLE[Path]
 _ARRAYS = {
-    np.dtype[np.float64]: _Kind("an array of numbers", _array),
+    np.dtype[np.float64]: _Kind("an array of numbers", array),
     np.dtype[np.int64]: _Kind("an array of whole numbers", _wholes),
 }
 
@@ -399,7 +399,7 @@ Elastic: TypeAlias = Annotated[
     tuple[float, float], _Kind("Young's modulus [Pa] and Poisson's ratio", _pair)
 ]
 
-Numeric: TypeAlias = Annotated[Any, _Kind("a number or an array of numbers", _array)]
+Numeric: TypeAlias = Annotated[Any, _Kind("a number or an array of numbers", array)]
 """A number, or an array of numbers of any shape."""
 
 Row: TypeAlias = Annotated[Any, _Kind("a row of numbers", _line_of_texts)]

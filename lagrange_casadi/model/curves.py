@@ -14,7 +14,7 @@ import casadi as ca
 import numpy as np
 
 from ..base import lookups
-from ..base.arguments import Row, fitting, public
+from ..base.arguments import Row, array, fitting, public
 from ..base.arrays import Array, Expression
 from ..base.units import number
 from ..base.vocabulary import BEYONDS, Beyond
@@ -134,13 +134,8 @@ class Curve:
         """
         if isinstance(x, ca.SX) and x.numel() == 1:
             return self._expression(x)
-        try:
-            numbers = (
-                np.array(np.nan) if isinstance(x, ca.SX | ca.MX | ca.DM) else np.asarray(x, float)
-            )
-        except (TypeError, ValueError, OverflowError):
-            numbers = np.array(np.nan)
-        if not np.isfinite(numbers).all():
+        numbers = array(x)
+        if numbers is None or not np.isfinite(numbers).all():
             raise DeclarationError(
                 f"curve: expected a scalar casadi.SX expression or finite numbers, got {shown(x)}"
             )

@@ -440,8 +440,10 @@ def _body(body: Link | PointMass) -> BodyNumbers:
     return BodyNumbers(
         _numbers(body.length),
         _numbers(mass_of(body)),
-        density=mass.at(body.length),
-        slices=tuple(one.at(body.length) for one in (mass.slices.each if mass.slices else ())),
+        density=mass.at(_numbers, body.length),
+        slices=tuple(
+            one.at(_numbers, body.length) for one in (mass.slices.each if mass.slices else ())
+        ),
         beam=None if body.beam is None else replace(body.beam, shape=body.beam.course),
     )
 

@@ -9,7 +9,7 @@ From a section at u to the tip the moments of the material are combinations of T
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Annotated, Any
@@ -140,12 +140,14 @@ class Density(Brief):
         """
         return self.cells[int(np.searchsorted(self.breaks, u, side="right")) - 1]
 
-    def at(self, length: Expression) -> NumericDensity:
-        """Return the density as expressions.
+    def at(self, number: Callable[[Expression], float], length: float) -> NumericDensity:
+        """Return the density at given parameters.
 
         Parameters
         ----------
-        length : casadi.SX or float
+        number : callable
+            Gives the value of an expression.
+        length : float
             Length of the link [m].
 
         Returns
@@ -154,8 +156,9 @@ class Density(Brief):
             Mass per unit of the ratio [kg].
         """
         scale = length if self.per_length else 1.0
-        cells: Any = tuple(tuple(ca.SX(c) * scale for c in cell) for cell in self.cells)
-        return NumericDensity(self.breaks, cells)
+        return NumericDensity(
+            self.breaks, tuple(tuple(number(c) * scale for c in cell) for cell in self.cells)
+        )
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -25,7 +25,6 @@ from .beyond_ends import BEYOND, beyond_ends, words_beyond
 from .declaration import Declaration
 from .declared_parts import Expression, Link, Point, PointMass, RigidMass, Vector
 from .directions import RIGHT, not_right
-from .joints import Joint
 from .limits import END
 from .link_density import Density, Slices
 from .loads import POSITIVE, Friction, LineLoad
@@ -130,10 +129,12 @@ def _of(declared: Declaration, precision: Precision) -> ParameterConstraints:
         loaded = any(not isinstance(load, Friction) for load in declared.loads.values())
         found.append(_some_mass(declared.name, masses, loaded=loaded))
     for joint in declared.joints.values():
-        found += _of_axes(joint, precision)
+        what, (u, v, _), turned = f"joint '{joint.name}'", joint.triad, joint.turned
+        found += _of_pair(what, u, v, precision)
+        found += _of_pair(f"{what}: turned", turned.x, turned.y, precision)
         # A child that slides loads its parent at a place on the line along which it slides.
         for point in (joint.child,) if joint.slides else (joint.parent, joint.child):
-            found += _of_load_point(f"joint '{joint.name}'", point, precision, space=declared.space)
+            found += _of_load_point(what, point, precision, space=declared.space)
     for load in declared.loads.values():
         if isinstance(load, LineLoad):
             found += _of_part(load, precision)
@@ -361,18 +362,10 @@ def _some_mass(name: str, masses: list[ca.SX], *, loaded: bool) -> Demand:
     return Demand(total, not loaded, refusal)
 
 
-def _of_axes(joint: Joint, precision: Precision) -> list[Demand]:
-    """Conditions that directions in space that depend on parameters are not zero, and at right
-    angles where two are given.
-    """
-    what, (u, v, _) = f"joint '{joint.name}'", joint.triad
-    return [
-        *_of_pair(what, u, v, precision),
-        *_of_pair(f"{what}: turned", joint.turned.x, joint.turned.y, precision),
-    ]
-
-
 def _of_pair(what: str, first: Vector, second: Vector, precision: Precision) -> list[Demand]:
+    """Conditions that two directions in space that depend on parameters are not zero, and at right
+    angles.
+    """
     cosine = dot(first, second)
     if not isinstance(cosine, ca.SX) or cosine.is_constant():
         return []

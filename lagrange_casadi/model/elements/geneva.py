@@ -148,6 +148,7 @@ def geneva(
     seen = ca.fmin(ca.fmax(within, -half), half)
     slewed = ca.atan2(ca.sin(seen), apart / radius + way * ca.cos(seen))
     engaged = ca.fabs(within) < half
+    locked_in = 1.0 - engaged
     place = Rotation.by(turn).apply(arm)
     along = minus(place, reach)
     far = dot(along, along)
@@ -163,7 +164,7 @@ def geneva(
         axis.body,
         plus(axis.place, place),
         minus(reach, place),
-        Wrench(_either(engaged, pushed, ZERO)),
+        Wrench(times(engaged, pushed)),
     )
     at_arc = Mesh(
         crank.child,
@@ -171,8 +172,8 @@ def geneva(
         axis.body,
         axis.place,
         reach,
-        Wrench(_either(engaged, ZERO, locking)),
-        Wrench(_either(engaged, ZERO, spread)),
+        Wrench(times(locked_in, locking)),
+        Wrench(times(locked_in, spread)),
     )
     phi = mechanism.coordinate(wheel) - way * (slewed + math.tau / slots * turns)
     transmission = Transmission(name, (at_pin, at_arc), fits=tuple(fits.found))
@@ -236,8 +237,3 @@ def _arc(
     """Places on a circle about a place on the x axis, from one angle to another."""
     angles = [start + (stop - start) * (k / (count - 1)) for k in range(count)]
     return [(middle + radius * ca.cos(at), radius * ca.sin(at), 0.0) for at in angles]
-
-
-def _either(condition: ca.SX, first: Vector, second: Vector) -> Vector:
-    x, y, z = (ca.if_else(condition, a, b) for a, b in zip(first, second, strict=True))
-    return x, y, z

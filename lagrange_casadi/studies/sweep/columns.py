@@ -29,7 +29,6 @@ from ...engine.model_data import ModelData
 from ...engine.program import Program
 from ...errors import DeclarationError
 from ...model.even_points import EvenPoints, points
-from ...model.link_density import NumericDensity
 from ...model.times import Timing
 from ...model.wanted_names import SENSITIVITY
 from ...results.section_laws import SectionLaw, law_of
@@ -393,7 +392,7 @@ def _law_of_designs(
     def law(members: Mapping[Output, Array], p: Array) -> SectionLaw:
         found: Any = numbers(p.T).full()
         length, *rest = found[..., None] if p.ndim > 1 else found.ravel().tolist()
-        cells = tuple(tuple(rest.pop(0) for _ in cell) for cell in whole.cells)
-        return law_of(link, members, length, NumericDensity(whole.breaks, cells), precision)
+        cells = iter(rest)
+        return law_of(link, members, length, whole.at(lambda _: next(cells), length), precision)
 
     return law
