@@ -87,7 +87,19 @@ def _powers(
 ) -> list[Expression]:
     """Coefficients by powers of (end - xi)/(end - start)."""
     if callable(value):
-        return _of_function(what, value, start, end, checked)
+        distance = ca.SX.sym("xi")
+        given = expressed(what, value, [distance], "the distance from the base")
+        if not isinstance(given, ca.SX) or given.numel() != 1:
+            return [checked(given)]
+        # With numbers for ends the polynomial is rounded once; a symbol that is foreign is refused
+        # by the coefficients.
+        found = powers(given, distance, (ca.SX(end), ca.SX(start - end)))
+        if found is None or len(found) > HIGHEST + 1:
+            raise DeclarationError(
+                f"{what} must be a polynomial of the distance from the base, of degree {HIGHEST} at"
+                " most; use one load for each part of the link on which it is a polynomial"
+            )
+        return [checked(coefficient) for coefficient in found]
     pair = tuple(value) if isinstance(value, tuple | list) else (value,)
     if len(pair) > 2 or not pair:
         raise DeclarationError(
@@ -96,31 +108,6 @@ def _powers(
         )
     first, last = checked(pair[0]), checked(pair[-1])
     return [last, first - last] if len(pair) == 2 else [last]
-
-
-def _of_function(
-    what: str,
-    function: Callable[[ca.SX], Expression],
-    start: Expression,
-    end: Expression,
-    checked: Callable[[Expression], Expression],
-) -> list[Expression]:
-    """Line load as a polynomial of the distance xi."""
-    distance = ca.SX.sym("xi")
-    value = expressed(what, function, [distance], "the distance from the base")
-    if not isinstance(value, ca.SX):
-        return [checked(value)]
-    if value.numel() != 1:
-        raise DeclarationError(f"{what} must be a scalar, got one of shape {value.shape}")
-    # With numbers for ends the polynomial is rounded once; a symbol that is foreign is refused by
-    # the coefficients.
-    found = powers(value, distance, (ca.SX(end), ca.SX(start - end)))
-    if found is None or len(found) > HIGHEST + 1:
-        raise DeclarationError(
-            f"{what} must be a polynomial of the distance from the base, of degree {HIGHEST} at"
-            " most; use one load for each part of the link on which it is a polynomial"
-        )
-    return [checked(coefficient) for coefficient in found]
 
 
 def friction(

@@ -18,7 +18,6 @@ from ..base.scalars import called, column, entries
 from ..base.symbolic import Graphs, symbolic
 from ..base.templates import Template
 from ..base.vectors import ZERO
-from .constraints import Constraint, Row
 from .declared_parts import Point
 from .description import Triple
 from .guiding import point_of
@@ -95,34 +94,19 @@ class Equation(Graphs):
     slopes: ca.Function
 
     @classmethod
-    def of(cls, mechanism: Mechanism, declared: Constraint | Row) -> Equation:
-        """One equation of a mechanism, from the expressions as they were declared."""
-        row = isinstance(declared, Row)
-        expression = ca.SX(declared.expression if isinstance(declared, Row) else declared.phi)
-        transmission = None if isinstance(declared, Row) else declared.transmission
-        found = _seen(mechanism, expression)
-        return cls._over(mechanism, declared.name, expression, found, row, transmission)
-
-    @classmethod
-    def driven(
-        cls, mechanism: Mechanism, coordinate: str, moved: _Measured, law: Motion
-    ) -> Equation:
-        """A prescribed motion, of a joint, a point or a body, as the equation that what is
-        ``moved`` is where its law says.
-        """
-        gap = moved.place - law.graph(mechanism.time)
-        return cls._over(mechanism, coordinate, gap, [moved], False, None)
-
-    @classmethod
-    def _over(
+    def of(
         cls,
         mechanism: Mechanism,
         name: str,
         expression: ca.SX,
         found: Sequence[_Measured],
-        row: bool,
-        transmission: Transmission | None,
+        transmission: Transmission | None = None,
+        *,
+        row: bool = False,
     ) -> Equation:
+        """An equation of a mechanism over what is ``found`` in it, from its expression as it was
+        declared.
+        """
         places, rates = _columns(found)
         accelerations = ca.SX.sym("accelerations", len(found))
         t, p = mechanism.time, mechanism.symbols
@@ -215,15 +199,22 @@ class Stated:
 
         Friction has a law of its own.
         """
-        declared: tuple[Constraint | Row, ...] = (
-            *mechanism.constraints.values(),
-            *mechanism.rows.values(),
-        )
+        m, constraints, rows = mechanism, mechanism.constraints, mechanism.rows
+        moved = {name: _moved(m, name) for name in motions}
         found = cls(
-            equations=tuple(Equation.of(mechanism, one) for one in declared),
+            equations=(
+                *(
+                    Equation.of(m, name, one.phi, _seen(m, one.phi), one.transmission)
+                    for name, one in constraints.items()
+                ),
+                *(
+                    Equation.of(m, name, one.expression, _seen(m, one.expression), row=True)
+                    for name, one in rows.items()
+                ),
+            ),
             motions=tuple(
-                Equation.driven(mechanism, name, _moved(mechanism, name), law)
-                for name, law in motions.items()
+                Equation.of(m, name, one.place - motions[name].graph(m.time), [one])
+                for name, one in moved.items()
             ),
             laws=tuple(
                 LoadLaw.of(mechanism, load)
