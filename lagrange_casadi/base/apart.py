@@ -96,7 +96,10 @@ def answer(function: Callable[..., object]) -> None:
         nowhere = os.open(os.devnull, os.O_WRONLY)
         for number in (1, 2):
             os.dup2(nowhere, number)
-        _limit(most, busy)
+        # No image of the process is left behind, no file is written, and no more taken.
+        for what, amount in (("CORE", 0), ("FSIZE", 0), ("CPU", math.ceil(busy))):
+            _take_at_most(what, amount)
+        limit_memory(most)
         try:
             answered: dict[str, object] = {"found": function(*given)}
         except LagrangeCasadiError as error:
@@ -107,16 +110,6 @@ def answer(function: Callable[..., object]) -> None:
         except Exception as error:
             answered = {"lost": f"cannot be read: {type(error).__name__}: {one_line(error)}"}
         out.write(json.dumps(answered))
-
-
-def _limit(most: float, busy: float) -> None:
-    """Let this process take so many bytes of memory and seconds of processor time at most, write no
-    file, and leave no image of it behind, where the system can see to that.
-    """
-    _take_at_most("CORE", 0)
-    _take_at_most("FSIZE", 0)
-    _take_at_most("CPU", math.ceil(busy))
-    limit_memory(most)
 
 
 def limit_memory(most: float) -> None:
