@@ -428,7 +428,14 @@ def _filled(
         raise DeclarationError(
             f"moves: {len(lacking)} dwells have no time; expected a time for all but one"
         )
-    if not lacking:
+    remaining = _sum(whole, *(-time for time in given))
+    if lacking:
+        words = (
+            "moves: no time is left for the part without one: the others take {total} s of the"
+            " period of {whole} s"
+        )
+        demands.add(Demand.saying(remaining, True, words, total=total, whole=whole))
+    else:
         gap = ca.fabs(ca.SX(whole) - total)
         demands.add(
             Demand.saying(
@@ -439,13 +446,6 @@ def _filled(
                 whole=whole,
             )
         )
-        return given
-    remaining = _sum(whole, *(-time for time in given))
-    words = (
-        "moves: no time is left for the part without one: the others take {total} s of the period"
-        " of {whole} s"
-    )
-    demands.add(Demand.saying(remaining, True, words, total=total, whole=whole))
     return [remaining if time is None else time for time in known]
 
 

@@ -192,8 +192,10 @@ class Ownership:
         self.refuse_frozen(f"add {kind} '{name}'")
         # Files and scenes know joints, loads, constraints, rows and paths by their names alone,
         # beside those of links.
-        acting: tuple[Mapping[str, Part], ...] = (m.joints, m.loads, m.constraints, m.rows, m.paths)
-        acting += (m.drives,)
+        acting: tuple[Mapping[str, Part], ...] = (
+            *(m.joints, m.loads, m.constraints),
+            *(m.rows, m.paths, m.drives),
+        )
         check_name(kind, name)
         others = (m.bodies, *acting) if any(table is other for other in acting) else (table,)
         for part in (parts[name] for parts in others if name in parts):

@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from typing import cast
 
 import casadi as ca
+import numpy as np
 
 from ...base.arguments import Count, Elastic, public
 from ...base.brief import Brief
@@ -28,7 +29,7 @@ from ..constraints import Constraint
 from ..declared_parts import Expression, Link, Outline, Point, Roller
 from ..joints import Joint
 from ..mechanism import Mechanism
-from .cam_profile import CamProfile, profile_of
+from .cam_profile import CamProfile, turn_in
 from .follower import (
     STEEL,
     Touch,
@@ -40,6 +41,9 @@ from .follower import (
     stiffness_of,
     unit,
 )
+
+_SAME = 1e-9
+"""Relative gap of a closed profile that is rounding."""
 
 _CORNERS = 240
 """Corners by which pictures show a profile."""
@@ -132,7 +136,21 @@ class Cam(Brief):
         ]
         given = {"angle": x, "p": self.mechanism.symbols}
         function = graph("profile", given, rows=column(rows))
-        return profile_of(self.name, function, list(values.values()), count)
+        angle = turn_in(self.name, count)
+        found = function(angle[None], list(values.values())).full()
+        # A straight profile has no radius.
+        if not np.isfinite(np.delete(found, 5, axis=0)).all():
+            raise DeclarationError(
+                f"cam '{self.name}': the follower cannot touch the base circle, because the"
+                " follower is too short or too close to the cam's shaft; point= says which of its"
+                " points touches, its tip by default"
+            )
+        size = float(np.abs(found[:2]).max())
+        closes = bool(np.abs(found[:2, -1] - found[:2, 0]).max() <= _SAME * size)
+        x, y, pitch_x, pitch_y, pressure, radius, progress = found[:, :-1]
+        return CamProfile(
+            self.name, angle[:-1], x, y, pitch_x, pitch_y, pressure, radius, progress >= 0.0, closes
+        )
 
 
 @public
@@ -196,8 +214,7 @@ def disc_cam(
     stiffness = stiffness_of(what, elastic)
     layout = layout_of(what, mechanism, cam, follower, point, roller, flat, side)
     base = positive(mechanism, what, "base_radius", base_radius)
-    x = ca.SX.sym("angle")
-    rise = rise_of(what, mechanism, lift, x)
+    x, rise = rise_of(what, mechanism, lift)
     make = (
         (_translating_flat if flat else _translating)
         if follower.kind == "prismatic"

@@ -6,10 +6,8 @@ from __future__ import annotations
 
 import io
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -22,12 +20,7 @@ from ...base.packages import check_installed
 from ...base.table_writers import TableFile
 from ...errors import DeclarationError, LagrangeCasadiError, shown
 
-if TYPE_CHECKING:
-    import casadi as ca
-
 _LEAST, _MOST = 16, 1 << 20
-_SAME = 1e-9
-"""Relative gap of a closed profile that is rounding."""
 
 _MILLIMETRES = 1e3
 
@@ -136,24 +129,3 @@ def turn_in(name: str, count: int) -> Array:
             f"cam '{name}': count must be a whole number of {bound}, got {shown(count)}"
         )
     return np.asarray(np.arange(count + 1) * (math.tau / count), float)
-
-
-def profile_of(name: str, function: ca.Function, p: Sequence[float], count: int) -> CamProfile:
-    """A profile from ``function(angle, p)``: contact x, y, the follower's point x, y, pressure
-    angle, radius, progress.
-    """
-    angle = turn_in(name, count)
-    found = function(angle[None], list(p)).full()
-    # A straight profile has no radius.
-    if not np.isfinite(np.delete(found, 5, axis=0)).all():
-        raise DeclarationError(
-            f"cam '{name}': the follower cannot touch the base circle, because the follower is too"
-            " short or too close to the cam's shaft; point= says which of its points touches,"
-            " its tip by default"
-        )
-    size = float(np.abs(found[:2]).max())
-    closes = bool(np.abs(found[:2, -1] - found[:2, 0]).max() <= _SAME * size)
-    x, y, pitch_x, pitch_y, pressure, radius, progress = found[:, :-1]
-    return CamProfile(
-        name, angle[:-1], x, y, pitch_x, pitch_y, pressure, radius, progress >= 0.0, closes
-    )

@@ -169,8 +169,7 @@ def cylindrical_cam(
     what, ownership = f"cam '{name}'", mechanism.ownership
     stiffness = stiffness_of(what, elastic)
     held = held_by(what, mechanism, cam, follower, point, space=True)
-    x = ca.SX.sym("angle")
-    rise = rise_of(what, mechanism, lift, x)
+    x, rise = rise_of(what, mechanism, lift)
     begin = ownership.expression(
         f"{what}: start", start, "rad" if follower.kind == "revolute" else "m"
     )

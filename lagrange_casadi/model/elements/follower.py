@@ -64,13 +64,14 @@ def sampled(mechanism: Mechanism, angle: ca.SX, at: Array, *rows: Expression) ->
 
 
 def rise_of(
-    what: str, mechanism: Mechanism, lift: Callable[[ca.SX], Expression], angle: ca.SX
-) -> ca.SX:
-    """The lift as an expression of the symbol ``angle``.
+    what: str, mechanism: Mechanism, lift: Callable[[ca.SX], Expression]
+) -> tuple[ca.SX, ca.SX]:
+    """A symbol for the cam's angle, and the lift as an expression of it.
 
     Raises :class:`.DeclarationError` for what is no function of expressions, where it is no finite
     number, and where it is another after a turn.
     """
+    angle = ca.SX.sym("angle")
     rise: ca.SX = expressed(f"{what}: lift", lambda x: ca.SX(lift(x)), [angle], "the cam's angle")
     few = ANGLES[::20]
     (values,) = sampled(mechanism, angle, few, rise)
@@ -84,7 +85,7 @@ def rise_of(
         raise DeclarationError(
             f"{what}: its lift must be the same after a turn of the cam; expected a period of 2 pi"
         )
-    return rise
+    return angle, rise
 
 
 def contact(
