@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -18,7 +17,7 @@ import casadi as ca
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from ..base.arrays import Expression
+from ..base.arrays import Array, Expression
 from ..base.quantities import Column, Output
 from ..base.scalars import column
 from ..model.mechanism import Mechanism
@@ -43,7 +42,7 @@ def deflections(
         [
             value
             for pieces in along
-            for value in sampled(partial(_size, pieces), len(pieces) * pieces[0].degree)
+            for value in sampled(partial(_size, pieces), len(pieces) * (pieces[0].size - 1))
         ]
     )
     if link.space:
@@ -53,11 +52,10 @@ def deflections(
     return {Output("deflection", name, "across"): value}
 
 
-def _size(pieces: Sequence[_Piece], x: Expression) -> Expression:
+def _size(pieces: Sequence[Array], x: Expression) -> Expression:
     """The size of a deflection at a place of a part; in space its square."""
-    return (
-        ca.fabs(pieces[0].at(x)) if len(pieces) == 1 else sum(piece.at(x) ** 2 for piece in pieces)
-    )
+    first, *others = (chebyshev.chebval(2.0 * x - 1.0, piece) for piece in pieces)
+    return sum((other**2 for other in others), first**2) if others else ca.fabs(first)
 
 
 _PLANES = {
@@ -67,31 +65,12 @@ _PLANES = {
 """Section forces of each plane of bending, and the sign with which the first turns the link."""
 
 
-@dataclass(frozen=True, eq=False)
-class _Piece:
-    """The deflection along a part of a link, by coefficients of Chebyshev's polynomials from 0 to
-    1.
-    """
-
-    coefficients: Sequence[Any]
-
-    @property
-    def degree(self) -> int:
-        return len(self.coefficients) - 1
-
-    def at(self, x: Expression) -> Expression:
-        """Value at a place from 0 to 1, by Clenshaw's rule."""
-        twice = 4.0 * x - 2.0
-        last, before = 0.0, 0.0
-        for coefficient in reversed(self.coefficients[1:]):
-            last, before = coefficient + twice * last - before, last
-        return self.coefficients[0] + 0.5 * twice * last - before
-
-
 def _curve(
     link: Loaded, bending: str, shear: str, sign: float, moduli: Moduli, *, ends: bool
-) -> list[_Piece]:
-    """The deflection in a plane, part after part."""
+) -> list[Array]:
+    """The deflection in a plane, part after part, by coefficients of Chebyshev's polynomials from 0
+    to 1.
+    """
     found: list[tuple[Part, Any]] = []
     turn, across = ca.SX(0.0), ca.SX(0.0)
     for part in link.parts:
@@ -115,7 +94,7 @@ def _curve(
         for part, curve in found:
             curve[0] -= across * (part.low + part.width / 2)
             curve[1] -= across * part.width / 2
-    return [_Piece(ca.vertsplit(curve)) for _, curve in found]
+    return [np.fromiter(ca.vertsplit(curve), object) for _, curve in found]
 
 
 def _integrals(degree: int) -> tuple[list[float], ca.DM, ca.DM]:

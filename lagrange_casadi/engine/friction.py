@@ -153,21 +153,20 @@ class _Law:
     pressed: list[_Pressed]
     mu: Any
     sigma: Any
-    steady: Any
     rest: Any
     still: bool = False
+    steady: Any = 0.0
 
     @classmethod
     def of(cls, one: FrictionContact, pressed: list[_Pressed], sign: Expression = None) -> _Law:
         friction, v = one.friction, one.rate
         if isinstance(friction, Transmission):
-            return cls(friction.name, pressed, 1.0, -1.0, 0.0, None)
+            return cls(friction.name, pressed, 1.0, -1.0, None)
         if isinstance(friction, Loss):
-            sigma, rest, still = _way(one, sign)
-            return cls(friction.name, pressed, 1.0, sigma, 0.0, rest, still)
+            return cls(friction.name, pressed, 1.0, *_way(one, sign))
         steady = friction.viscous * v
         if not pressed:
-            return cls(friction.name, [], 0.0, 0.0, steady, None)
+            return cls(friction.name, [], 0.0, 0.0, None, steady=steady)
         mu, lever = friction.mu, friction.radius if friction.axis.kind == "angle" else 1.0
         if friction.coulomb is not None:
             mu, lever = 1.0, 1.0
@@ -180,9 +179,9 @@ class _Law:
             )
             mu = mu + (friction.static - mu) * ca.exp(-squares)
         if friction.smooth is not None:
-            return cls(friction.name, pressed, mu, ca.tanh(v / friction.smooth), steady, None)
-        sigma, rest, still = _way(one, sign, lever)
-        return cls(friction.name, pressed, mu, sigma, steady, rest, still)
+            sigma = ca.tanh(v / friction.smooth)
+            return cls(friction.name, pressed, mu, sigma, None, steady=steady)
+        return cls(friction.name, pressed, mu, *_way(one, sign, lever), steady=steady)
 
     def pushed(self, values: ca.SX) -> Expression:
         """The force for values of all frictions."""
@@ -305,17 +304,14 @@ def _eliminated(matrix: ca.SX, right: ca.SX) -> tuple[ca.SX, ca.SX]:
     for i in range(n):
         for j in range(i + 1, n):
             rows[j, i + 1 :] -= rows[j, i] / rows[i, i] * rows[i, i + 1 :]
-    for i in reversed(range(n)):
-        rows[i, n] /= rows[i, i]
-        rows[:i, n] -= rows[:i, i] * rows[i, n]
-    return rows[:, n], ca.diag(rows[:, :n])
+    return ca.solve(ca.triu(rows[:, :n]), rows[:, n]), ca.diag(rows[:, :n])
 
 
 def _blocks(laws: Sequence[_Law]) -> list[list[int]]:
     """Frictions that depend on each other, those first that depend on no others."""
     n = len(laws)
     entries = [(j, k) for j, law in enumerate(laws) for k in range(n) if j == k or law.depends(k)]
-    rows, columns = zip(*entries, strict=True) if laws else ((), ())
+    rows, columns = [j for j, _ in entries], [k for _, k in entries]
     count, order, cuts = ca.Sparsity.triplet(n, n, rows, columns).scc()
     return [sorted(order[cuts[i] : cuts[i + 1]]) for i in reversed(range(count))]
 

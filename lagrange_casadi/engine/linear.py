@@ -40,12 +40,8 @@ class LinearSystem:
         for j in range(n):
             lengths *= ca.sqrt(ca.sumsqr(matrix[:, j]))
         if m == n and 0 < n <= 2:
-            if n == 1:
-                return cls(matrix, 1 / matrix, (), None, matrix / lengths, units)
-            a, b, c, d = matrix[0, 0], matrix[0, 1], matrix[1, 0], matrix[1, 1]
-            det = a * d - b * c
-            adjugate = ca.vertcat(ca.horzcat(d, -b), ca.horzcat(-c, a))
-            return cls(matrix, adjugate * (1 / det), (), None, det / lengths, units)
+            det = ca.det(matrix)
+            return cls(matrix, ca.adj(matrix) * (1 / det), (), None, det / lengths, units)
         reflections, volume = [], 1 / lengths
         rest = ca.densify(matrix)
         for j in range(min(n, m - 1)):
@@ -60,7 +56,7 @@ class LinearSystem:
             volume *= signed
         if m == n:
             volume *= rest[n - 1, n - 1]
-        return cls(matrix, None, tuple(reflections), rest[:n, :], volume, units)
+        return cls(matrix, None, tuple(reflections), ca.triu(rest[:n, :]), volume, units)
 
     @property
     def free(self) -> int:
@@ -89,12 +85,7 @@ class LinearSystem:
         """
         if self.inverse is not None:
             return self.units * (self.inverse.T @ right)
-        x: list[Any] = []
-        for i in range(self.matrix.shape[1]):
-            x.append(
-                (right[i] - sum(self.triangle[j, i] * x[j] for j in range(i))) / self.triangle[i, i]
-            )
-        turned = column([*x, free])
+        turned = ca.vertcat(ca.solve(self.triangle.T, right), free)
         for j, reflection in reversed(list(enumerate(self.reflections))):
             turned = ca.vertcat(turned[:j], _reflect(reflection, turned[j:]))
         return self.units * turned

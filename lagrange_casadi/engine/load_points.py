@@ -101,14 +101,15 @@ def _together(
     where no section carries it.
     """
     found = list(loads)
-    twice = [[_twice(here, there, coordinates) for there in places] for here in places]
+    at = drawn(column(places), coordinates)
+    twice = (np.abs(at[:, None] - at) <= _TWICE).all(axis=2)
     for j in reversed(
         range(len(places))
     ):  # from the last one on, so that a chain of neighbours hands on what it has
         for i in range(j):
             # Single precision shows no nearer than so whether places that are written in two ways
             # are one.
-            near = END["single" if twice[i][j] else "double"]
+            near = END["single" if twice[i, j] else "double"]
             one = ca.fabs(ca.fmin(places[i], 1.0) - ca.fmin(places[j], 1.0)) <= near
             if not one.is_zero():
                 force, *moment = ca.vertsplit(found[j])
@@ -124,8 +125,3 @@ def _together(
         ):
             found[k] = ca.if_else(accelerated, found[k], 0.0)
     return found
-
-
-def _twice(here: ca.SX, there: ca.SX, coordinates: Sequence[Coordinate]) -> bool:
-    """Return whether two places are one that is written in two ways, by random values."""
-    return bool(np.abs(drawn(here - there, coordinates)).max() <= _TWICE)

@@ -52,9 +52,6 @@ class ClosedForm:
         """The form with coordinates that it must not hold at rest, for they stand in it by rounding
         alone.
         """
-        absent = held((*self.variables, *(() if self.closure is None else (self.closure,))), absent)
-        if not absent:
-            return self
         closure = None if self.closure is None else at_rest(self.closure, absent)
         return replace(
             self, variables=tuple(at_rest(v, absent) for v in self.variables), closure=closure
@@ -158,7 +155,7 @@ def _spanned(phi: ca.SX, unknown: Sequence[Coordinate], sampling: Sampling) -> C
         return _direction_on_line(slope @ symbols + rest, coordinate, largest)
     slope, rest = (ca.substitute(e, symbols, 0) for e in (ca.jacobian(phi, symbols), phi))
     # The slope of Phi at its zeros, which is the cosine between bar and slide.
-    squared, branch = _square(slope) - 2 * curvature * rest, ca.SX.sym("branch")
+    squared, branch = slope**2 - 2 * curvature * rest, ca.SX.sym("branch")
     return ClosedForm(((branch * ca.sqrt(squared) - slope) / curvature,), squared, (branch,))
 
 
@@ -183,7 +180,7 @@ def _askew(
         squared = -rest / bend
         found = signs[0] * ca.sqrt(squared)
     else:
-        squared = (_square(slope[number]) - bend * rest) / _square(bend)
+        squared = (slope[number] ** 2 - bend * rest) / bend**2
         found = signs[0] * ca.sqrt(squared) - slope[number] / bend
     beside = (1 - found) * (1 + found)
     direction = ca.vertcat(found, signs[1] * ca.sqrt(beside))
@@ -272,7 +269,7 @@ def _direction_on_line(
     a, b, branch = slope[0], slope[1], ca.SX.sym("branch")
     if a.is_zero() and b.is_zero():
         return None
-    squared = _square(a) + _square(b)
+    squared = a**2 + b**2
     reach = b if a.is_zero() else a if b.is_zero() else ca.sqrt(squared)
     root = (reach - rest) * (reach + rest)
     if a.is_zero() or b.is_zero():
@@ -299,16 +296,16 @@ def _two_circles(
     slope, rest = affine
     branch = ca.SX.sym("branch")
     arms = [(slope[0, 2 * i], slope[1, 2 * i]) for i in range(2)]
-    l1, l2 = (_norm(*arm) for arm in arms)
+    l1, l2 = (ca.sqrt(x**2 + y**2) for x, y in arms)
     px, py = -rest[0], -rest[1]
-    squared = _square(px) + _square(py)
+    squared = px**2 + py**2
     d = ca.sqrt(squared)
     further, nearer = d + l2, d - l2
     # Four times the square of twice the triangle's area, and twice the projection of the first arm
     # on p, times p.
     root = ((further + l1) * (l1 - nearer)) * ((further - l1) * (nearer + l1))
     w = branch * ca.sqrt(root)
-    reach = _square(l1) + nearer * further
+    reach = l1**2 + nearer * further
     twice = squared + squared
     first = ((px * reach - py * w) / twice, (py * reach + px * w) / twice)
     # What is left of p: its error is what p's own rounding makes of this arm.
@@ -316,7 +313,7 @@ def _two_circles(
     directions = tuple(
         _variables(_direction(v, arm)) for v, arm in zip((first, second), arms, strict=True)
     )
-    return ClosedForm(directions, root / _square(2 * (l1 * l2)), (branch,))
+    return ClosedForm(directions, root / (2 * (l1 * l2)) ** 2, (branch,))
 
 
 def _turns(columns: ca.SX, sampling: Sampling) -> bool:
@@ -383,7 +380,7 @@ def _tied(phi: ca.SX, unknown: Sequence[Coordinate], units: Expression) -> Close
     values = ca.vertsplit(system.solve(-affine[1]))
     return ClosedForm(
         tuple(_with_sine(c, value) for c, value in zip(unknown, values, strict=True)),
-        _square(system.volume),
+        system.volume**2,
     )
 
 
@@ -391,18 +388,12 @@ def _with_sine(coordinate: Coordinate, value: Expression) -> Expression:
     return value if coordinate.kind == "slide" else ca.vertcat(ca.cos(value), ca.sin(value), value)
 
 
-def _norm(x: ca.SX, y: ca.SX) -> ca.SX:
-    if x.is_zero() or y.is_zero():
-        return ca.fabs(x if y.is_zero() else y)
-    return ca.sqrt(_square(x) + _square(y))
-
-
 def _direction(vector: tuple[ca.SX, ca.SX], arm: tuple[ca.SX, ca.SX]) -> ca.SX:
     """The direction that turns ``arm`` into ``vector``."""
     (x, y), (a, b) = vector, arm
     if b.is_zero():
         return ca.vertcat(x / a, y / a)
-    return ca.vertcat(a * x + b * y, a * y - b * x) / (_square(a) + _square(b))
+    return ca.vertcat(a * x + b * y, a * y - b * x) / (a**2 + b**2)
 
 
 def _pair(angle: Coordinate) -> Expression:
@@ -411,7 +402,3 @@ def _pair(angle: Coordinate) -> Expression:
 
 def _variables(direction: ca.SX) -> ca.SX:
     return ca.vertcat(direction, ca.atan2(direction[1], direction[0]))
-
-
-def _square(x: ca.SX) -> ca.SX:
-    return x * x

@@ -49,8 +49,6 @@ class Contact:
             return ca.fabs(one) + ca.fabs(
                 other
             )  # no fmax of the components: that passes over what is no number
-        if len(components) == 1:
-            return ca.fabs(components[0])
         return ca.sqrt(sum((x * x for x in components[1:]), components[0] * components[0]))
 
 

@@ -8,13 +8,13 @@ reciprocal rounds once more.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 import casadi as ca
 
 from ..base.arrays import Expression
-from ..base.interpret import Step, expressed, followable, replay, steps
+from ..base.interpret import Step, expressed, followable, replay
 from ..base.scalars import column, graph, inputs_of, less, product
 from ..base.symbolic import symbolic
 
@@ -30,9 +30,9 @@ def share_reciprocals(function: ca.Function, parameters: str) -> ca.Function:
     """
     if not followable(function):
         return function
-    divisors = _divisors(steps(function), function.index_in(parameters))
+    divisors = _divisors(function, function.index_in(parameters))
     uses = Counter(divisor for divisor, _ in divisors.values())
-    inverses: dict[int, Any] = {}
+    inverses: dict[object, Any] = {}
 
     def made(k: int, step: Step, operands: list[Expression]) -> Expression:
         if k in divisors and (divisors[k][1] or uses[divisors[k][0]] > 1):
@@ -82,22 +82,20 @@ def _replayed(
     return graph(function.name(), given, **{function.name_out(0): out})
 
 
-def _divisors(instructions: Sequence[Step], parameters: int) -> dict[int, tuple[int, bool]]:
-    """For each step that divides: the step that made its divisor, and whether that depends on
-    parameters alone.
+def _divisors(function: ca.Function, parameters: int) -> dict[int, tuple[object, bool]]:
+    """For each step that divides: the step or the input that its divisor is of, and whether that
+    depends on parameters alone.
     """
-    made: dict[int, int] = {}
-    fixed: dict[int, bool] = {}
-    found = {}
-    for k, step in enumerate(instructions):
-        operation, arguments, results = step.operation, step.arguments, step.results
-        if operation == ca.OP_OUTPUT:
-            continue
-        if operation == ca.OP_INPUT:
-            fixed[k] = arguments[0] == parameters
-        else:
-            fixed[k] = all(fixed[made[a]] for a in arguments)
-        if operation in (ca.OP_DIV, ca.OP_INV):
-            found[k] = (made[arguments[-1]], fixed[made[arguments[-1]]])
-        made[results[0]] = k
+    found: dict[int, tuple[object, bool]] = {}
+
+    def made(k: int, step: Step, operands: list[tuple[object, bool]]) -> tuple[object, bool]:
+        if step.operation in (ca.OP_DIV, ca.OP_INV):
+            found[k] = operands[-1]
+        return k, all(fixed for _, fixed in operands)
+
+    given: list[list[tuple[object, bool]]] = [
+        [((i, k), i == parameters) for k in range(function.nnz_in(i))]
+        for i in range(function.n_in())
+    ]
+    replay(function, given, made)
     return found
