@@ -87,14 +87,14 @@ class Column:
             If its material lacks elasticity or yield strength.
         """
         elasticity, strength = cross.beam.material.needs("buckling", "elasticity", "yield_strength")
-        thinnest = cross.thinnest
+        area, seconds, moduli = cross.thinnest
 
         def column(k: int) -> tuple[Operand, ...]:
-            effective_length, second = effective[k] * length, thinnest.second[k]
+            effective_length, second = effective[k] * length, seconds[k]
             euler = math.pi**2 * elasticity * second / effective_length**2
-            slenderness = effective_length * (thinnest.area / second) ** 0.5
-            critical = _critical(euler, strength * thinnest.area)
-            yield_moment = thinnest.modulus[k] * strength
+            slenderness = effective_length * (area / second) ** 0.5
+            critical = _critical(euler, strength * area)
+            yield_moment = moduli[k] * strength
             numbers = (effective[k], slenderness, euler, critical, yield_moment)
             return tuple(number if symbolic(number) else float(number) for number in numbers)
 

@@ -8,7 +8,7 @@ value c_0 + c_1 s + c_2 s^2 + ... per length, where s = (end - u)/width.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import casadi as ca
@@ -70,7 +70,14 @@ def rotary(
         width = stop - start
         found[Output("spread", link.name, "width", name)] = ca.SX(width)
         found[Output("spread", link.name, "end", name)] = ca.SX(stop)
-        cells = (_from(moment.cell_at((start + stop) / 2), stop, width) for moment in slices.each)
+        # Polynomials of u = stop - width s as ones of s.
+        cells = (
+            [
+                (-width) ** j * c
+                for j, c in enumerate(shifted(moment.cell_at((start + stop) / 2), stop))
+            ]
+            for moment in slices.each
+        )
         for power, (own_yy, own_zz, own_yz) in enumerate(
             itertools.zip_longest(*cells, fillvalue=0.0)
         ):
@@ -82,11 +89,6 @@ def rotary(
             for member, couple in zip(table_of(True).couples, couples, strict=True):
                 found[Output("spread", link.name, member, name, power)] = ca.SX(couple)
     return found
-
-
-def _from(cell: Sequence[Expression], end: float, width: float) -> list[Expression]:
-    """A polynomial of u = end - width s as one of s."""
-    return [(-width) ** j * c for j, c in enumerate(shifted(cell, end))]
 
 
 def _unnamed(mechanism: Mechanism, word: str) -> Iterator[str]:

@@ -12,7 +12,7 @@ import casadi as ca
 
 from ..base.arrays import Expression
 from ..base.quantities import Check, Column, Output
-from ..base.scalars import column
+from ..base.scalars import column, entries
 
 _SOME = 577.0
 """Value of what is open [N or N m] at which it is seen what changes with it: with nothing, a force
@@ -37,8 +37,6 @@ class Forces:
     @classmethod
     def over(cls, acting: Mapping[Column, ca.SX], free: ca.SX) -> Forces:
         """Forces ``acting`` that are expressions of what is open, ``free``."""
-        if not free.numel():
-            return cls(acting, {})
         forces = column(map(ca.SX, acting.values()))
         slopes = ca.jacobian(forces, free)
         slopes, forces = (
@@ -51,7 +49,7 @@ class Forces:
             if slopes[k, :].nnz() and isinstance(key, Output)
         }
         sizes = {output: ca.sum2(ca.fabs(slope)) for output, slope in doubted.items()}
-        return cls(dict(zip(acting, ca.vertsplit(forces), strict=True)), sizes)
+        return cls(dict(zip(acting, entries(forces), strict=True)), sizes)
 
     def with_those_of(
         self, made: Callable[[Mapping[Column, Expression]], Mapping[Column, Expression]]
@@ -59,8 +57,6 @@ class Forces:
         """Add what is ``made`` of these forces, which is open with what goes into it."""
         symbols: dict[Column, Any] = {output: ca.SX.sym(str(output)) for output in self.open}
         more = made({**self.values, **symbols})
-        if not symbols or not more:
-            return replace(self, values={**self.values, **more})
         found, names = column(map(ca.SX, more.values())), column(symbols.values())
         sparsity = ca.jacobian_sparsity(found, names)
         into = {
@@ -68,7 +64,7 @@ class Forces:
             for k, key in enumerate(more)
         }
         placed = ca.substitute(found, names, column(self.values[output] for output in symbols))
-        values = {**self.values, **dict(zip(more, ca.vertsplit(placed), strict=True))}
+        values = {**self.values, **dict(zip(more, entries(placed), strict=True))}
         sums = {
             key: sum(self.open[output] for output in each)
             for key, each in into.items()

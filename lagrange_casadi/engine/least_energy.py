@@ -68,20 +68,16 @@ class LeastEnergy:
     """Statically indeterminate forces as ``x + ways y``: ``x`` is the solution of least energy,
     ``y`` what remains indeterminate; columns of ``responses`` of determined forces are zero.
 
-    For each link without stiffness ``firm`` is the reason, and ``through`` is true if an
-    indeterminate force loads it. ``idle`` is true if an indeterminate force loads no link, and
-    ``chosen`` if the solution determines any. ``residual`` is the distance of the energy from its
-    least: the largest cosine between the strains of the solution and those of the whole, summed at
-    other places.
+    For each link without stiffness ``firm`` is the reason. ``rows`` are for each of these links
+    whether an indeterminate force loads it; whether an indeterminate force loads no link; whether
+    the solution determines any; and the distance of the energy from its least: the largest cosine
+    between the strains of the solution and those of the whole, summed at other places.
     """
 
     x: Any
     responses: Any
     firm: Mapping[str, str]
-    through: Any
-    idle: Any
-    chosen: Any
-    residual: Any
+    rows: Any
 
     def completed(self, acting: Mapping[Column, Expression], free: Expression) -> Forces:
         """Forces ``acting`` that are expressions of what equilibrium leaves open, ``free``, with
@@ -101,7 +97,7 @@ class Completion:
 
     ``function(t, d, d_rate, d_acceleration, z, p)`` has a row for each of ``doubted``, outputs, how
     much it changes with what equilibrium leaves open; for each of ``firm``, links, whether it is
-    loaded by that; and what else :class:`LeastEnergy` has.
+    loaded by that; and what else the rows of :class:`LeastEnergy` are.
     """
 
     doubted: tuple[Output, ...]
@@ -122,9 +118,7 @@ class Completion:
         doubted = {
             output: size for output, size in (forces.before or {}).items() if output in columns
         }
-        rows = ca.vertcat(
-            *doubted.values(), least.through, least.idle, least.chosen, least.residual
-        )
+        rows = ca.vertcat(*doubted.values(), least.rows)
         return cls(tuple(doubted), least.firm, graph("completion", inputs, out=rows))
 
     def reasons(self, through: Iterable[bool], *, idle: bool) -> tuple[str, ...]:
@@ -184,10 +178,11 @@ def least_energy(
     chosen = _apart(
         [(mode.response, 1 - mode.does) for mode in apart], bent, weights, bending, least
     )
-    x, residual = ca.SX.zeros(free.numel()), strained
+    x, left = ca.SX.zeros(free.numel()), strained
     for mode in chosen:
-        share = ca.dot(mode.weighed, residual) * mode.inverse
-        x, residual = x - share * mode.response, residual - share * mode.made
+        share = ca.dot(mode.weighed, left) * mode.inverse
+        x, left = x - share * mode.response, left - share * mode.made
+    residual = _residual(chosen, x, *_strains(beams, free, _FINER))
 
     idle = sum(
         (1 - stiffened.does) * (1 - mode.does)
@@ -199,10 +194,7 @@ def least_energy(
             *((1 - mode.does) * _relaxed(mode, chosen[k + 1 :]) for k, mode in enumerate(chosen))
         ),
         firm=firm,
-        through=column(through),
-        idle=ca.SX(idle),
-        chosen=ca.SX(sum(mode.does for mode in chosen)),
-        residual=_residual(chosen, x, *_strains(beams, free, _FINER)),
+        rows=column([*through, idle, sum(mode.does for mode in chosen), residual]),
     )
 
 

@@ -188,10 +188,9 @@ class Program(Graphs):
     @cached_property
     def links(self) -> tuple[str, ...]:
         """The links of which a whole section law was wanted, and is there."""
+        inputs = {link: SectionInputs.of(self.outputs, link) for link in self.wanted.sections}
         return tuple(
-            link
-            for link in self.wanted.sections
-            if SectionInputs.of(self.outputs, link).among(self.outputs)
+            link for link, of in inputs.items() if self.outputs.keys() >= {*of.law, *of.acting}
         )
 
     @cached_property

@@ -21,7 +21,7 @@ Own outputs, derivatives, stresses and exported C come from here; numbers from
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal
@@ -213,10 +213,6 @@ class SectionInputs:
                 for member in members
             ]
         return cls(tuple(Output("law", link, member) for member in table.law), tuple(acting))
-
-    def among(self, outputs: Container[Output]) -> bool:
-        """Return whether outputs have all of them."""
-        return all(output in outputs for output in (*self.law, *self.acting))
 
     @property
     def table(self) -> Table:

@@ -10,7 +10,6 @@ import functools
 import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import casadi as ca
@@ -37,17 +36,6 @@ _Row = tuple[list[Any], list[Any]]
 
 _DEEP = 4
 """Depth to which expressions of two fibres are compared."""
-
-
-@dataclass(frozen=True, eq=False)
-class Thinnest:
-    """The least area of a beam, second moments and elastic moduli, each where it bends along y and
-    along z.
-    """
-
-    area: float
-    second: tuple[float, float]
-    modulus: tuple[float, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,10 +126,10 @@ class CrossSections:
         found = found.reshape(many, 3, len(known.names), *shape)
         return np.ascontiguousarray(np.moveaxis(found, 0, 2))
 
-    @cached_property
-    def thinnest(self) -> Thinnest:
-        """The thinnest that the beam is; second moments are principal ones where y and z are no
-        principal axes.
+    @property
+    def thinnest(self) -> tuple[Operand, Sequence[Operand], Sequence[Operand]]:
+        """The least area of the beam, second moments and elastic moduli, each where it bends along
+        y and along z; second moments are principal ones where y and z are no principal axes.
         """
         every = []
         for cell, ((first, last), (low, high)) in enumerate(
@@ -154,7 +142,7 @@ class CrossSections:
                 least = half - (((p.iz - p.iy) / 2) ** 2 + p.iyz**2) ** 0.5
                 every.append((p.area, *((p.iz, p.iy) if straight else (least, least)), p.wz, p.wy))
         area, *others = (functools.reduce(smaller, values) for values in zip(*every, strict=True))
-        return Thinnest(area, (others[0], others[1]), (others[2], others[3]))
+        return area, others[:2], others[2:]
 
 
 def _differing(rows: Sequence[_Row], *, lower: bool) -> tuple[int, ...]:

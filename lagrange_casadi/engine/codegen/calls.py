@@ -11,13 +11,10 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from _ctypes import CFuncPtr
-
-_CType = type
-"""A type of :mod:`ctypes`."""
 
 _NUMBERS = {"long long": ctypes.c_longlong, "int": ctypes.c_int, "double": ctypes.c_double}
 
@@ -66,7 +63,7 @@ class Call:
             )
         return made
 
-    def declare(self, entry: CFuncPtr, *more: _CType) -> CFuncPtr:
+    def declare(self, entry: CFuncPtr, *more: Any) -> CFuncPtr:
         """A function of a library that takes a pointer to this struct, then ``more``, and gives
         nothing: declared so, for :mod:`ctypes`.
         """

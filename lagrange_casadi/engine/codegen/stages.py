@@ -25,7 +25,6 @@ import numpy as np
 from ...base.arrays import Array, Expression, Operand, spread
 from ...base.compensated import Pair, Pairs
 from ...base.interpret import REMAINDERS, Arithmetic, codes, followable, interpret, numpy_arithmetic
-from ...base.lookups import Lookup
 from ...base.scalars import applied, column, entries, graph
 from ...base.symbolic import Graphs, symbolic
 from ...base.vocabulary import Precision
@@ -242,10 +241,8 @@ class _Counting:
     def arithmetic(self) -> Arithmetic:
         known = numpy_arithmetic().operations
         rules: dict[int, Any] = {code: functools.partial(self.apply, code) for code in known}
-        return Arithmetic(self.constant, rules | {ca.OP_CALL: self.read_table})
-
-    def read_table(self, lookup: Lookup, value: _Value) -> _Value:
-        return _Value(lookup.function(self.settled(value)))
+        rules[ca.OP_CALL] = lambda table, value: _Value(table.function(self.settled(value)))
+        return Arithmetic(self.constant, rules)
 
     def constant(self, value: float) -> _Value:
         return _Value(

@@ -24,9 +24,6 @@ from ..codegen.compiler import find_compiler, loaded, no_compiler, written
 if TYPE_CHECKING:
     from _ctypes import CFuncPtr
 
-LEAST = 8
-"""Nodes: so many coefficients at least that no weight falls twice on one."""
-
 _MORE = 5
 _TILE = 32
 _OPTIONS = ("-O3", "-march=native", "-fno-trapping-math")

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from ..program import Program
 
 FEWEST_NODES = 8
+"""Nodes of a table: so many coefficients at least that no weight falls twice on one."""
 MOST_STEPS = 1000
 """Each step squares what a loop still misses: after some ten nothing changes."""
 
@@ -106,18 +107,23 @@ class EvaluationMethod:
             raise DeclarationError(
                 f"flags: expected options of a compiler, got {self.flags!r}: {error}"
             ) from None
-        if self.newton is not None and self.table is not None:
-            raise DeclarationError(
-                "newton and table exclude each other: a table is read, no loop is closed"
-            )
-        if self.backend == "vm" and self.precision == "single":
-            raise DeclarationError(
-                "backend 'vm' computes in doubles only; precision 'single' needs lanes or c"
-            )
-        if self.backend == "vm" and words:
-            raise DeclarationError(
-                f"backend 'vm' compiles nothing; flags '{self.flags}' need lanes or c"
-            )
+        interpreted = self.backend == "vm"
+        for wrong, why in (
+            (
+                self.newton is not None and self.table is not None,
+                "newton and table exclude each other: a table is read, no loop is closed",
+            ),
+            (
+                interpreted and self.precision == "single",
+                "backend 'vm' computes in doubles only; precision 'single' needs lanes or c",
+            ),
+            (
+                interpreted and words,
+                f"backend 'vm' compiles nothing; flags '{self.flags}' need lanes or c",
+            ),
+        ):
+            if wrong:
+                raise DeclarationError(why)
 
     def check(self, program: Program) -> None:
         """Raise :class:`DeclarationError` where a graph has nothing that the method chooses."""

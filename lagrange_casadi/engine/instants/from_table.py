@@ -127,7 +127,4 @@ def _above(values: Array) -> float:
     """A little more than the largest size: a table serves motions that are
     nearly as fast as well.
     """
-    largest = float(np.max(np.abs(values), initial=0.0))
-    if not largest or not math.isfinite(largest):
-        return largest
-    return float(f"{_MARGIN * largest:.2e}")
+    return float(f"{_MARGIN * np.max(np.abs(values), initial=0.0):.2e}")

@@ -16,8 +16,9 @@ from ...base.quantities import Output
 from ...base.tables import LARGEST as LARGEST_ALONG
 from ...errors import DeclarationError
 from ..program import Program
-from .cycle_table import LEAST, CycleTable, arranged, splines
+from .cycle_table import CycleTable, arranged, splines
 from .cycle_terms import FRACTIONS, Cycle, cycle_of
+from .evaluation_method import FEWEST_NODES
 
 FEWEST, MOST = 16, 16384
 """Nodes: the first to try for an accuracy, and the most."""
@@ -64,7 +65,7 @@ def tabulate(
     accuracy, nodes = (None, table) if isinstance(table, int) else (table, FEWEST)
     if nodes > MOST:
         raise DeclarationError(
-            f"table: expected a whole number of nodes from {LEAST} to {MOST}, or an accuracy"
+            f"table: expected a whole number of nodes from {FEWEST_NODES} to {MOST}, or an accuracy"
             f" between 0 and 1, got {table!r}"
         )
     for output in program.outputs:
