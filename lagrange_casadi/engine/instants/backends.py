@@ -81,7 +81,7 @@ def run(
     library, made = evaluator(program, stages, method)
     evaluated = into or unevaluated(program, stages, t.size)
     dtype = DTYPES[method.precision]
-    guess = np.array(_begin(program, method.newton is not None, t[0], tuple(p)), dtype)
+    guess = np.array(begun(program, t[0], tuple(p), counted=method.newton is not None), dtype)
     if method.precision == "single":
         t, p = _paired(t, rows(2, t.size, dtype)), _paired(p, np.empty((2, p.size), dtype))
     z, out, status = evaluated.iterated, evaluated.out, evaluated.status
@@ -89,17 +89,12 @@ def run(
     return evaluated, made
 
 
-def begun(program: Program, t: float, p: Array) -> tuple[float, ...]:
-    """The iterated coordinates at a time, closed, as the motion leads there from the scene's own
-    start; none without loops.
-    """
-    return _begin(program, False, t, tuple(p.tolist()))
-
-
 @functools.lru_cache(maxsize=256)
-def _begin(program: Program, counted: bool, t: float, p: tuple[float, ...]) -> tuple[float, ...]:
-    """The iterated coordinates that the first instant begins from: closed there where steps are
-    ``counted``.
+def begun(
+    program: Program, t: float, p: tuple[float, ...], *, counted: bool = False
+) -> tuple[float, ...]:
+    """The iterated coordinates that the first instant begins from, as the motion leads there from
+    the scene's own start; closed there where steps are ``counted``; none without loops.
 
     The motion is followed from the scene's own start, as far from which another branch may be
     nearer; by many steps, unless they were too many.

@@ -93,7 +93,7 @@ class Loops:
             return np.zeros((places.size, 0))
         count = self.program.instant.size1_in("z")
         times, back = np.unique(np.concatenate([t, places]), return_inverse=True)
-        guess = np.array(begun(self.program, float(times[0]), p), float)
+        guess = np.array(begun(self.program, float(times[0]), tuple(p.tolist())), float)
         z = np.zeros((count, times.size))
         self.library.follow(times, p, guess, z, np.zeros(times.size, np.intc))
         return np.ascontiguousarray(z[:, back[t.size :]].T)

@@ -118,7 +118,7 @@ class DesignEngine:
 
         guess: Sequence[float] = program.newton.guess if program.newton else ()
         if timing.joint:
-            guess = begun(program, float(even[0]), p)
+            guess = begun(program, float(even[0]), tuple(p.tolist()))
 
         def build(compiler: codegen.Compiler) -> codegen.Library:
             source = codegen.emit(watched, stages, method.newton, kept.reduction)

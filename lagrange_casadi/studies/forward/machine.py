@@ -118,7 +118,7 @@ class Machine:
             if one is not None:
                 one.given["p"][:] = p
         state.given["added"][1] = inertia
-        z = np.array(begun(program, program.data.span[0], p))
+        z = np.array(begun(program, program.data.span[0], tuple(p.tolist())))
         return cls(equation, values, state, loops, z)
 
     @property

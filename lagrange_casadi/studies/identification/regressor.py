@@ -185,7 +185,7 @@ class Regressor(Graphs, Brief):
             return self._closed(motion, p, guess)
         start = self.program.data.span[0]
         d = np.asarray(self.program.motion(start, p)[0]).ravel()
-        z, found = np.array(begun(self.program, start, p), float), []
+        z, found = np.array(begun(self.program, start, tuple(p.tolist())), float), []
         for k, end in enumerate(motion.d):
             strides = max(1, math.ceil(float(np.abs(end - d).max()) / _STRIDE))
             for share in np.arange(1, strides + 1) / strides:
