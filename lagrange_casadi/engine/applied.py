@@ -75,13 +75,12 @@ def held_by(
     """Action of a multiplier on bodies, by the terms of its equation: a joint's coordinate, a
     place, a direction.
     """
-    multiplier = of.multipliers if isinstance(of, LoopEquations) else of.multiplier
     for measure in resting.mechanism.measures.asked.values():
         symbols = ca.vertcat(*(measure.places if isinstance(of, LoopEquations) else measure.rates))
         if not ca.depends_on(expression, symbols):
             continue
         part = [
-            multiplier * resting.at_state(slope, counted=isinstance(of, LoopEquations))
+            of.multipliers * resting.at_state(slope, counted=isinstance(of, LoopEquations))
             for slope in ca.vertsplit(ca.jacobian(expression, symbols).T)
         ]
         if isinstance(measure.of, Point):

@@ -31,7 +31,7 @@ from .applied import applied_by, held_by, push, turned_by, work
 from .growing import Grown, coordinates_of
 from .joint_closure import loop_residuals
 from .mesh_forces import meshed_by
-from .multibody import Applied, LoopEquations, Multibody, RowGraph, change, released_forces
+from .multibody import Applied, LoopEquations, Multibody, RowGraph, change, released_forces, split
 from .tree import Tree
 from .two_force_links import TwoForceFrame
 
@@ -76,29 +76,24 @@ def assemble(
             along=not (tree.closing or tree.two_force_links),
         )
     loops = [
-        _loop_equations(joint.name, joint, *loop_residuals(joint, *resting.ends(joint)))
+        LoopEquations(joint.name, joint, *loop_residuals(joint, *resting.ends(joint)))
         for joint in tree.closing
     ]
     for two_force_link in tree.two_force_links:
-        residuals = map(ca.SX, resting.span(two_force_link, displace=()))
-        equations = _loop_equations(two_force_link.link.name, None, *residuals)
-        loops.append(replace(equations, two_force_link=two_force_link))
+        phi, rate, change_of_rate = map(ca.SX, resting.span(two_force_link, displace=()))
+        name = two_force_link.link.name
+        loops.append(LoopEquations(name, None, phi, rate, change_of_rate, two_force_link))
         released = [joint.name for joint in two_force_link.joints if joint.name in reactions]
         accelerated.span(two_force_link, displace=released)
     for constraint in mechanism.constraints.values():
         residual = resting.at_state(constraint.phi, counted=True)
         rate = change(residual, resting.coordinates, mechanism.time)
-        equations = _loop_equations(
-            constraint.name, None, residual, rate, change(rate, resting.coordinates, mechanism.time)
-        )
-        smooth = smooth_constraint(mechanism, constraint)
-        loops.append(
-            equations
-            if smooth is None
-            else replace(
-                equations, counted=resting.at_state(ca.vertcat(*smooth.symbols), counted=True)
-            )
-        )
+        acceleration = change(rate, resting.coordinates, mechanism.time)
+        equations = LoopEquations(constraint.name, None, residual, rate, acceleration)
+        if (smooth := smooth_constraint(mechanism, constraint)) is not None:
+            counted = resting.at_state(ca.vertcat(*smooth.symbols), counted=True)
+            equations = replace(equations, counted=counted)
+        loops.append(equations)
     rows = tuple(_row(resting, row) for row in mechanism.rows.values())
     applied = tuple(part for load in mechanism.loads.values() for part in applied_by(load, resting))
     applied += tuple(part for one in mechanism.drives.values() for part in turned_by(one, resting))
@@ -193,14 +188,6 @@ def _refuse_unmeasured(
     raise DeclarationError(f"drive '{name}': {why}; drive another joint")
 
 
-def _loop_equations(
-    name: str, joint: Joint | None, residual: ca.SX, rate: ca.SX, acceleration: ca.SX
-) -> LoopEquations:
-    return LoopEquations(
-        name, joint, residual, rate, acceleration, ca.SX.sym(f"lambda_{name}", residual.numel())
-    )
-
-
 def _row(resting: Grown, row: Row) -> RowGraph:
     """A row, and the size of what is added up in it: rates of coordinates, in what is measured, in
     the row.
@@ -286,19 +273,13 @@ def line_reaction(body: Link | PointMass, joint: Joint, frame: Frame) -> tuple[V
         rate=frame.rate,
         angular=frame.angular,
         anchor=place,
-    ).displaced(*_vectors(released))
+    ).displaced(*split(released, space=True))
     energy = kinetic_energy(body, moving, velocities, space=True, spun=False, slid=False)
     force, couple = (
         minus(part, times(dot(part, line), line))
-        for part in _vectors(released_forces(energy, released, velocities))
+        for part in split(released_forces(energy, released, velocities), space=True)
     )
     return force, couple
-
-
-def _vectors(six: Expression) -> tuple[Vector, Vector]:
-    """Two vectors, of six entries."""
-    x, y, z, u, v, w = ca.vertsplit(six)
-    return (x, y, z), (u, v, w)
 
 
 def _rigid(

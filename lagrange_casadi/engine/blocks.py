@@ -25,7 +25,7 @@ from .loops import ClosedForm, solve_loop, solves
 from .multibody import Coordinate, LoopEquations, Multibody
 from .released_loops import ReleasedLoops
 from .sampling import Sampling, drawn
-from .sizes import extent, units
+from .sizes import directs, extent
 from .substitution import Numbers
 from .two_force_links import idle_spins
 
@@ -136,7 +136,8 @@ def solving_order(
         rough = Numbers(numbers)
         place_roughly(multibody, posture, rough, {})
         released = ReleasedLoops.of(multibody, rough)
-        slopes = released.slopes()
+        closed = released.closed(released.first)
+        slopes = None if closed is None else released.at(closed)[1]
         slopes = _require_freedom(multibody, len(equations), parts, slopes, released.rank, posture)
         parts = [piece for part in parts for piece in _pieces(part)]
         if multibody.mechanism.space:
@@ -175,7 +176,7 @@ def _equations(multibody: Multibody, unknown: Sequence[Coordinate]) -> list[Equa
         # What has no value at such points may be anything.
         unit = max((size for size in sizes[k].values() if np.isfinite(size)), default=0.0)
         if loop.joint is not None:
-            unit = max(unit, units(loop, whole)[row])
+            unit = max(unit, 1.0 if directs(loop)[row] else whole)
         there = {c for c, size in sizes[k].items() if size > nothing * unit}
         # The three of a ball share their variables.
         sphericals = {c.spherical for c in there if c.spherical is not None}
@@ -198,10 +199,9 @@ def _decomposed(equations: Sequence[Equation], unknown: Sequence[Coordinate]) ->
     """
     number = {c: k for k, c in enumerate(unknown)}
     entries = [(row, number[c]) for row, equation in enumerate(equations) for c in equation.present]
-    rows, columns = zip(*entries, strict=True) if entries else ((), ())
-    pattern = ca.Sparsity.triplet(len(equations), len(unknown), rows, columns)
-    if not entries:
-        return [([equation], []) for equation in equations] + [([], [c]) for c in unknown]
+    pattern = ca.Sparsity.triplet(
+        len(equations), len(unknown), [row for row, _ in entries], [k for _, k in entries]
+    )
     count, row_order, column_order, row_cuts, column_cuts, *_ = pattern.btf()
     return [
         (

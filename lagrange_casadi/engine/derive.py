@@ -8,7 +8,7 @@ import copy
 import functools
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import casadi as ca
@@ -32,6 +32,7 @@ from .deflections import deflections
 from .drives import closure
 from .identity import identity_of
 from .indeterminate import Forces
+from .iteration import CLOSED
 from .kinematics import Kinematics
 from .least_energy import Completion, LeastEnergy, feeling, least_energy
 from .load_points import gathered
@@ -57,8 +58,6 @@ _ALONG = 0.0, 1 / 64, 1 / 16, 1 / 4, 1 / 2, 1.0
 """Parts of the motion at which loops are looked at: as it begins, parts that were given by their
 places fit, however their axes are rounded.
 """
-
-_STEPS, _CLOSED = 50, 1e-9
 
 _CONTACT = {"pulls": "normal", "slides": "margin"}
 """Outputs of a contact by what it does where they are negative."""
@@ -238,50 +237,40 @@ def _misses(
     (start, stop), p, newton = program.data.span, list(values.values()), program.newton
     z, missed = ca.DM(newton.guess if newton else []), 0.0
     for t in (start + part * (stop - start) for part in parts):
-        motion, size = program.motion(t, p), 0.0
-        for _ in range(_STEPS):
-            correction, size = newton.step(z, t, motion[0], p) if newton else (0.0, 0.0)
-            z += correction
-            if float(size) < FITS:
-                break
-        if float(size) >= _CLOSED:
+        motion = program.motion(t, p)
+        z, size = newton.closed(z, t, motion[0], p) if newton else (z, 0.0)
+        if float(size) >= CLOSED:
             break
         out = program.instant(t, *motion, z, p)
         missed = max(missed, *(float(out[row]) for row in rows))
     return missed
 
 
-@dataclass(frozen=True, eq=False)
-class _JointForces:
-    """Forces over the inputs; ``free`` are symbols of what equilibrium leaves open in them,
-    ``frictions`` those of frictions.
+def _joint_forces(
+    moving: Moving, columns: Mapping[Column, Expression]
+) -> tuple[dict[Column, Expression], ca.SX, Mapping[str, Expression]]:
+    """The forces that are wanted, and those of ``columns`` that friction goes into, over the
+    inputs; the symbols of what equilibrium leaves open in them; and the forces of frictions.
     """
-
-    columns: dict[Column, Any]
-    free: Any
-    frictions: Mapping[str, Any]
-
-    @classmethod
-    def of(cls, moving: Moving, columns: Mapping[Column, Expression]) -> _JointForces:
-        """The forces that are wanted, and those of ``columns`` that friction goes into."""
-        want = moving.want
-        links = moving.scene.mechanism.links.values()
-        forces, free, friction = internal_forces(moving.body, moving.solved, want, moving.scene)
-        dependent = {
-            key: value
-            for key, value in columns.items()
-            if friction.symbols.numel() and ca.depends_on(ca.SX(value), friction.symbols)
-        }
-        placed = ca.substitute(column(dependent.values()), friction.symbols, friction.values)
-        pressed = dict(zip(dependent, entries(placed), strict=True))
-        acting = gathered(forces, free, links, Sampling.of(moving.body)) | pressed
-        # Beside the start of the motion, for a drive through a gear moves little of what it drives,
-        # and holds it all the same.
-        for check in [
-            check for check in acting if isinstance(check, Check) and check.kind == "hold"
-        ]:
+    want = moving.want
+    if not want.forces:
+        return {}, ca.SX(0, 1), {}
+    links = moving.scene.mechanism.links.values()
+    forces, free, friction = internal_forces(moving.body, moving.solved, want, moving.scene)
+    dependent = {
+        key: value
+        for key, value in columns.items()
+        if friction.symbols.numel() and ca.depends_on(ca.SX(value), friction.symbols)
+    }
+    placed = ca.substitute(column(dependent.values()), friction.symbols, friction.values)
+    pressed = dict(zip(dependent, entries(placed), strict=True))
+    acting = gathered(forces, free, links, Sampling.of(moving.body)) | pressed
+    # Beside the start of the motion, for a drive through a gear moves little of what it drives, and
+    # holds it all the same.
+    for check in acting:
+        if isinstance(check, Check) and check.kind == "hold":
             acting[check] = closure(acting[check], float(moving.begins(acting[check])))
-        return cls(acting, free, friction.forces)
+    return acting, free, friction.forces
 
 
 def _derive(scene: Scene, asked: Wanted) -> Program:
@@ -290,19 +279,11 @@ def _derive(scene: Scene, asked: Wanted) -> Program:
     want = _standing(mechanism, want) if mechanism.contacts and asked.forces else want
     moving = Moving.of(scene, want)
     columns, loop_angles = moving.columns()
-    joint_forces = (
-        _JointForces.of(moving, columns) if want.forces else _JointForces({}, ca.SX(0, 1), {})
-    )
-    columns = {key: value for key, value in columns.items() if key not in joint_forces.columns}
-    acting = joint_forces.columns | user_outputs(
-        moving.body, moving.solved, columns | joint_forces.columns
-    )
-    least = _least_energy(scene, acting, joint_forces) if scene.elastic else None
-    forces = (
-        Forces.over(acting, joint_forces.free)
-        if least is None
-        else least.completed(acting, joint_forces.free)
-    )
+    acting, free, frictions = _joint_forces(moving, columns)
+    columns = {key: value for key, value in columns.items() if key not in acting}
+    acting |= user_outputs(moving.body, moving.solved, columns | acting)
+    least = _least_energy(scene, acting, free, frictions) if scene.elastic else None
+    forces = Forces.over(acting, free) if least is None else least.completed(acting, free)
     forces = forces.with_those_of(lambda found: _strength(scene, asked, {**columns, **found}))
     columns |= forces.columns
     columns = (
@@ -311,7 +292,7 @@ def _derive(scene: Scene, asked: Wanted) -> Program:
         else {key: value for key, value in columns.items() if _is_asked(key, asked)}
     )
     columns |= _contacts(mechanism.contacts, forces) if want.forces else {}
-    instant = graph("instant", moving.inputs, out=column(columns.values()))
+    instant = graph("instant", moving.solved.inputs, out=column(columns.values()))
     return Program(
         data=ModelData.of(scene, moving.laws),
         wanted=asked,
@@ -319,30 +300,32 @@ def _derive(scene: Scene, asked: Wanted) -> Program:
         newton=moving.solved.newton,
         columns=tuple(columns),
         loop_angles=loop_angles,
-        completion=None if least is None else Completion.of(least, forces, columns, moving.inputs),
+        completion=None
+        if least is None
+        else Completion.of(least, forces, columns, moving.solved.inputs),
     )
 
 
 def _least_energy(
-    scene: Scene, acting: Mapping[Column, Expression], joint_forces: _JointForces
+    scene: Scene,
+    acting: Mapping[Column, Expression],
+    free: ca.SX,
+    frictions: Mapping[str, Expression],
 ) -> LeastEnergy | None:
-    """Choose by least strain energy what equilibrium leaves open; None where this is nothing.
+    """Choose by least strain energy what equilibrium leaves open, ``free``; None where this is
+    nothing.
 
     Raises :class:`.DeclarationError` where frictions follow it: what rubs is not linear in what
     presses on it.
     """
-    for name, value in joint_forces.frictions.items():
-        if ca.depends_on(ca.SX(value), joint_forces.free):
+    for name, value in frictions.items():
+        if ca.depends_on(ca.SX(value), free):
             raise DeclarationError(
                 f"elastic: cannot be combined with friction '{name}', whose reaction is statically"
                 " indeterminate; leave one of them out"
             )
-    indeterminate = any(ca.depends_on(ca.SX(value), joint_forces.free) for value in acting.values())
-    return (
-        least_energy(scene.mechanism, scene.elastic, acting, joint_forces.free)
-        if indeterminate
-        else None
-    )
+    indeterminate = any(ca.depends_on(ca.SX(value), free) for value in acting.values())
+    return least_energy(scene.mechanism, scene.elastic, acting, free) if indeterminate else None
 
 
 def _strength(
@@ -424,7 +407,7 @@ def user_outputs(
     ]
     values = column(_value(mechanism.links, one, found, table_of(mechanism.space)) for one in asked)
     symbols = column(one.symbol for one in asked)
-    placed = solved.evaluate(column(body.user_outputs.values()))
+    placed = solved.found.put_into(column(body.user_outputs.values()))
     return {
         Output("output", name): value
         for name, value in zip(

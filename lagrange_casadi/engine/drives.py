@@ -10,8 +10,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
 
 import casadi as ca
 
@@ -21,20 +19,6 @@ from .linear import LinearSystem
 
 _ROUNDING = 1e-24
 """A ``hold`` below it is the square of a rounding."""
-
-
-@dataclass(frozen=True, eq=False)
-class Efforts:
-    """Symbols of efforts and their values; ``hold`` is zero where the drives cannot make the
-    motion, else positive.
-
-    It is the square of how much of a motion moves the drives, and of how far they are from
-    depending on each other.
-    """
-
-    symbols: Any
-    values: Any
-    authority: Any
 
 
 def pushed(moved: Sequence[str], drives: Mapping[str, Expression] | None) -> tuple[str, ...]:
@@ -51,9 +35,11 @@ def solve_efforts(
     needs: Mapping[str, Expression],
     weights: Mapping[str, Expression],
     units: Mapping[str, Expression],
-) -> Efforts:
-    """The efforts, by joint their symbols, that leave nothing of ``needs``, which are linear in
-    them.
+) -> tuple[Expression, Expression]:
+    """The values of efforts, by joint their symbols, that leave nothing of ``needs``, which are
+    linear in them; and a number that is zero where the drives cannot make the motion, else
+    positive: the square of how much of a motion moves the drives, and of how far they are from
+    depending on each other.
 
     ``units`` are by joint what its coordinate is measured in, to decide whether a drive moves much
     of a motion or little.
@@ -72,7 +58,7 @@ def solve_efforts(
     authority = system.volume * system.volume
     for j in range(len(needs)):
         authority *= ca.sumsqr(moved[:, j])
-    return Efforts(symbols, values, authority)
+    return values, authority
 
 
 def closure(authority: Expression, usual: float) -> Expression:

@@ -8,7 +8,7 @@ import itertools
 import math
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal, TypeAlias
+from typing import Literal
 
 import casadi as ca
 import numpy as np
@@ -18,17 +18,14 @@ from ..base.scalars import column
 from ..base.tables import LENGTH
 from ..model.declared_parts import Point
 from ..model.joints import Joint
-from .joint_closure import carried, held_directions
+from .joint_closure import carried
 from .multibody import LoopEquations, Multibody
 from .nearest import Nearest
 from .released_loops import State
-from .tree import Branch, Tree
+from .sizes import directs
 
 _OFFERED = 3
 """Changes of lengths that are said."""
-
-Step: TypeAlias = tuple[Point, Joint, Point]
-"""The way from one body to the next, by a point of each."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +79,7 @@ def ends_of(multibody: Multibody, loop: LoopEquations) -> ca.SX:
         return column([one + loop.two_force_link.length * along, last, 0.0])
     assert loop.joint is not None
     parent, child = (multibody.frames[body.name] for body in loop.joint.bodies)
-    sines = loop.residual[loop.residual.numel() - held_directions(loop.joint) :]
+    sines = loop.residual[np.flatnonzero(directs(loop)).tolist()]
     there = parent.place_of(carried(loop.joint, parent, child))
     return column([*there, last, ca.sqrt(ca.sumsqr(sines))])
 
@@ -111,7 +108,7 @@ def _reach(nearest: Nearest, loop: LoopEquations, held: Collection[str]) -> str:
     """Say how far the ends of links are apart, and how far these reach, in words; nothing where the
     loop is no chain of links that turn, between bodies that are ``held``, or where they reach.
     """
-    steps = _around(nearest.multibody.tree, loop)
+    steps = nearest.multibody.tree.around(loop.joint) if loop.joint is not None else []
     still = [leaving.body.name in held for leaving, _, _ in steps]
     starts = [k for k, one in enumerate(still) if one and not still[(k + 1) % len(steps)]]
     if len(starts) != 1:
@@ -163,22 +160,6 @@ def _kind(nearest: Nearest, joint: Joint) -> str:
     if joint.kind == "spherical" or (joint.planar and joint.kind == "revolute"):
         return "pin"
     return "line" if joint.kind == "prismatic" else "other"
-
-
-def _around(tree: Tree, loop: LoopEquations) -> list[Step]:
-    """The way around a loop that a joint closes, from body to body and back; else none."""
-    if loop.joint is None:
-        return []
-    one, other = loop.joint.parent, loop.joint.child
-    led = {branch.far.body: branch for branch in tree.branches}
-    ways: list[list[Branch]] = [[], []]
-    for way, body in zip(ways, (one.body, other.body), strict=True):
-        while body in led:
-            way.append(led[body])
-            body = led[body].near.body
-    up = [(b.far, b.joint, b.near) for b in ways[0] if b not in ways[1]]
-    down = [(b.near, b.joint, b.far) for b in reversed(ways[1]) if b not in ways[0]]
-    return [*up, *down, (other, loop.joint, one)]
 
 
 def _lengths(nearest: Nearest, state: State, closed: Flags, rows: Flags) -> Iterator[str]:

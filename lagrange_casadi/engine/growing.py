@@ -19,7 +19,7 @@ from ..model.declared_parts import Link, Point, Vector
 from ..model.joints import Axis, Joint
 from ..model.mechanism import Mechanism
 from .joint_closure import turning_axes
-from .multibody import Coordinate, Turned, motion_along, own_coordinate
+from .multibody import Coordinate, Turned, motion_along, own_coordinate, split
 from .sizes import reach
 from .spherical import SphericalCoordinates
 from .tree import Branch, Tree
@@ -53,27 +53,20 @@ class Grown:
         joint = branch.joint
         frame = self._undisplaced(branch, self.carried[joint.name])
         if displace:
-            plane = not self.mechanism.space
-            moves = AXES[:2] if plane else AXES
-            rotations = (AXES[2:] if plane else AXES) if joint.bears_moment else ()
-            rates = self.mobilities[joint.name] = ca.SX.sym(
-                f"ed_{joint.name}", len(moves) + len(rotations)
-            )
-            translation, turning = ZERO, ZERO
-            for k, axis in enumerate(moves):
-                translation = plus(translation, times(rates[k], axis))
-            for k, axis in enumerate(rotations, len(moves)):
-                turning = plus(turning, times(rates[k], axis))
+            space = self.mechanism.space
+            many = (3, 6) if space else (2, 3)
+            rates = ca.SX.sym(f"ed_{joint.name}", many[joint.bears_moment])
+            self.mobilities[joint.name] = rates
             if (
                 along
                 and branch.far.body.oriented
                 and isinstance(frame, Carried)
                 and frame.shortest is frame.carried
             ):
-                frame = frame.displaced_along(translation, turning)
+                frame = frame.displaced_along(*split(rates, space=space))
                 self.own_axes.add(joint.name)
             else:
-                frame = frame.displaced(translation, turning)
+                frame = frame.displaced(*split(rates, space=space))
         self.frames[branch.far.body.name] = frame
 
     def span(
@@ -164,9 +157,8 @@ class Grown:
         point, anchor = _ends(branch, slides)
         speed, acceleration = base.motion_of(point)
         carrier, turning = (rotation, rate) if branch.reverse else (base.rotation, base.rate)
-        moved = Frame(speed=speed, acceleration=acceleration, rate=turning)
-        for direction, coordinate in slides:
-            moved = _slid(moved, carrier.apply(times(branch.sign, direction)), coordinate)
+        ways = [(carrier.apply(times(branch.sign, direction)), c) for direction, c in slides]
+        moved = _slid(Frame(speed=speed, acceleration=acceleration, rate=turning), ways)
         motion = (
             base.place_of(point),
             moved.speed,
@@ -266,11 +258,13 @@ def coordinates_of(
                 turned[near][1],
             )
         local: list[Coordinate] = []
-        rotations = [axis.coordinate for axis in joint.axes_of(far) if axis.kind == "angle"]
+        axes = joint.axes_of(far)
+        turns = [axis for axis in axes if axis.kind == "angle"]
         spherical = None
-        if len(rotations) == 3 and not {*rotations} & {*driven, *given}:
+        if len(turns) == 3 and {*driven, *given}.isdisjoint(axis.coordinate for axis in turns):
             spherical = SphericalCoordinates.of(joint, near, reverse=branch.reverse)
-        for axis in joint.axes_of(far):
+            axes = tuple(axis for axis in axes if axis not in turns)
+        for axis in axes:
             name, drives = axis.coordinate, axis.coordinate in driven
             q, rate, acceleration = (
                 ca.SX.sym(f"{name}{end}") for end in ("", "_rate", "_acceleration")
@@ -279,8 +273,6 @@ def coordinates_of(
                 local.append(
                     Coordinate(name, far.name, axis, drives, q, rate, rate, acceleration, size=size)
                 )
-                continue
-            if spherical is not None:
                 continue
             turn, spin = q, rate
             if drives and near in turned:
@@ -307,9 +299,7 @@ def coordinates_of(
                 )
             )
         if spherical is not None:
-            local += _of_spherical(
-                spherical, far.name, [axis for axis in joint.axes_of(far) if axis.kind == "angle"]
-            )
+            local += _of_spherical(spherical, far.name, turns)
         found[joint.name] = tuple(local)
     return found
 
@@ -369,14 +359,17 @@ def _ends(branch: Branch, slides: Sequence[tuple[Vector, Coordinate]]) -> tuple[
     return near, far
 
 
-def _slid(motion: Frame, axis: Vector, coordinate: Coordinate) -> Frame:
-    """A motion with that along an axis, which turns at the motion's rate under what slides on it
+def _slid(motion: Frame, slides: Sequence[tuple[Vector, Coordinate]]) -> Frame:
+    """A motion with that along axes, which turn at the motion's rate under what slides on them
     (Coriolis).
     """
-    spin = times(coordinate.rate, times(2, motion.rate))
-    change = plus(times(coordinate.acceleration, axis), cross(spin, axis))
-    speed = plus(motion.speed, times(coordinate.rate, axis))
-    return replace(motion, speed=speed, acceleration=plus(motion.acceleration, change))
+    speed, acceleration = motion.speed, motion.acceleration
+    for axis, coordinate in slides:
+        spin = times(coordinate.rate, times(2, motion.rate))
+        change = plus(times(coordinate.acceleration, axis), cross(spin, axis))
+        speed = plus(speed, times(coordinate.rate, axis))
+        acceleration = plus(acceleration, change)
+    return replace(motion, speed=speed, acceleration=acceleration)
 
 
 def _spun(motion: Frame, axis: Vector, coordinate: Coordinate) -> Frame:
@@ -396,26 +389,21 @@ def _own(branch: Branch, coordinates: Sequence[Coordinate], base: Carried) -> Fr
     motion = Frame(
         speed=speed, acceleration=acceleration, rate=base.carried.rate, angular=base.carried.angular
     )
+    if not branch.reverse:
+        motion = _slid(motion, slides)
     if not branch.far.body.oriented:
-        for direction, coordinate in slides:
-            motion = _slid(motion, direction, coordinate)
         # A point has no axes of its own: the ground's.
         return replace(_seen_from(motion, base.rotation.inverse), rate=ZERO, angular=ZERO)
     zero, rotations = branch.joint.turned, [c for c in coordinates if c.kind == "angle"]
     if branch.reverse:
         motion = _seen_from(motion, zero.inverse)
-    else:
-        for direction, coordinate in slides:
-            motion = _slid(motion, direction, coordinate)
     for coordinate in reversed(rotations) if branch.reverse else rotations:
         turn = Rotation.about(coordinate.axis.direction, *ca.vertsplit(coordinate.variables))
         motion = _spun(motion, times(branch.sign, coordinate.axis.direction), coordinate)
         motion = _seen_from(motion, turn.inverse if branch.reverse else turn)
     if not branch.reverse:
         return _seen_from(motion, zero)
-    for direction, coordinate in slides:
-        motion = _slid(motion, times(-1, direction), coordinate)
-    return motion
+    return _slid(motion, [(times(-1, direction), c) for direction, c in slides])
 
 
 def _seen_from(motion: Frame, turn: Rotation) -> Frame:

@@ -52,7 +52,7 @@ def held_efforts(scene: Scene) -> HeldEfforts:
         if slopes[k, :].nnz()
     }
     out = ca.substitute(column(columns.values()), free, 0)
-    instant = graph("held", moving.inputs | {"signs": column(signs.values())}, out=out)
+    instant = graph("held", moving.solved.inputs | {"signs": column(signs.values())}, out=out)
     every_way = (
         name
         for name, load in frictions_of(mechanism).items()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -11,7 +12,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..base.arrays import Expression
+from ..base.arrays import Array, Expression, Operand
 from ..base.scalars import column
 from .linear import LinearSystem
 from .multibody import Coordinate, Multibody
@@ -22,6 +23,11 @@ LARGEST_STEP = 0.3
 """Largest step of an angle [rad], or of a slide over the length of all links: a full step from afar
 may land on another branch.
 """
+
+CLOSED = 1e-9
+"""The last correction of loops that are closed: the next one is rounding."""
+
+_STEPS = 100
 
 NEWTON_LOST = 0.1
 """A last correction, of a fixed number, after which nothing is known."""
@@ -67,6 +73,20 @@ class NewtonLoop:
     names: tuple[str, ...]
     joints: str
 
+    def closed(
+        self, z: Operand, t: Operand, d: Operand, p: Sequence[float] | Array
+    ) -> tuple[ca.DM, ca.DM]:
+        """Iterated coordinates at instants, a column each, from ones that are near; and the size of
+        the last correction, which is :data:`CLOSED` at most where they are found.
+        """
+        z, size = ca.DM(z), ca.DM(math.inf)
+        for _ in range(_STEPS):
+            correction, size = self.step(z, t, d, p)
+            z += correction
+            if float(ca.mmax(size)) < CLOSED:
+                break
+        return z, size
+
 
 @dataclass(eq=False)
 class Iterated:
@@ -82,24 +102,19 @@ class Iterated:
     guess: list[float] = field(default_factory=list)
     turning: list[bool] = field(default_factory=list)
 
-    def number(self, name: str, scale: Expression, guess: float, *, turning: bool) -> ca.SX:
-        """The symbol of a number, whose ``scale`` is what a correction is large beside."""
-        return self._add(ca.SX.sym(f"z_{name}"), [scale], [guess], turning=turning)
-
-    def spherical(self, spherical: SphericalCoordinates, guess: Sequence[float]) -> ca.SX:
-        """The axes of a ball, as they follow from its four symbols."""
-        scales, name = [1, 1, 1], f"z_{spherical.joint.name}"
-        return axes_of(self._add(ca.SX.sym(name, 4), scales, guess, spherical, turning=False))
-
-    def _add(
+    def add(
         self,
-        symbols: ca.SX,
-        scales: Sequence[Expression],
+        name: str,
         guess: Sequence[float],
+        scales: Sequence[Expression],
         spherical: SphericalCoordinates | None = None,
         *,
-        turning: bool,
+        turning: bool = False,
     ) -> ca.SX:
+        """The symbols of a number, or of the quaternion of a ball; ``scales`` are what corrections
+        are large beside.
+        """
+        symbols = ca.SX.sym(f"z_{name}", len(guess))
         self.parts.append((symbols, spherical))
         self.scales += scales
         self.guess += guess
@@ -113,15 +128,9 @@ class Iterated:
 
     def placed(self, expression: ca.SX) -> ca.SX:
         """An expression in axes of balls as one in the symbols."""
-        sphericals = [
-            (spherical.axes, axes_of(symbols))
-            for symbols, spherical in self.parts
-            if spherical is not None
-        ]
-        if not sphericals:
-            return expression
-        axes, placed = zip(*sphericals, strict=True)
-        return ca.substitute(ca.SX(expression), column(axes), column(placed))
+        sphericals = [(of.axes, symbols) for symbols, of in self.parts if of is not None]
+        placed = column(axes_of(symbols) for _, symbols in sphericals)
+        return ca.substitute(ca.SX(expression), column(axes for axes, _ in sphericals), placed)
 
     def step(self, residuals: ca.SX, units: Expression) -> tuple[ca.SX, ca.SX]:
         """Newton correction of the symbols, and its size; a large one is shortened. By their

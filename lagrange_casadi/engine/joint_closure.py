@@ -14,7 +14,7 @@ import casadi as ca
 from ..base.frames import Frame
 from ..base.rotation import Rotation
 from ..base.scalars import column
-from ..base.vectors import AXES, cross, dot, minus, nil, plus, times
+from ..base.vectors import AXES, ZERO, cross, dot, minus, nil, plus, times
 from ..model.declared_parts import Expression, Vector
 from ..model.joints import Joint
 
@@ -40,29 +40,29 @@ def residual_motion(joint: Joint, parent: Frame, child: Frame) -> tuple[Vector, 
     return minus(local[0], under[0]), minus(local[1], under[1])
 
 
-def slide(joint: Joint, parent: Frame, child: Frame, along: Vector) -> Expression:
-    """Distance of the child's point from the parent's along a direction in the parent's axes."""
-    return dot(apart(joint, parent, child), along)
-
-
 def carried(joint: Joint, parent: Frame, child: Frame) -> Vector:
     """The place of the parent where a joint's child is at the moment, in the parent's axes."""
     place = joint.parent.place
-    for freedom in joint.freedoms:
-        if freedom.move != "turn":
-            direction = joint.triad[freedom.direction]
-            place = plus(place, times(slide(joint, parent, child, direction), direction))
+    for axis in slides_of(joint):
+        place = plus(place, times(dot(apart(joint, parent, child), axis), axis))
     return place
+
+
+def slides_of(joint: Joint) -> list[Vector]:
+    """The directions along which a joint slides, in the parent's axes; and that of a screw."""
+    return [joint.triad[freedom.direction] for freedom in joint.freedoms if freedom.move != "turn"]
 
 
 def slide_motion(
     joint: Joint, parent: Frame, child: Frame, along: Vector
 ) -> tuple[Expression, Expression]:
-    """Rate and acceleration of :func:`slide`, while nothing moves but along the joint's slides."""
+    """Rate and acceleration of a joint along a direction in the parent's axes, while nothing moves
+    but along the joint's slides.
+    """
     axis = parent.rotation.apply(along)
     speed, acceleration = residual_motion(joint, parent, child)
     rate, change = dot(speed, axis), dot(acceleration, axis)
-    if sum(freedom.move == "slide" for freedom in joint.freedoms) > 1:
+    if len(slides_of(joint)) > 1:
         change -= 2 * dot(cross(parent.rate, speed), axis)
     return rate, change
 
@@ -114,13 +114,12 @@ def reaction(
     """Force and moment of the parent on the child at a joint that closes a loop, in ground axes, by
     its multipliers.
     """
-    force: Vector = (0.0, 0.0, 0.0)
-    moment: Vector = (0.0, 0.0, 0.0)
+    force, moment = ZERO, ZERO
     places = [direction for _, direction in _across(joint, parent)]
     for k, direction in enumerate(places):
         force = plus(force, times(multipliers[k], direction))
     base, misaligned = parent.rotation.then(joint.turned), misalignment(joint, parent, child)
-    for k, (local, across) in enumerate(_held(joint), len(places)):
+    for k, (local, across) in enumerate(held_directions(joint), len(places)):
         couple = base.apply(cross(misaligned.apply(local), across))
         moment = plus(moment, times(multipliers[k], couple))
     return force, moment
@@ -192,23 +191,15 @@ def _across(joint: Joint, parent: Frame) -> list[tuple[Vector, Vector]]:
     """The directions along which a joint holds its points together: in the parent's axes, if it
     slides, and in ground axes.
     """
-    slides = sum(freedom.move == "slide" for freedom in joint.freedoms)
-    if not slides:
-        return [(axis, axis) for axis in (AXES[:2] if joint.planar else AXES)]
-    u, v, w = joint.triad
-    if slides == 1:
-        axis, beside = parent.rotation.apply(u), parent.rotation.apply(w)
-        found = [(v, cross(beside, axis)), (w, beside)]
-        return found[:1] if joint.planar else found
-    return [(u, parent.rotation.apply(u))] if slides == 2 else []
+    many = 2 if joint.planar else 3
+    if not joint.slides:
+        return [(axis, axis) for axis in AXES[:many]]
+    slid = {freedom.direction for freedom in joint.freedoms if freedom.move == "slide"}
+    held = (joint.triad[k] for k in range(many) if k not in slid)
+    return [(axis, parent.rotation.apply(axis)) for axis in held]
 
 
-def held_directions(joint: Joint) -> int:
-    """Number of direction equations of a joint that closes a loop, after those of places."""
-    return len(_held(joint))
-
-
-def _held(joint: Joint) -> tuple[tuple[Vector, Vector], ...]:
+def held_directions(joint: Joint) -> tuple[tuple[Vector, Vector], ...]:
     """Pairs of directions that a joint holds at right angles, of its child and of its parent, where
     coordinates are zero.
     """
@@ -228,35 +219,29 @@ def _held(joint: Joint) -> tuple[tuple[Vector, Vector], ...]:
 def _residuals_of_place(joint: Joint, parent: Frame, child: Frame) -> Iterator[Residual]:
     """Gaps between points."""
     speed, acceleration = residual_motion(joint, parent, child)
-    slides = sum(freedom.move == "slide" for freedom in joint.freedoms)
-    if not slides:
-        distance = minus(child.place_of(joint.child.place), parent.place_of(joint.parent.place))
-        many = len(_across(joint, parent))
-        yield from zip(distance[:many], speed[:many], acceleration[:many], strict=True)
-        return
-    distance, held = apart(joint, parent, child), _across(joint, parent)
-    # The lines turn under what slides on them (Coriolis).
-    if slides == 1:
-        beside = parent.rotation.apply(joint.triad[2])
-        rate = dot(speed, parent.rotation.apply(joint.triad[0]))
-        turning = [2 * dot(parent.rate, beside) * rate, -2 * dot(parent.rate, held[0][1]) * rate]
-    else:
-        turning = [2 * dot(cross(parent.rate, speed), across) for _, across in held]
-    for (along, across), turned in zip(held, turning, strict=False):
+    slides, base = slides_of(joint), parent.rotation
+    distance = (
+        apart(joint, parent, child)
+        if slides
+        else minus(child.place_of(joint.child.place), parent.place_of(joint.parent.place))
+    )
+    for along, across in _across(joint, parent):
+        # The lines turn under what slides on them (Coriolis).
+        turned = sum(
+            2 * dot(parent.rate, base.apply(cross(axis, along))) * dot(speed, base.apply(axis))
+            for axis in slides
+        )
         yield dot(distance, along), dot(speed, across), dot(acceleration, across) - turned
 
 
 def _residuals_of_direction(joint: Joint, parent: Frame, child: Frame) -> Iterator[Residual]:
     """Gaps of directions that are held."""
-    held = _held(joint)
-    if not held:
-        return
     base, misaligned = parent.rotation.then(joint.turned), misalignment(joint, parent, child)
     rate, angular = minus(child.rate, parent.rate), minus(child.angular, parent.angular)
     turning = Frame(
         rate=base.resolve(rate), angular=base.resolve(minus(angular, cross(parent.rate, rate)))
     )
-    for local, across in held:
+    for local, across in held_directions(joint):
         there = misaligned.apply(local)
         speed, acceleration = turning.motion_of(there)
         yield dot(there, across), dot(speed, across), dot(acceleration, across)

@@ -9,6 +9,7 @@ gives the multipliers too.
 
 from __future__ import annotations
 
+import functools
 import itertools
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -24,7 +25,7 @@ from ..base.vectors import AXES, Vector
 from ..errors import AssemblyError, DeclarationError, MobilityError
 from ..model.directions import most_across
 from .blocks import Block, row_units, solving_order
-from .iteration import Iterated, NewtonLoop, Start, place_roughly
+from .iteration import CLOSED, Iterated, NewtonLoop, Start, place_roughly
 from .linear import LinearSystem
 from .loop_turns import Guide
 from .loops import ClosedForm
@@ -33,7 +34,7 @@ from .postures import Undecided, directions, is_angle, measured
 from .residuals import lengths, loop_residual, redundancy_residual
 from .screws import signed_volume
 from .sizes import reach
-from .spherical import SphericalCoordinates
+from .spherical import SphericalCoordinates, axes_of
 from .substitution import Expressions, Numbers
 from .verdicts import DEAD
 
@@ -48,36 +49,26 @@ _READ = {"angle": 12, "slide": 15}
 
 @dataclass(frozen=True, eq=False)
 class Kinematics:
-    """The whole motion as graphs over time, the driven coordinates d, d', d'', the iterated
-    unknowns z and the parameters.
+    """The whole motion as graphs over ``inputs``, by name: the time t, the driven coordinates d,
+    d', d'', the iterated unknowns z and the parameters p.
 
     ``found`` has the expression of every variable, rate and acceleration of a :class:`.Multibody`;
-    ``systems`` are the factorized Phi_z of ``blocks``. ``closures`` are by joint the branch
+    ``systems`` are the blocks with their factorized Phi_z. ``closures`` are by joint the branch
     indicators of loops, zero at a dead centre; ``residuals`` [m] those of the equations of a block,
     ``redundancy_residuals`` those of redundant equations. ``wrapped`` names the joints whose angles
     are known modulo 2 pi; ``deviations`` are the differences between the angles of screws and the
     revolutions that are counted.
     """
 
-    driven: Any
-    driven_rate: Any
-    driven_acceleration: Any
-    iterated: Any
+    inputs: dict[str, Any]
     found: Expressions
-    blocks: tuple[Block, ...]
-    systems: tuple[LinearSystem, ...]
+    systems: tuple[tuple[Block, LinearSystem], ...]
     closures: dict[str, Any]
     residuals: dict[str, Any]
     redundancy_residuals: dict[str, Any]
     newton: NewtonLoop | None
     wrapped: frozenset[str]
     deviations: dict[str, Any]
-
-    def evaluate(self, expression: ca.SX) -> ca.SX:
-        """An expression in the multibody's symbols, as one in t, d, d',
-        d'', z and the parameters.
-        """
-        return self.found.put_into(expression)
 
 
 def solve(multibody: Multibody, posture: Mapping[str, float], start: Start) -> Kinematics:
@@ -151,7 +142,7 @@ class _Solver:
         )
         self.iterated = Iterated()
         self.residuals: list[Block] = []
-        self.closures: dict[str, tuple[Any, bool]] = {}
+        self.closures: dict[str, list[tuple[Any, bool]]] = {}
         self.wrapped: set[str] = set()
         self.deviations: dict[str, Any] = {}
         self.undecided = Undecided()
@@ -216,14 +207,13 @@ class _Solver:
         """Take note of what one closed form of a block solves, on the branch that is nearest to the
         posture; its closure.
         """
-        closure, variables = form.closure, form.variables
+        closure, *variables = form.closure, *form.variables
         if form.branches:
             signs = ca.SX(ca.DM(self._signs(block, form)))
-            solved = [
+            closure, *variables = (
                 ca.substitute(value, column(form.branches), signs)
                 for value in (closure, *variables)
-            ]
-            closure, variables = solved[0], tuple(solved[1:])
+            )
         if closure is not None:
             closure = self.found.put_into(closure)
         for coordinate, value in zip(form.unknown, variables, strict=True):
@@ -258,19 +248,10 @@ class _Solver:
         return ca.vertcat(c, s, angle)
 
     def _note_closure(self, block: Block, closure: ca.SX) -> None:
-        """Note how far a block is from a dead centre: of blocks that one joint closes, the one that
-        is nearest.
+        """Note how far a block is from a dead centre: what iterates has the sine for its measure, a
+        closed form its square.
         """
-        # What iterates has the sine for its measure, a closed form its square.
-        sine = not block.forms
-        before = self.closures.get(block.name)
-        if before is not None:
-            both = (before, (closure, sine))
-            sine = sine or before[1]
-            closure = ca.fmin(
-                *(ca.sqrt(value) if sine and not is_sine else value for value, is_sine in both)
-            )
-        self.closures[block.name] = closure, sine
+        self.closures.setdefault(block.name, []).append((closure, not block.forms))
 
     def _signs(self, block: Block, form: ClosedForm) -> tuple[int, ...]:
         """The signs of the branches with which a form is nearest to the posture."""
@@ -389,14 +370,17 @@ class _Solver:
             )
             turning = coordinate.kind == "angle" and not counted
             scale = 1 if coordinate.kind == "angle" else self.length
-            symbol = self.iterated.number(
-                coordinate.name, scale, guess[coordinate], turning=turning
+            symbol = self.iterated.add(
+                coordinate.name, [guess[coordinate]], [scale], turning=turning
             )
             self._know(coordinate, coordinate.placed(symbol))
             if turning:
                 self.wrapped.add(coordinate.name)
         for spherical in sphericals:
-            axes = self.iterated.spherical(spherical, quaternions[spherical])
+            quaternion = self.iterated.add(
+                spherical.joint.name, quaternions[spherical], [1, 1, 1], spherical
+            )
+            axes = axes_of(quaternion)
             for number, coordinate in enumerate(
                 c for c in block.unknown if c.spherical is spherical
             ):
@@ -410,21 +394,17 @@ class _Solver:
         """
         loop = self.newton()
         assert loop is not None
-        for _ in range(100):
-            guess = self.iterated.guess
-            correction, size = loop.step(
-                guess, self.start.t, self.start.driven, self.start.parameters
+        start = self.start
+        guess, size = loop.closed(self.iterated.guess, start.t, start.driven, start.parameters)
+        if not float(size) < CLOSED:
+            raise AssemblyError(
+                f"the loops closed by {loop.joints} cannot be assembled from the given posture at"
+                f" the start of the motion{self.where()}{start.note}"
             )
-            guess[:] = [float(z) for z in (ca.DM(guess) + correction).full().ravel()]
-            if float(size) < 1e-9:
-                self.numbers.note(self.iterated.symbols, guess)
-                for coordinate in (c for block in self.residuals for c in block.unknown):
-                    self.numbers.note(coordinate.variables, self.numbers.of(self.known[coordinate]))
-                return
-        raise AssemblyError(
-            f"the loops closed by {loop.joints} cannot be assembled from the given posture at the"
-            f" start of the motion{self.where()}{self.start.note}"
-        )
+        self.iterated.guess[:] = guess.full().ravel().tolist()
+        self.numbers.note(self.iterated.symbols, self.iterated.guess)
+        for coordinate in (c for block in self.residuals for c in block.unknown):
+            self.numbers.note(coordinate.variables, self.numbers.of(self.known[coordinate]))
 
     def where(self) -> str:
         """Return the values of drives at the start, in words."""
@@ -446,7 +426,7 @@ class _Solver:
             column(c.acceleration for c in body.coordinates if c.driven),
         )
         found.note(ca.vertcat(*driven), ca.vertcat(self.dd, self.ddd))
-        systems: list[LinearSystem] = []
+        systems: list[tuple[Block, LinearSystem]] = []
         residuals: dict[str, Any] = {}
         redundancy_residuals: dict[str, Any] = {}
         for block in blocks:
@@ -463,7 +443,7 @@ class _Solver:
             ):
                 remaining = found.put_into(ca.substitute(residual, symbols, still))
                 found.note(symbols, system.solve(-remaining))
-            systems.append(system)
+            systems.append((block, system))
             if block in self.residuals:
                 volume = system.volume
                 if system.free:
@@ -481,15 +461,18 @@ class _Solver:
                     loop_residual(body, block, self.length)
                 )
         return Kinematics(
-            driven=self.d,
-            driven_rate=self.dd,
-            driven_acceleration=self.ddd,
-            iterated=self.iterated.symbols,
+            inputs={
+                "t": body.mechanism.time,
+                "d": self.d,
+                "d_rate": self.dd,
+                "d_acceleration": self.ddd,
+                "z": self.iterated.symbols,
+                "p": body.mechanism.symbols,
+            },
             found=found,
-            blocks=blocks,
             systems=tuple(systems),
             closures={
-                name: self.iterated.placed(closure) for name, (closure, _) in self.closures.items()
+                name: self.iterated.placed(_nearest(of)) for name, of in self.closures.items()
             },
             residuals=residuals,
             redundancy_residuals=redundancy_residuals,
@@ -560,6 +543,16 @@ def describe_coordinate(joint: str, kind: str, value: float) -> str:
         f"{joint} = {value:.6g} rad ({math.degrees(value):.6g} deg)"
         if kind == "angle"
         else f"{joint} = {value:.6g} m"
+    )
+
+
+def _nearest(closures: Sequence[tuple[ca.SX, bool]]) -> ca.SX:
+    """The least of closures of blocks that one joint closes, which are sines or squares of sines: a
+    sine where one of them is.
+    """
+    sine = any(is_sine for _, is_sine in closures)
+    return functools.reduce(
+        ca.fmin, (ca.sqrt(value) if sine and not is_sine else value for value, is_sine in closures)
     )
 
 

@@ -8,9 +8,11 @@ about the base, of the material from the section to the tip,
     shear   = f0 + f1 mu0 + f2 mu1,
     bending = m0 + f0 (l - xi) + f1 (mu1 - xi mu0) + f2 (mu2 - xi mu1).
 
-Energy is linear in the moments, so n1, n2, f1, f2 are derivatives of the section mobility's
-Lagrange terms by the moments (paper eq. 20): n2 and f2 are the square of the link's rate and less
-its change. They repeat in bending because d(bending)/d(xi) = -shear, the equilibrium of an element.
+The section mobility moves the velocity v of the base in the energy mu0 v^2/2 + mu1 v . e' + mu2
+e'^2/2 of that material, with e the link's direction. So its Lagrange terms (paper eq. 20) are mu0
+v' + mu1 e'', and n1, f1 and n2, f2 are less the components of v' and e'': the latter the square of
+the link's rate and less its change. They repeat in bending because d(bending)/d(xi) = -shear, the
+equilibrium of an element.
 n0, f0, m0 are what acts on the tip: the reactions, efforts and loads there. What acts at a station
 between base and tip is seen by the sections on its base side. What acts along the link has terms of
 its own (:mod:`.distributed_loads`).
@@ -27,7 +29,7 @@ from typing import Any
 import casadi as ca
 
 from ..base.arrays import Expression
-from ..base.frames import Frame, Velocities
+from ..base.frames import Frame
 from ..base.quantities import Check, Column, Output, force_members
 from ..base.rotation import Rotation
 from ..base.scalars import column, entries
@@ -46,7 +48,7 @@ from .friction import Solved, needed, solve
 from .joint_closure import carried, reaction, supported
 from .kinematics import Kinematics
 from .mesh_forces import braking, pressing_apart, transmissions_of
-from .multibody import Multibody, own_coordinate, released_forces
+from .multibody import Multibody, own_coordinate, split
 from .multipliers import multipliers_of
 from .pressing import frictions_of, joint_friction
 from .sizes import reach
@@ -86,7 +88,7 @@ def internal_forces(
     """
     weights = scene.weights
     along, across = multibody.terms()
-    along = kinematics.evaluate(along)
+    along = kinematics.found.put_into(along)
     unknowns, values, free = multipliers_of(multibody, kinematics, along)
 
     unaided = {program.row.replaces for program in multibody.rows}
@@ -107,11 +109,12 @@ def internal_forces(
             name: 1 if axis.kind == "angle" else size
             for name, (_, axis) in multibody.mechanism.coordinates.items()
         }
-        efforts = solve_efforts(multibody.efforts, needs, weights, units)
+        symbols = column(multibody.efforts.values())
+        efforts, authority = solve_efforts(multibody.efforts, needs, weights, units)
         drives = {name: multibody.efforts.get(name, drives.get(name)) for name in weights}
-        values = ca.substitute(values, efforts.symbols, efforts.values)
-        unknowns, values = ca.vertcat(unknowns, efforts.symbols), ca.vertcat(values, efforts.values)
-        held = {Check("hold", ", ".join(weights)): efforts.authority}
+        values = ca.substitute(values, symbols, efforts)
+        unknowns, values = ca.vertcat(unknowns, symbols), ca.vertcat(values, efforts)
+        held = {Check("hold", ", ".join(weights)): authority}
     starts = itertools.accumulate(
         (rates.numel() for rates in multibody.mobilities.values()), initial=0
     )
@@ -131,7 +134,7 @@ def internal_forces(
         if multibody.mechanism.space:
             columns |= _on_joint_axes(joints[name], found[name].local)
     tying = {c.name: c.multipliers for c in multibody.loop_equations if c.declared}
-    tying |= {program.row.name: program.multiplier for program in multibody.rows}
+    tying |= {program.row.name: program.multipliers for program in multibody.rows}
     columns |= {Output("multiplier", name): tying[name] for name in want.multipliers}
     if want.reactions:
         columns |= {
@@ -155,7 +158,7 @@ def internal_forces(
     rows = [*columns.values(), *(row for one in losses.values() for row in one.rows)]
     # All at once, for a substitution visits the whole graph; and mobilities rest.
     resting = ca.substitute(column(rows), multibody.mobility_rates, 0)
-    every = iter(entries(ca.substitute(kinematics.evaluate(resting), unknowns, values)))
+    every = iter(entries(ca.substitute(kinematics.found.put_into(resting), unknowns, values)))
     columns = {name: next(every) for name in columns}
     losses = {name: one.of_rows([next(every) for _ in one.rows]) for name, one in losses.items()}
     acting = solve(
@@ -211,7 +214,11 @@ def _section_law(
     """
     link, space = multibody.mechanism.links[name], multibody.mechanism.space
     table = table_of(space)
-    slopes = _material(multibody, name)
+    # In axes at rest that lie along the link at the instant: the energy does not see which axes at
+    # rest it is written in, and in these the first moment's forces are the rate squared and its
+    # change, to the last bit.
+    frame = multibody.accelerated[name].along_axis()
+    lever = frame.about_anchor().motion_of((1.0, 0.0, 0.0))[1]
     tip = Action()
     load_points: dict[Column, Any] = {}
     for source, place, action in _loads_on(multibody, link, found, drives):
@@ -227,8 +234,8 @@ def _section_law(
             Output("station", name, member, source): value
             for member, value in zip(table.load_point, members, strict=True)
         }
-    by_mass, by_moment = ([-slopes[k, column] for k in range(slopes.size1())] for column in (0, 1))
-    at_tip, about = list(tip.force), tip.couple
+    by_mass, by_moment = times(-1, frame.acceleration), times(-1, lever)
+    at_tip, about = list(tip.force[: 3 if space else 2]), tip.couple
     if _between_pins(multibody, link, drives):
         # The moment about the base is zero: of a light link between heavy bodies the tip's reaction
         # would leave rounding only.
@@ -245,7 +252,6 @@ def _section_law(
         Output("law", name, member): ca.SX(value)
         for member, value in zip(table.law, law, strict=True)
     }
-    frame = multibody.accelerated[name].along_axis()
     return (
         local
         | load_points
@@ -268,42 +274,6 @@ def _between_pins(multibody: Multibody, link: Link, drives: Expression) -> bool:
     ]
     pins = all(joint.kind == "revolute" and joint.name not in drives for joint in joints)
     return pins and set(ends) == {"base", "tip"}
-
-
-def _material(multibody: Multibody, name: str) -> Expression:
-    """Force on the part of a link beyond a section, along the link and across, for a unit of its
-    mass and of its first moment.
-
-    In axes at rest that lie along the link at the instant: the energy does not see which axes at
-    rest it is written in, and in these the first moment's forces are the rate squared and its
-    change, to the last bit.
-    """
-    frame, space = multibody.accelerated[name].along_axis(), multibody.mechanism.space
-    slopes, symbols = _of_any_link(space)
-    motion = (frame.speed, frame.acceleration, frame.rate, frame.angular)
-    return ca.substitute(slopes, symbols, column(value for vector in motion for value in vector))
-
-
-@functools.cache
-def _of_any_link(space: bool) -> tuple[Expression, Expression]:
-    """Inertia terms with symbols for the velocity and acceleration of the link's base, its angular
-    velocity, and its change; and these symbols.
-    """
-    symbols = ca.SX.sym("motion", 12)
-    speed, acceleration, rate, angular = (
-        (symbols[k], symbols[k + 1], symbols[k + 2]) for k in (0, 3, 6, 9)
-    )
-    base_frame = Frame(speed=speed, acceleration=acceleration, rate=rate, angular=angular)
-    mass, first, second = (ca.SX.sym(f"mu{i}") for i in range(3))
-    released, velocities = ca.SX.sym("ed_section", 3 if space else 2), Velocities()
-    translation = (released[0], released[1], released[2] if space else 0.0)
-    base = velocities.vector(base_frame.displaced(translation, ZERO).motion_of(ZERO))
-    lever = velocities.vector(Frame(rate=rate, angular=angular).motion_of((1.0, 0.0, 0.0)))
-    kinetic = (
-        mass * ca.sumsqr(base) / 2 + first * ca.dot(base, lever) + second * ca.sumsqr(lever) / 2
-    )
-    forces = released_forces(kinetic, released, velocities)
-    return ca.jacobian(forces, ca.vertcat(mass, first)), symbols
 
 
 def _loads_on(
@@ -384,8 +354,7 @@ def _in_ground_axes(
             return found
     two_force_link = multibody.tree.two_force_link_of.get(joint)
     if two_force_link is not None:
-        x, y, z = ca.vertsplit(actions[joint.name])
-        force = Action((x, y, z))
+        force = Action(*split(actions[joint.name], space=True))
         return force if joint.child.body is two_force_link.link else -force
     return Action(*supported(joint, parent, child, *_on_child(multibody, joint, actions)))
 
@@ -414,10 +383,7 @@ def _on_child(
     mobility.
     """
     action = multibody.tree.branch_of[joint.name].sign * actions[joint.name]
-    if multibody.mechanism.space:
-        x, y, z, *about = ca.vertsplit(action)
-        return (x, y, z), ((about[0], about[1], about[2]) if about else ZERO)
-    return (action[0], action[1], 0.0), (0.0, 0.0, action[2]) if joint.bears_moment else ZERO
+    return split(action, space=multibody.mechanism.space)
 
 
 def _on_joint_axes(joint: Joint, local: Action) -> dict[Column, Expression]:

@@ -67,11 +67,6 @@ class Moving:
         deviations = _with_turns(body, solved, start, _seeing(body, want))
         return cls(scene, want, body, laws, start, solved, deviations)
 
-    @property
-    def inputs(self) -> dict[str, Expression]:
-        """Arguments of every column."""
-        return instant_inputs(self.scene.mechanism, self.solved)
-
     def begins(self, expression: Expression) -> Expression:
         """An expression in the inputs where the motion starts."""
         start, newton = self.start, self.solved.newton
@@ -81,7 +76,7 @@ class Moving:
             newton.guess if newton else [],
             start.parameters,
         )
-        return ca.Function("start", [*self.inputs.values()], [expression])(*at_start)
+        return ca.Function("start", [*self.solved.inputs.values()], [expression])(*at_start)
 
     def columns(self) -> tuple[dict[Column, Expression], dict[Output, dict[Column, int]]]:
         """Columns that need no force: checks, motion and loads; and the sums of angles that loops
@@ -98,7 +93,7 @@ class Moving:
                     Output("load", part.source, member): action.member(member)
                     for member in force_members(self.scene.mechanism.space)
                 }
-        placed = self.solved.evaluate(column(columns.values()))
+        placed = self.solved.found.put_into(column(columns.values()))
         return dict(zip(columns, entries(placed), strict=True)), loop_angles
 
     def _checks(self) -> dict[Column, Expression]:
@@ -197,7 +192,7 @@ def _with_turns(
     """
     angles = [c for c in body.coordinates if c.kind == "angle"]
     wrapped = column(c.value for c in angles if c.name in solved.wrapped)
-    counted = solved.evaluate(column(c.value for c in angles if c.name not in solved.wrapped))
+    counted = solved.found.put_into(column(c.value for c in angles if c.name not in solved.wrapped))
     values: dict[str, Any] = {}
     users: dict[str, list[str]] = {}
     for turned in body.turned:
@@ -210,8 +205,8 @@ def _with_turns(
             values[turned.name] = turned.within
     uncounted = [turned for turned in body.turned if turned.name not in values]
     deviations: dict[str, Any] = {}
-    guide = Guide.of(body, solved.driven, solved.iterated, solved.newton, start)
-    within = solved.evaluate(column(turned.within for turned in uncounted))
+    guide = Guide.of(body, solved.inputs["d"], solved.inputs["z"], solved.newton, start)
+    within = solved.found.put_into(column(turned.within for turned in uncounted))
     for turned, rule in zip(uncounted, guide.rules(within, counted), strict=True):
         if rule is None:
             raise DeclarationError(
@@ -219,25 +214,13 @@ def _with_turns(
                 " number of revolutions, which cannot be determined from the drives; use its sine"
                 " and cosine, or the angle of a drive"
             )
-        c, s = (solved.evaluate(part) for part in (turned.cosine, turned.sine))
+        c, s = (solved.found.put_into(part) for part in (turned.cosine, turned.sine))
         values[turned.name], deviations[turned.name] = rule.angle(c, s, counted)
     solved.found.note(
         column(turned.symbol for turned in body.turned),
-        solved.evaluate(column(values[turned.name] for turned in body.turned)),
+        solved.found.put_into(column(values[turned.name] for turned in body.turned)),
     )
     return deviations
-
-
-def instant_inputs(mechanism: Mechanism, solved: kinematics.Kinematics) -> dict[str, Expression]:
-    """The symbols that an instant of a mechanism is a function of, by name."""
-    return {
-        "t": mechanism.time,
-        "d": solved.driven,
-        "d_rate": solved.driven_rate,
-        "d_acceleration": solved.driven_acceleration,
-        "z": solved.iterated,
-        "p": mechanism.symbols,
-    }
 
 
 def _seeing(body: Multibody, want: Wanted) -> dict[str, Expression]:

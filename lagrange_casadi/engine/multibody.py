@@ -19,14 +19,14 @@ import casadi as ca
 from ..base.arrays import Expression
 from ..base.frames import Frame, Velocities
 from ..base.scalars import column
-from ..base.vectors import AXES, ZERO
+from ..base.vectors import AXES, ZERO, dot
 from ..errors import DeclarationError
 from ..model.constraints import Row
 from ..model.declared_parts import Point, Vector
 from ..model.joints import Axis, Joint
 from ..model.limits import APART
 from ..model.mechanism import Mechanism
-from .joint_closure import slide, slide_motion, turned, turning
+from .joint_closure import apart, slide_motion, turned, turning
 from .lagrange import LagrangeSystem
 from .spherical import SphericalCoordinates
 from .three_rotations import ThreeRotations
@@ -109,8 +109,7 @@ class Coordinate:
 
 @dataclass(frozen=True, eq=False)
 class LoopEquations:
-    """Equations that a joint that closes a loop, or a constraint, puts on the coordinates, and the
-    symbols of their multipliers.
+    """Equations that a joint that closes a loop, or a constraint, puts on the coordinates.
 
     ``residual`` is Phi, followed by its total time derivatives. ``joint`` is None for a
     ``two_force_link``, which has a length, and for a user's constraint. ``counted`` are the
@@ -122,9 +121,13 @@ class LoopEquations:
     residual: Any
     residual_rate: Any
     residual_acceleration: Any
-    multipliers: Any
     two_force_link: TwoForceLink | None = None
     counted: Any = None
+
+    @cached_property
+    def multipliers(self) -> ca.SX:
+        """The symbols of its multipliers."""
+        return ca.SX.sym(f"lambda_{self.name}", self.residual.numel())
 
     @property
     def kind(self) -> str:
@@ -183,7 +186,7 @@ class RowGraph:
     row: Row
     residual: Any
     size: Any
-    multiplier: Any
+    multipliers: Any
 
 
 @dataclass(frozen=True, eq=False)
@@ -239,16 +242,6 @@ class Multibody:
         return ThreeRotations(spherical.joint, parent, child, spherical.side)
 
     @property
-    def variables(self) -> Expression:
-        """All coordinates' variables, one column."""
-        return column(c.variables for c in self.coordinates)
-
-    @property
-    def rates(self) -> Expression:
-        """All coordinates' rates, one column."""
-        return column(c.rate for c in self.coordinates)
-
-    @property
     def mobility_rates(self) -> Expression:
         """The rates of all extra mobilities, one column."""
         return column(self.mobilities.values())
@@ -260,8 +253,8 @@ class Multibody:
         so what these axes and the levers in them depend on is put in at the end, by symbols that
         are ``still`` until then.
         """
-        still = ca.SX.sym("still", self.variables.numel() if self.mechanism.space else 0)
-        moving = self.variables if self.mechanism.space else still
+        moving = column(c.variables for c in self.coordinates if self.mechanism.space)
+        still = ca.SX.sym("still", moving.numel())
         # The axes of a ball change with rates that are those of nothing, and stand still here as
         # all that moves in space does.
         integrable = [c for c in self.coordinates if c.spherical is None]
@@ -269,7 +262,7 @@ class Multibody:
             kinetic=self.kinetic,
             force_function=ca.SX(0),
             coordinates=column(c.variables for c in integrable),
-            rates=self.rates,
+            rates=column(c.rate for c in self.coordinates),
             accelerations=column(c.acceleration for c in self.coordinates),
             coordinate_rates=column(c.change for c in integrable),
             mobility_rates=self.mobility_rates,
@@ -302,7 +295,7 @@ def motion_along(
         return coordinate.value, coordinate.rate, coordinate.acceleration
     parent, child = (frames[body.name] for body in joint.bodies)
     if axis.kind == "slide":
-        place = slide(joint, parent, child, axis.direction)
+        place = dot(apart(joint, parent, child), axis.direction)
         rate, acceleration = slide_motion(joint, parent, child, axis.direction)
         return ca.SX(place), ca.SX(rate), ca.SX(acceleration)
     number = [one.coordinate for one in joint.axes if one.kind == "angle"].index(axis.coordinate)
@@ -332,6 +325,16 @@ def change(expression: ca.SX, coordinates: tuple[Coordinate, ...], time: ca.SX) 
     moving = column([*(c.variables for c in coordinates), *(c.rate for c in coordinates), time])
     speed = column([*(c.change for c in coordinates), *(c.acceleration for c in coordinates), 1])
     return ca.jtimes(ca.SX(expression), moving, speed)
+
+
+def split(six: Expression, *, space: bool) -> tuple[Vector, Vector]:
+    """A translation and a rotation, or a force and a couple, of all their components that there are
+    in a plane or in space; of a point's alone the latter is zero.
+    """
+    x, y, *others = ca.vertsplit(six)
+    z, *about = others if space else (0.0, *others)
+    u, v, w = (about if space else (0.0, 0.0, *about)) if about else ZERO
+    return (x, y, z), (u, v, w)
 
 
 def released_forces(kinetic: ca.SX, released: ca.SX, velocities: Velocities) -> ca.SX:

@@ -27,7 +27,7 @@ def multipliers_of(
     symbols, values, free = ca.SX(0, 1), ca.SX(0, 1), ca.SX(0, 1)
     meshed = transmissions_of(multibody.mechanism)
     every = column(loop.multipliers for loop in multibody.loop_equations if loop.name not in meshed)
-    for block, system in reversed(list(zip(kinematics.blocks, kinematics.systems, strict=True))):
+    for block, system in reversed(kinematics.systems):
         local = block.multipliers
         residual = column(rows[c.name] for c in block.unknown)
         residual = ca.substitute(residual, symbols, values)
@@ -41,7 +41,7 @@ def multipliers_of(
             found, values = _where_they_touch(multibody, block, touching, found, values)
         symbols, values = ca.vertcat(local, symbols), ca.vertcat(found, values)
     if multibody.rows:
-        mu = column(program.multiplier for program in multibody.rows)
+        mu = column(program.multipliers for program in multibody.rows)
         unaided = column(rows[program.row.replaces] for program in multibody.rows)
         unaided = ca.substitute(unaided, symbols, values)
         solved = ca.solve(ca.jacobian(unaided, mu), -ca.substitute(unaided, mu, 0))

@@ -20,7 +20,7 @@ from ..model.scene import Scene, Wanted
 from .assembly import assemble
 from .derive import derived
 from .model_data import ModelData
-from .moving import instant_inputs, solved_motion
+from .moving import solved_motion
 from .program import Program
 from .tree import span
 
@@ -56,12 +56,14 @@ def reflected_inertia(scene: Scene, parameters: Mapping[str, float]) -> Reflecte
             body.along[drive.axis.coordinate], body.frames[drive.joint.parent.body.name].rate
         )
         energy += (drive.reflected * rate / 2 + drive.spin * about) * rate
-    energy = solved.evaluate(ca.substitute(energy, body.mobility_rates, 0))
-    rates = [solved.evaluate(body.motion_along(*mechanism.coordinates[name])[1]) for name in drives]
-    matrix = ca.hessian(energy, solved.driven_rate)[0]
-    by_rate = ca.jacobian(column(rates), solved.driven_rate)
+    energy = solved.found.put_into(ca.substitute(energy, body.mobility_rates, 0))
+    rates = [
+        solved.found.put_into(body.motion_along(*mechanism.coordinates[name])[1]) for name in drives
+    ]
+    matrix = ca.hessian(energy, solved.inputs["d_rate"])[0]
+    by_rate = ca.jacobian(column(rates), solved.inputs["d_rate"])
     out = ca.vertcat(ca.vec(matrix.T), ca.vec(by_rate.T))
-    instant = graph("instant", instant_inputs(mechanism, solved), out=out)
+    instant = graph("instant", solved.inputs, out=out)
     columns: list[Column] = [
         Output("output", f"{a}:{b}") for a in (*driven, *drives) for b in driven
     ]

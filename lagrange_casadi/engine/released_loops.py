@@ -15,7 +15,7 @@ import numpy as np
 from ..base.arrays import Array, Flags
 from ..base.scalars import column
 from .multibody import Multibody
-from .sizes import extent, units
+from .sizes import directs, extent
 from .spherical import axes_of, quaternion_of, turn
 from .substitution import Numbers
 
@@ -89,8 +89,15 @@ class ReleasedLoops:
             column(c.residual for c in multibody.loop_equations), column(variables), column(placed)
         )
         quaternion = column(turned.values())
-        u, q = _state(multibody, numbers)
-        first = u / sizes, q, *numbers.of(mechanism.time), numbers.of(mechanism.symbols)
+        # Zero for the coordinates of balls.
+        u = column(ca.SX(0) if c.spherical is not None else c.value for c in coordinates)
+        axes = (np.reshape(numbers.of(one.axes), (3, 3)) for one in turned)
+        first = (
+            np.array(numbers.of(u)) / sizes,
+            np.array([quaternion_of(each) for each in axes]).ravel(),
+            *numbers.of(mechanism.time),
+            numbers.of(mechanism.symbols),
+        )
         given = [free, quaternion, *inputs]
         slope = ca.Function("slope", given, [ca.jacobian(residuals, free)])
         rows = np.linalg.norm(slope(*first).full(), axis=1)
@@ -100,7 +107,7 @@ class ReleasedLoops:
         loops = [slice(*pair) for pair in itertools.pairwise(ends)]
         for loop, own in zip(multibody.loop_equations, loops, strict=True):
             if not loop.declared:
-                rows[own] = units(loop, size)
+                rows[own] = np.where(directs(loop), 1.0, size)
         residuals /= ca.DM(np.where(rows > 0.0, rows, 1.0))
         return cls(
             ca.Function("gaps", given, [residuals, ca.jacobian(residuals, free)]),
@@ -120,13 +127,6 @@ class ReleasedLoops:
             multibody.slack,
         )
 
-    def slopes(self) -> Array | None:
-        """The derivatives by all coordinates where the loops close near the start, or miss by
-        rounding and come no nearer; None where they do not.
-        """
-        found = self.closed(self.first)
-        return None if found is None else self.at(found)[1]
-
     def at(self, state: State) -> tuple[Array, Array]:
         """The equations and their derivatives by all coordinates."""
         residual, slope = (x.full() for x in self.gaps(*state))
@@ -135,7 +135,8 @@ class ReleasedLoops:
     def closed(
         self, state: State, free: Flags | None = None, rows: Flags | None = None, steps: int = 200
     ) -> State | None:
-        """The state in which equations hold, from a ``state`` near it; None where it is not found.
+        """The state in which equations hold, or miss by rounding and come no nearer, from a
+        ``state`` near it; None where it is not found.
 
         Coordinates move that are ``free``, by default all, for the equations ``rows`` that are
         marked, by default all.
@@ -170,12 +171,3 @@ class ReleasedLoops:
         scaled = slope / np.where(lengths > max(_NO_SLOPE, self.slack), lengths, 1.0)
         least = max(_DEPENDENT, self.slack)
         return int(np.linalg.matrix_rank(scaled, tol=least)) if scaled.size else 0
-
-
-def _state(multibody: Multibody, numbers: Numbers) -> tuple[Array, Array]:
-    """The coordinates [rad or m], zero for those of balls, and the balls' quaternions."""
-    values = column(ca.SX(0) if c.spherical is not None else c.value for c in multibody.coordinates)
-    quaternions = [
-        quaternion_of(np.reshape(numbers.of(one.axes), (3, 3))) for one in multibody.sphericals
-    ]
-    return np.array(numbers.of(values)), np.array(quaternions).ravel()

@@ -17,7 +17,7 @@ from ..base.scalars import column
 from ..base.vectors import AXES, ZERO, Vector, cross, minus, times
 from ..model.joints import Joint
 from .blocks import Block
-from .joint_closure import turning_axes
+from .joint_closure import slides_of, turning_axes
 from .linear import LinearSystem
 from .multibody import Multibody
 from .sampling import Sampling
@@ -64,14 +64,13 @@ def _screws(multibody: Multibody, block: Block, joint: Joint) -> tuple[ca.SX, ca
         screw(frame.rate, frame.motion_of(point.place)[0], frame.place_of(point.place))
         for frame, point in ends
     )
-    slides = [joint.triad[f.direction] for f in joint.freedoms if f.move == "slide"]
     turns = AXES if joint.turns > 2 else turning_axes(joint, parent, child)
     own = [
         *(
             screw(axis, ZERO, frame.place_of(point.place))
             for axis, (frame, point) in zip(turns, (*ends, ends[0]), strict=False)
         ),
-        *(screw(ZERO, parent.rotation.apply(axis), ZERO) for axis in slides),
+        *(screw(ZERO, parent.rotation.apply(axis), ZERO) for axis in slides_of(joint)),
     ]
     rates = column(c.rate for c in block.unknown)
     return ca.jacobian(ca.SX(far - near), rates), ca.densify(ca.SX(ca.horzcat(*own)))

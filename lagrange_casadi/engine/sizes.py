@@ -5,7 +5,7 @@ from __future__ import annotations
 import casadi as ca
 import numpy as np
 
-from ..base.arrays import Array, Flags
+from ..base.arrays import Flags
 from ..base.symbolic import symbolic
 from ..model.declaration import Declaration
 from .joint_closure import held_directions
@@ -38,12 +38,7 @@ def extent(declared: Declaration) -> ca.SX:
     return reach(declared) + (ca.mmax(ca.vertcat(*places)) if places else 0)
 
 
-def units(loop: LoopEquations, size: float) -> Array:
-    """Units of a loop's residuals: the mechanism's size [m], or 1 for directions."""
-    return np.where(directs(loop), 1.0, size)
-
-
 def directs(loop: LoopEquations) -> Flags:
     """The equations of a loop that hold directions, marked: its last ones."""
-    held = held_directions(loop.joint) if loop.joint is not None else 0
-    return np.arange(loop.residual.numel())[::-1] < held
+    held = held_directions(loop.joint) if loop.joint is not None else ()
+    return np.arange(loop.residual.numel())[::-1] < len(held)

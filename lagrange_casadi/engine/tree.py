@@ -13,7 +13,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from heapq import heappop, heappush
-from typing import NoReturn
+from typing import NoReturn, TypeAlias
 
 from ..errors import DeclarationError
 from ..model.declared_parts import Body, Ground, Link, Point, PointMass
@@ -44,6 +44,10 @@ class Branch:
     def sign(self) -> int:
         """1, or -1 where the tree runs against the joint."""
         return -1 if self.reverse else 1
+
+
+Step: TypeAlias = tuple[Point, Joint, Point]
+"""The way from one body to the next, by a point of each."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,6 +90,18 @@ class Tree:
             )
         }
 
+    def around(self, joint: Joint) -> list[Step]:
+        """The way around a loop that a joint closes, from body to body and back, by itself last."""
+        led = {branch.far.body: branch for branch in self.branches}
+        ways: list[list[Branch]] = [[], []]
+        for way, body in zip(ways, joint.bodies, strict=True):
+            while body in led:
+                way.append(led[body])
+                body = led[body].near.body
+        up = [(b.far, b.joint, b.near) for b in ways[0] if b not in ways[1]]
+        down = [(b.near, b.joint, b.far) for b in reversed(ways[1]) if b not in ways[0]]
+        return [*up, *down, (joint.child, joint, joint.parent)]
+
     def measures(self, joint: Joint, axis: Axis) -> bool:
         """Return whether the motion of a joint along an axis is an output: not the angles of one
         with three turns that closes a loop.
@@ -106,7 +122,7 @@ def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:
     moved = {joint for name, (joint, _) in mechanism.coordinates.items() if name in driven}
     for joint in tree.closing:
         if joint in moved:
-            _refuse_driven(mechanism, joint, tree.branches, driven)
+            _refuse_driven(mechanism, joint, tree, driven)
         if joint.kind == "screw":
             # Where its bodies are does not show how often it has turned.
             raise DeclarationError(
@@ -218,12 +234,12 @@ def _refuse_unused(mechanism: Mechanism, two_force_links: Sequence[TwoForceLink]
 
 
 def _refuse_driven(
-    mechanism: Mechanism, joint: Joint, branches: Sequence[Branch], given: Collection[str]
+    mechanism: Mechanism, joint: Joint, tree: Tree, given: Collection[str]
 ) -> NoReturn:
     """Raise :class:`DeclarationError` for a driven joint that closes a loop; ``given`` are the
     coordinates that have a motion.
     """
-    axes = [axis for one in _around(joint, branches) for axis in one.axes if mechanism.space]
+    axes = [axis for _, one, _ in tree.around(joint) for axis in one.axes if mechanism.space]
     following = [axis.coordinate for axis in axes if axis.coordinate not in given]
     if following:
         raise DeclarationError(
@@ -239,21 +255,6 @@ def _refuse_driven(
         f"the drive of joint '{joint.name}' is redundant: the positions of its bodies already"
         " follow from the other driven joints; remove one of these drives"
     )
-
-
-def _around(joint: Joint, branches: Sequence[Branch]) -> list[Joint]:
-    """The joints of the loop that a joint closes, itself the last."""
-    led = {branch.far.body: branch for branch in branches}
-    paths: list[list[Joint]] = []
-    for body in joint.bodies:
-        paths.append([])
-        while body in led:
-            paths[-1].append(led[body].joint)
-            body = led[body].near.body
-    return [
-        *(one for k, path in enumerate(paths) for one in path if one not in paths[1 - k]),
-        joint,
-    ]
 
 
 def _can_carry(joint: Joint, reverse: bool) -> bool:

@@ -88,8 +88,6 @@ def find_two_force_links(mechanism: Mechanism, driven: Collection[str]) -> tuple
     """The links that are bars; none where something drives, measures or loads what a spin would
     change.
     """
-    if not mechanism.space:
-        return ()
     found: dict[Body, TwoForceLink] = {}
     ends: dict[Body, list[Joint]] = {}
     for joint in mechanism.joints.values():
@@ -175,25 +173,21 @@ def two_force_frame(
     The latter is Phi, Phi' and Phi'' of half the square of the distance over the length, less half
     the length [m].
     """
-    places, speeds, accelerations = [], [], []
+    ends: list[tuple[Vector, Vector, Vector]] = []
     for joint in two_force_link.joints:
         point, frame = two_force_link.other(joint), frames[two_force_link.other(joint).body.name]
         speed, acceleration = frame.motion_of(point.place)
         if joint.name in released:
             along, across, out = ca.vertsplit(released[joint.name])
             speed = plus(speed, (along, across, out))
-        places.append(frame.place_of(point.place))
-        speeds.append(speed)
-        accelerations.append(acceleration)
-    length, apart = two_force_link.length, minus(places[1], places[0])
-    rate, change = minus(speeds[1], speeds[0]), minus(accelerations[1], accelerations[0])
+        ends.append((frame.place_of(point.place), speed, acceleration))
+    apart, rate, change = map(minus, ends[1], ends[0])
+    length = two_force_link.length
     x, course = times(1 / length, apart), (times(1 / length, rate), times(1 / length, change))
     aside = across_link(two_force_link, x)
     rotation = Rotation(x, times(1 / ca.sqrt(dot(aside, aside)), aside), None)
     frame = TwoForceFrame(
-        places[0],
-        speeds[0],
-        accelerations[0],
+        *ends[0],
         rotation,
         cross(x, course[0]),
         cross(x, course[1]),

@@ -23,9 +23,11 @@ from ...base.symbolic import symbolic
 from ...base.tables import ANGLE, FORCE, LENGTH, MOMENT
 from ...errors import DeclarationError
 from ..dead_centres import POINTS
+from ..iteration import CLOSED
 from ..kinematics import describe_coordinate, where
 from ..program import Program
 from .passed_dead_centres import Placed, dead_steps
+from .phases import add_turns
 from .refusing import first_broken
 
 FRACTIONS = ("gap", "misfit", "beyond", "stroke")
@@ -42,7 +44,6 @@ TURNS = 4
 _STEPS = 512
 _OFFSET = 0.618
 _BLOCK = 4096
-_NEWTON_STEPS, _NEWTON_DONE = 50, 1e-9
 _SAME, _FAINT = 1e-9, 1e-11
 """Relative changes that count as none: of a column's own largest value, and of the largest of its
 unit.
@@ -169,8 +170,7 @@ class Drive:
     @property
     def wrapped(self) -> list[int]:
         """The rows of the angles that are known up to whole turns only."""
-        parts = {part for signs in self.program.loop_angles.values() for part in signs}
-        return [k for output, k in self.program.outputs.items() if output in parts]
+        return [k for k, whole in self.program.loop_rows[0] if not whole]
 
     def terms_at(self, angles: Array, places: Array) -> Array:
         """The terms at angles, as they come, (factors, columns, n).
@@ -192,15 +192,11 @@ class Drive:
         """
         if self.program.newton is None:
             return places
-        for _ in range(_NEWTON_STEPS):
-            correction, size = (
-                found.full()
-                for found in self.program.newton.step(places, 0.0, angles[None], self.p)
-            )
-            places = places + correction
-            if np.all(size < _NEWTON_DONE):
-                return places
-        bad = angles[int(np.argmax(~(size[0] < _NEWTON_DONE)))]
+        found, size = self.program.newton.closed(places, 0.0, angles[None], self.p)
+        closed = size.full()[0] < CLOSED
+        if closed.all():
+            return np.asarray(found.full())
+        bad = angles[int(np.argmin(closed))]
         raise DeclarationError(
             f"table: the loops closed by {self.program.newton.joints} did not"
             f" converge{self._not_round(bad)}"
@@ -212,15 +208,13 @@ class Drive:
 
         Whole turns that columns count are then in the angles, and the columns are zero.
         """
-        revolutions_of = {
-            self.program.columns[k]: turn for k, turn in zip(self.wrapped, turns, strict=True)
-        }
-        whole = list(self.program.checks("turns").values())
-        revolutions_of |= {self.program.columns[k]: math.tau * columns[k] for k in whole}
-        for angle, k in self.program.outputs.items():
-            for part, sign in self.program.loop_angles.get(angle, {}).items():
-                columns[k] += sign * revolutions_of[part]
-        columns[whole] = 0.0
+        lacking, parts = iter(turns), self.program.loop_rows[0]
+        add_turns(
+            self.program,
+            columns,
+            [math.tau * columns[k] if whole else next(lacking) for k, whole in parts],
+        )
+        columns[[k for k, whole in parts if whole]] = 0.0
 
     def follow(self, turns: int) -> tuple[Course, Array]:
         """Some turns from the start on, and the terms there, angles made continuous.

@@ -8,6 +8,7 @@ better (:mod:`.stages`), and so must whoever checks that.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -60,14 +61,22 @@ def unwind(program: Program, out: Array) -> None:
     of a graph.
     """
     parts, angles = program.loop_rows
-    revolutions = [
-        math.tau * (out[k] - out[k][..., :1]) if whole else _jumps(out[k]) for k, whole in parts
-    ]
-    for k, signs in angles:
-        angle = out[k]
+    add_turns(
+        program,
+        out,
+        [math.tau * (out[k] - out[k][..., :1]) if whole else _jumps(out[k]) for k, whole in parts],
+    )
+    for k, _ in angles:
+        out[k] -= math.tau * np.ceil(out[k][..., :1] / math.tau - 0.5)
+
+
+def add_turns(program: Program, out: Array, turns: Sequence[Array | float]) -> None:
+    """Add to the angles that loops set, in the columns ``out`` (columns, ..., t) of a graph, the
+    turns [rad] of their parts.
+    """
+    for k, signs in program.loop_rows[1]:
         for number, sign in signs:
-            angle += sign * revolutions[number]
-        angle -= math.tau * np.ceil(angle[..., :1] / math.tau - 0.5)
+            out[k] += sign * turns[number]
 
 
 def _jumps(angle: Array) -> Array | float:
