@@ -97,7 +97,7 @@ def solve(multibody: Multibody, posture: Mapping[str, float], start: Start) -> K
             # A loop whose way is open may have to be closed in the other one: the last such loop
             # first.
             undecided = solver.undecided.closures[len(solver.branches) :]
-            for k, (_, modes) in enumerate(undecided):
+            for k, modes in enumerate(undecided):
                 waiting += [
                     (*solver.branches, *(0,) * k, other) for other in reversed(range(1, len(modes)))
                 ]

@@ -87,8 +87,8 @@ class Undecided:
     that iterated loops need.
     """
 
-    closures: list[tuple[str, tuple[Mapping[str, float], ...]]] = field(default_factory=list)
-    lacking: list[tuple[str, list[tuple[str, bool]]]] = field(default_factory=list)
+    closures: list[tuple[Mapping[str, float], ...]] = field(default_factory=list)
+    lacking: list[tuple[str, bool]] = field(default_factory=list)
     words: list[str] = field(default_factory=list)
 
     def __bool__(self) -> bool:
@@ -120,9 +120,7 @@ class Undecided:
             )
 
         chosen = max(modes[0], key=apart)
-        self.closures.append(
-            (block.joints, tuple({chosen.posture_key: mode[chosen]} for mode in modes))
-        )
+        self.closures.append(tuple({chosen.posture_key: mode[chosen]} for mode in modes))
         many = "two" if len(modes) == 2 else "several"
         self.words.append(
             f"the loop closed by {block.joints} can be assembled in {many} ways at the start of the"
@@ -132,7 +130,7 @@ class Undecided:
     def note_lacking(self, block: Block, missing: Sequence[Coordinate]) -> None:
         """Note that an iteration needs rough values of coordinates to begin with."""
         names = [c.posture_key for c in missing]
-        self.lacking.append((block.joints, [(c.posture_key, c.kind != "slide") for c in missing]))
+        self.lacking += [(c.posture_key, c.kind != "slide") for c in missing]
         self.words.append(
             f"the loops closed by {block.joints} have no closed form; also give a rough posture of"
             f" {', '.join(names)}"
@@ -142,9 +140,7 @@ class Undecided:
         """All of it as an error, with lines to paste."""
         lines = []
         for k in (
-            range(len(self.closures[0][1]))
-            if len(self.closures) == 1 and not self.lacking
-            else (0,)
+            range(len(self.closures[0])) if len(self.closures) == 1 and not self.lacking else (0,)
         ):
             entries = [
                 posture_entry(
@@ -153,13 +149,12 @@ class Undecided:
                     modes[k][name],
                     *(mode[name] for mode in modes),
                 )
-                for _, modes in self.closures
+                for modes in self.closures
                 for name in modes[k]
             ]
             entries += [
                 f"'{name}': '... deg'" if angular else f"'{name}': ..."
-                for _, names in self.lacking
-                for name, angular in names
+                for name, angular in self.lacking
             ]
             lines.append("posture={" + ", ".join(entries) + "}")
         say = f"choose one by {' or '.join(lines)}" if self.closures else lines[0]
@@ -170,6 +165,6 @@ class Undecided:
         )
         return PostureError(
             f"{'; '.join(self.words)}; {say}{after}",
-            tuple(modes for _, modes in self.closures),
+            tuple(self.closures),
             bool(self.lacking),
         )
