@@ -8,11 +8,9 @@ about the base, of the material from the section to the tip,
     shear   = f0 + f1 mu0 + f2 mu1,
     bending = m0 + f0 (l - xi) + f1 (mu1 - xi mu0) + f2 (mu2 - xi mu1).
 
-The section mobility moves the velocity v of the base in the energy mu0 v^2/2 + mu1 v . e' + mu2
-e'^2/2 of that material, with e the link's direction. So its Lagrange terms (paper eq. 20) are mu0
-v' + mu1 e'', and n1, f1 and n2, f2 are less the components of v' and e'': the latter the square of
-the link's rate and less its change. They repeat in bending because d(bending)/d(xi) = -shear, the
-equilibrium of an element.
+Energy is linear in the moments, so n1, n2, f1, f2 are derivatives of the section mobility's
+Lagrange terms by the moments (paper eq. 20): n2 and f2 are the square of the link's rate and less
+its change. They repeat in bending because d(bending)/d(xi) = -shear, the equilibrium of an element.
 n0, f0, m0 are what acts on the tip: the reactions, efforts and loads there. What acts at a station
 between base and tip is seen by the sections on its base side. What acts along the link has terms of
 its own (:mod:`.distributed_loads`).
@@ -29,7 +27,7 @@ from typing import Any
 import casadi as ca
 
 from ..base.arrays import Expression
-from ..base.frames import Frame
+from ..base.frames import Frame, Velocities
 from ..base.quantities import Check, Column, Output, force_members
 from ..base.rotation import Rotation
 from ..base.scalars import column, entries
@@ -48,7 +46,7 @@ from .friction import Solved, needed, solve
 from .joint_closure import carried, reaction, supported
 from .kinematics import Kinematics
 from .mesh_forces import braking, pressing_apart, transmissions_of
-from .multibody import Multibody, own_coordinate, split
+from .multibody import Multibody, own_coordinate, released_forces, split
 from .multipliers import multipliers_of
 from .pressing import frictions_of, joint_friction
 from .sizes import reach
@@ -214,11 +212,7 @@ def _section_law(
     """
     link, space = multibody.mechanism.links[name], multibody.mechanism.space
     table = table_of(space)
-    # In axes at rest that lie along the link at the instant: the energy does not see which axes at
-    # rest it is written in, and in these the first moment's forces are the rate squared and its
-    # change, to the last bit.
-    frame = multibody.accelerated[name].along_axis()
-    lever = frame.about_anchor().motion_of((1.0, 0.0, 0.0))[1]
+    slopes = _material(multibody, name)
     tip = Action()
     load_points: dict[Column, Any] = {}
     for source, place, action in _loads_on(multibody, link, found, drives):
@@ -234,8 +228,8 @@ def _section_law(
             Output("station", name, member, source): value
             for member, value in zip(table.load_point, members, strict=True)
         }
-    by_mass, by_moment = times(-1, frame.acceleration), times(-1, lever)
-    at_tip, about = list(tip.force[: 3 if space else 2]), tip.couple
+    by_mass, by_moment = ([-slopes[k, column] for k in range(slopes.size1())] for column in (0, 1))
+    at_tip, about = list(tip.force), tip.couple
     if _between_pins(multibody, link, drives):
         # The moment about the base is zero: of a light link between heavy bodies the tip's reaction
         # would leave rounding only.
@@ -252,6 +246,7 @@ def _section_law(
         Output("law", name, member): ca.SX(value)
         for member, value in zip(table.law, law, strict=True)
     }
+    frame = multibody.accelerated[name].along_axis()
     return (
         local
         | load_points
@@ -274,6 +269,42 @@ def _between_pins(multibody: Multibody, link: Link, drives: Expression) -> bool:
     ]
     pins = all(joint.kind == "revolute" and joint.name not in drives for joint in joints)
     return pins and set(ends) == {"base", "tip"}
+
+
+def _material(multibody: Multibody, name: str) -> Expression:
+    """Force on the part of a link beyond a section, along the link and across, for a unit of its
+    mass and of its first moment.
+
+    In axes at rest that lie along the link at the instant: the energy does not see which axes at
+    rest it is written in, and in these the first moment's forces are the rate squared and its
+    change, to the last bit.
+    """
+    frame, space = multibody.accelerated[name].along_axis(), multibody.mechanism.space
+    slopes, symbols = _of_any_link(space)
+    motion = (frame.speed, frame.acceleration, frame.rate, frame.angular)
+    return ca.substitute(slopes, symbols, column(value for vector in motion for value in vector))
+
+
+@functools.cache
+def _of_any_link(space: bool) -> tuple[Expression, Expression]:
+    """Inertia terms with symbols for the velocity and acceleration of the link's base, its angular
+    velocity, and its change; and these symbols.
+    """
+    symbols = ca.SX.sym("motion", 12)
+    speed, acceleration, rate, angular = (
+        (symbols[k], symbols[k + 1], symbols[k + 2]) for k in (0, 3, 6, 9)
+    )
+    base_frame = Frame(speed=speed, acceleration=acceleration, rate=rate, angular=angular)
+    mass, first, second = (ca.SX.sym(f"mu{i}") for i in range(3))
+    released, velocities = ca.SX.sym("ed_section", 3 if space else 2), Velocities()
+    translation = (released[0], released[1], released[2] if space else 0.0)
+    base = velocities.vector(base_frame.displaced(translation, ZERO).motion_of(ZERO))
+    lever = velocities.vector(Frame(rate=rate, angular=angular).motion_of((1.0, 0.0, 0.0)))
+    kinetic = (
+        mass * ca.sumsqr(base) / 2 + first * ca.dot(base, lever) + second * ca.sumsqr(lever) / 2
+    )
+    forces = released_forces(kinetic, released, velocities)
+    return ca.jacobian(forces, ca.vertcat(mass, first)), symbols
 
 
 def _loads_on(
