@@ -600,15 +600,11 @@ press_status press_between(press_model* model, const press_inputs* before, const
   }
   return PRESS_OK;
 }
-static void no_forces(press_forces* forces) {
-  forces->axial = forces->shear = forces->bending = nothing;
-}
-
 press_status press_section(const press_model* model, const press_outputs* outputs, press_link link, press_real xi, press_forces* forces) {
   casadi_real law[7], found[3];
   const casadi_real* arg[4];
   casadi_real* res[1];
-  no_forces(forces);
+  forces->axial = forces->shear = forces->bending = nothing;
   if (model->seal != SEAL) return PRESS_NOT_PREPARED;
   if (!(xi >= 0 && xi <= 1)) return PRESS_BAD_RATIO;
   arg[0] = law;

@@ -48,6 +48,15 @@ static inline double ${p}_fatigue_swing(const ${p}_fatigue_material* m, double a
   return times/(1e3*pow(amplitude/left/m->start, m->slope));
 }
 
+/* Give up the oldest turning point: the swing from there counts half. */
+static inline void ${p}_fatigue_give_up(${p}_fatigue* f, const ${p}_fatigue_material* m) {
+  int k;
+  f->damage += ${p}_fatigue_swing(m, f->points[0], f->points[1], 0.5);
+  f->swings += 0.5;
+  for (k = 1; k < f->count; ++k) f->points[k - 1] = f->points[k];
+  --f->count;
+}
+
 /* Count what has closed at the last turning point. */
 static inline void ${p}_fatigue_close(${p}_fatigue* f, const ${p}_fatigue_material* m) {
   double* p = f->points;
@@ -55,11 +64,7 @@ static inline void ${p}_fatigue_close(${p}_fatigue* f, const ${p}_fatigue_materi
     const int n = f->count;
     if (fabs(p[n - 1] - p[n - 2]) < fabs(p[n - 2] - p[n - 3])) return;
     if (n == 3) {
-      f->damage += ${p}_fatigue_swing(m, p[0], p[1], 0.5);
-      f->swings += 0.5;
-      p[0] = p[1];
-      p[1] = p[2];
-      f->count = 2;
+      ${p}_fatigue_give_up(f, m);
     } else {
       f->damage += ${p}_fatigue_swing(m, p[n - 3], p[n - 2], 1.0);
       f->swings += 1.0;
@@ -72,7 +77,6 @@ static inline void ${p}_fatigue_close(${p}_fatigue* f, const ${p}_fatigue_materi
 /* Add the next stress; 0 if it is not a finite number, which is left out. */
 static inline int ${p}_fatigue_add(${p}_fatigue* f, const ${p}_fatigue_material* m, double stress) {
   double* p = f->points;
-  int k;
   if (!(stress - stress == 0.0)) return 0;
   if (f->count == 0) {
     p[f->count++] = stress;
@@ -84,12 +88,7 @@ static inline int ${p}_fatigue_add(${p}_fatigue* f, const ${p}_fatigue_material*
     return 1;
   }
   ${p}_fatigue_close(f, m);
-  if (f->count == ${P}_FATIGUE_DEPTH) {
-    f->damage += ${p}_fatigue_swing(m, p[0], p[1], 0.5);
-    f->swings += 0.5;
-    for (k = 1; k < f->count; ++k) p[k - 1] = p[k];
-    --f->count;
-  }
+  if (f->count == ${P}_FATIGUE_DEPTH) ${p}_fatigue_give_up(f, m);
   p[f->count++] = stress;
   return 1;
 }

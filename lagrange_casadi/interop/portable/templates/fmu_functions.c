@@ -3,6 +3,18 @@
 #pragma GCC diagnostic ignored "-Wunused-parameter"
 #endif
 
+/* A function of what there is none of: to be asked for none of that is fine. */
+#define LACKS(Function, many, arguments)                                                                                     \
+  fmi2Status Function arguments { return (many) == 0 ? fmi2OK : unsupported(c, #Function); }
+
+/* A function that goes from some modes to one. */
+static fmi2Status enter(fmi2Component c, unsigned from, unsigned to, const char* function) {
+  Unit* unit = (Unit*) c;
+  if (out_of_order(unit, from, function)) return fmi2Error;
+  unit->state.mode = to;
+  return fmi2OK;
+}
+
 /* ---- For Model Exchange and Co-Simulation ---- */
 
 const char* fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
@@ -56,12 +68,7 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean tolerance_defined, f
   return fmi2OK;
 }
 
-fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
-  Unit* unit = (Unit*) c;
-  if (out_of_order(unit, INSTANTIATED, "fmi2EnterInitializationMode")) return fmi2Error;
-  unit->state.mode = INITIALIZING;
-  return fmi2OK;
-}
+fmi2Status fmi2EnterInitializationMode(fmi2Component c) { return enter(c, INSTANTIATED, INITIALIZING, "fmi2EnterInitializationMode"); }
 
 /* From here on loops and angles go on; the first instant begins anew. */
 fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
@@ -72,12 +79,7 @@ fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
   return prepare(unit);
 }
 
-fmi2Status fmi2Terminate(fmi2Component c) {
-  Unit* unit = (Unit*) c;
-  if (out_of_order(unit, INITIALIZING | RUNNING, "fmi2Terminate")) return fmi2Error;
-  unit->state.mode = TERMINATED;
-  return fmi2OK;
-}
+fmi2Status fmi2Terminate(fmi2Component c) { return enter(c, INITIALIZING | RUNNING, TERMINATED, "fmi2Terminate"); }
 
 fmi2Status fmi2Reset(fmi2Component c) {
   reset(&((Unit*) c)->state);
@@ -119,12 +121,8 @@ $check    state->values[vr[i]] = value[i];
 }
 
 #define NONE_OF(Type)                                                                                                        \
-  fmi2Status fmi2Get##Type(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2##Type value[]) {                 \
-    return nvr == 0 ? fmi2OK : unsupported(c, "fmi2Get" #Type);                                                              \
-  }                                                                                                                          \
-  fmi2Status fmi2Set##Type(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2##Type value[]) {           \
-    return nvr == 0 ? fmi2OK : unsupported(c, "fmi2Set" #Type);                                                              \
-  }
+  LACKS(fmi2Get##Type, nvr, (fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2##Type value[]))                \
+  LACKS(fmi2Set##Type, nvr, (fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2##Type value[]))
 
 NONE_OF(Integer)
 NONE_OF(Boolean)
@@ -151,40 +149,26 @@ fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate* kept) {
   return fmi2OK;
 }
 
-fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate kept, size_t* size) {
-  return unsupported(c, "fmi2SerializedFMUstateSize");
-}
-
-fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate kept, fmi2Byte bytes[], size_t size) {
-  return unsupported(c, "fmi2SerializeFMUstate");
-}
-
-fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate* kept) {
-  return unsupported(c, "fmi2DeSerializeFMUstate");
-}
-
-fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknown[], size_t unknowns,
-                                        const fmi2ValueReference known[], size_t knowns, const fmi2Real change[],
-                                        fmi2Real derivative[]) {
-  return unsupported(c, "fmi2GetDirectionalDerivative");
-}
+LACKS(fmi2SerializedFMUstateSize, 1, (fmi2Component c, fmi2FMUstate kept, size_t* size))
+LACKS(fmi2SerializeFMUstate, 1, (fmi2Component c, fmi2FMUstate kept, fmi2Byte bytes[], size_t size))
+LACKS(fmi2DeSerializeFMUstate, 1, (fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate* kept))
+LACKS(fmi2GetDirectionalDerivative, 1, (fmi2Component c, const fmi2ValueReference unknown[], size_t unknowns,
+                                        const fmi2ValueReference known[], size_t knowns, const fmi2Real change[], fmi2Real derivative[]))
 
 /* ---- For Model Exchange: there are no states and no events ---- */
 
-fmi2Status fmi2EnterEventMode(fmi2Component c) { return out_of_order((Unit*) c, RUNNING, "fmi2EnterEventMode") ? fmi2Error : fmi2OK; }
+fmi2Status fmi2EnterEventMode(fmi2Component c) { return enter(c, RUNNING, RUNNING, "fmi2EnterEventMode"); }
 
 fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo* info) {
   memset(info, 0, sizeof *info);
-  return out_of_order((Unit*) c, RUNNING, "fmi2NewDiscreteStates") ? fmi2Error : fmi2OK;
+  return enter(c, RUNNING, RUNNING, "fmi2NewDiscreteStates");
 }
 
-fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) {
-  return out_of_order((Unit*) c, RUNNING, "fmi2EnterContinuousTimeMode") ? fmi2Error : fmi2OK;
-}
+fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) { return enter(c, RUNNING, RUNNING, "fmi2EnterContinuousTimeMode"); }
 
 fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean last, fmi2Boolean* event, fmi2Boolean* terminate) {
   *event = *terminate = fmi2False;
-  return out_of_order((Unit*) c, RUNNING, "fmi2CompletedIntegratorStep") ? fmi2Error : fmi2OK;
+  return enter(c, RUNNING, RUNNING, "fmi2CompletedIntegratorStep");
 }
 
 fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time) {
@@ -194,9 +178,7 @@ fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time) {
   return fmi2OK;
 }
 
-fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t nx) {
-  return nx == 0 ? fmi2OK : unsupported(c, "fmi2SetContinuousStates");
-}
+LACKS(fmi2SetContinuousStates, nx, (fmi2Component c, const fmi2Real x[], size_t nx))
 
 #define NO_NUMBERS(Function)                                                                                                 \
   fmi2Status Function(fmi2Component c, fmi2Real x[], size_t many) {                                                          \
@@ -210,15 +192,10 @@ NO_NUMBERS(fmi2GetNominalsOfContinuousStates)
 
 /* ---- For Co-Simulation: inputs are held during a step ---- */
 
-fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Integer order[],
-                                       const fmi2Real value[]) {
-  return nvr == 0 ? fmi2OK : unsupported(c, "fmi2SetRealInputDerivatives");
-}
-
-fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Integer order[],
-                                        fmi2Real value[]) {
-  return nvr == 0 ? fmi2OK : unsupported(c, "fmi2GetRealOutputDerivatives");
-}
+LACKS(fmi2SetRealInputDerivatives, nvr, (fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Integer order[],
+                                         const fmi2Real value[]))
+LACKS(fmi2GetRealOutputDerivatives, nvr, (fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Integer order[],
+                                          fmi2Real value[]))
 
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real now, fmi2Real step, fmi2Boolean no_return) {
   Unit* unit = (Unit*) c;
@@ -234,7 +211,7 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real now, fmi2Real step, fmi2Boolean 
   return status;
 }
 
-fmi2Status fmi2CancelStep(fmi2Component c) { return unsupported(c, "fmi2CancelStep"); }
+LACKS(fmi2CancelStep, 1, (fmi2Component c))
 
 /* Nothing is ever pending. */
 #define NEVER(Kind, Type)                                                                                                    \

@@ -1,12 +1,8 @@
-static void no_forces(${p}_forces* forces) {
-  $none = nothing;
-}
-
 ${p}_status ${p}_section(const ${p}_model* model, const ${p}_outputs* outputs, ${p}_link link, ${p}_real xi, ${p}_forces* forces) {
   casadi_real law[$law], found[$many]$acting;
   const casadi_real* arg[4];
   casadi_real* res[1];
-  no_forces(forces);
+  $none = nothing;
   if (model->seal != SEAL) return ${P}_NOT_PREPARED;
   if (!(xi >= 0 && xi <= 1)) return ${P}_BAD_RATIO;
   arg[0] = law;
