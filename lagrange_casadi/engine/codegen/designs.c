@@ -70,7 +70,7 @@ static int designs_asked(void* of, long long count, const double* t, unsigned lo
 static void designs_sample(designs_now* now) {
   const lagrange_casadi_instants* instants = &now->instants;
   const int streams = scene_streams(instants, now->search.n*now->call->designs), peaks = now->call->value != 0;
-  casadi_real block[SCENE_PACKS*SCENE_COLUMNS], *y = block;
+  casadi_real block[SCENE_PACKS*SCENE_COLUMNS], *y;
   casadi_real value[DESIGNS_CURVES], place[SCENE_SOME(DESIGNS_PLACES)], most[DESIGNS_CURVES];
   const casadi_int stride = now->search.stride;
   lanes_real* row;
@@ -78,6 +78,7 @@ static void designs_sample(designs_now* now) {
   int k;
   for (k = 0; k < DESIGNS_CURVES; ++k) most[k] = 0;
   for (i = 0; i < now->search.n; i += LANES) {
+    y = block + (instants->out ? i%SCENE_BLOCK/LANES*SCENE_COLUMNS : 0);
     scene_pack(&now->scene, i, y);
     row = designs_row(now, 0) + i;
     if (peaks) {
@@ -92,16 +93,9 @@ static void designs_sample(designs_now* now) {
     row += DESIGNS_CHECKED*stride;
     for (k = 0; k < DESIGNS_CHECKS; ++k, row += stride) scene_store(row, y[designs_checked[k]]);
     for (k = 0; now->call->near && k < DESIGNS_MARKS; ++k) scene_store(row + k*stride, y[SCENE_OUTPUTS + DESIGNS_WATCHES + k]);
-    if (!instants->out) {
-      scene_check(instants, i, y);
-      continue;
-    }
-    y += SCENE_COLUMNS;
-    if ((i + LANES)%SCENE_BLOCK != 0 && i + LANES < now->search.n) continue;
-    y = block;
     j = i/SCENE_BLOCK*SCENE_BLOCK;
-    if (streams) scene_write(instants, j, now->search.n - j, y, 1);
-    else scene_write(instants, j, now->search.n - j, y, 0);
+    if (!instants->out) scene_check(instants, i, y);
+    else if (i + LANES == j + SCENE_BLOCK || i + LANES >= now->search.n) scene_write(instants, j, now->search.n - j, block, streams);
   }
   if (streams) lanes_streamed();
   for (k = 0; k < DESIGNS_CURVES; ++k) {
@@ -378,7 +372,7 @@ static void designs_timed(designs_now* now, const double* t) {
    same. instants are room for those of one design at a time, its times and parameters too, all zero but the guess, from which
    iterated loops begin; two rows of times are followed by those for curves, their places, what is watched and what is checked. value,
    peak_t and xi become rows of quantities, mean and rms of efforts, all of them or none where value is NULL; these ask for instants in
-   equal steps. tops, unless it is NULL, becomes the local peaks of quantities that the search is asked for. Where error is not
+   equal steps. tops, unless it is NULL, is NAN and becomes the local peaks of quantities that the search is asked for. Where error is not
    NULL, peaks are those at the instants, and error becomes how much larger each may be between them. history, unless it is NULL,
    becomes outputs by instants, iterated likewise iterated coordinates; near, unless it is NULL, says whether a mark of a motion or a
    constraint is near to where it may make a kink; a design without a result leaves its status, and NaN. hiding
@@ -413,7 +407,6 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_designs(const lagrange_casadi_design
     search->xi = call->value ? call->xi + d*DESIGNS_QUANTITIES : 0;
     search->tops = call->tops ? call->tops + d*4*DESIGNS_TOPS*DESIGNS_QUANTITIES : 0;
     search->error = call->error ? call->error + d*DESIGNS_QUANTITIES : 0;
-    for (k = 0; search->tops && k < 4*DESIGNS_TOPS*DESIGNS_QUANTITIES; ++k) search->tops[k] = NAN;
     now.instants.out = whole;
     why = designs_begin(&now, call->p + d*SCENE_NP);
     if (why == SCENE_OK) {

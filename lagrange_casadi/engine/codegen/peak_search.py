@@ -315,7 +315,7 @@ class Search:
         found = np.empty((3, quantities))
         located = np.zeros(quantities, np.int8)
         begin = rows.ctypes.data + _LINE * rows.itemsize
-        tops = np.empty((quantities, TOPS, 4)) if listed else None
+        tops = np.full((quantities, TOPS, 4), np.nan) if listed else None
         most = np.fmax.reduce(np.abs(values), axis=1, initial=0.0)
         call, room = self.call(
             tables,

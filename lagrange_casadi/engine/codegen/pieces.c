@@ -265,6 +265,7 @@ static void designs_cell(const designs_link* link, int cell, designs_piece* piec
     steps[k] = designs_steps(link, force, stop, piece->edge);
     value[0] = piece->smooth[k] + steps[k];
     smooth = 0;
+    for (i = 0; i <= n; ++i) slope[i] = 0;
     if (force->arm) {
       acts = force->arm*l*wide;
       for (i = 0; i <= n; ++i) slope[i] = acts*piece->value[force->shear][i];
@@ -273,8 +274,6 @@ static void designs_cell(const designs_link* link, int cell, designs_piece* piec
       for (i = 0; i < link->terms; ++i) slope[i] = mass[i];
       designs_times(slope, link->terms - 1, wide*(law[1] + law[2]*(l*stop)), wide*(law[1] + law[2]*(l*start)));
       designs_raised(slope, link->terms, n);
-    } else {
-      for (i = 0; i <= n; ++i) slope[i] = 0;
     }
     if (force->spread >= 0) designs_loaded(link, piece, force->spread, n, slope);
     if (force->couple >= 0) designs_loaded(link, piece, force->couple, n, slope);

@@ -184,8 +184,7 @@ static int scene_streams(const lagrange_casadi_instants* call, casadi_int many) 
 /* Write the columns y of packs, one pack after another, and check them: out[k*apart + i] and on become column k at so many instants
    from i on. If streams is set, lines are streamed past the caches. Packs are summed as they are written, while stores wait for memory;
    numbers are not, for compilers make packs of those that lie side by side. */
-LANES_INLINE void scene_write(const lagrange_casadi_instants* call, casadi_int i, casadi_int many, const casadi_real* y,
-                              const int streams) {
+static void scene_write(const lagrange_casadi_instants* call, casadi_int i, casadi_int many, const casadi_real* y, int streams) {
   const casadi_real* from = y;
   lanes_real* to = call->out + i;
   casadi_real sum[SCENE_PACKS], all;
@@ -225,8 +224,7 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_evaluate(const lagrange_casadi_insta
   scene_begin(&now, call);
   for (i = first; i < last; i += SCENE_BLOCK) {
     for (j = 0; j < SCENE_PACKS && i + j*LANES < last; ++j) scene_pack(&now, i + j*LANES, y + j*SCENE_COLUMNS);
-    if (streams) scene_write(call, i, last - i, y, 1);
-    else scene_write(call, i, last - i, y, 0);
+    scene_write(call, i, last - i, y, streams);
   }
   if (streams) lanes_streamed();
 }
