@@ -75,7 +75,7 @@ def root(draw):
     d = float(np.clip(c + 10 ** draw.uniform(-3, 0) * draw.choice([-1, 1]), -0.99, 0.99))
     a, b = draw.uniform(-4, 4, 2) * [1, draw.integers(2)]
     u, v = lambda t: f(t) - f(c), lambda t: f(t) - f(d)
-    watched = ((Kind.ROOT, (), u), (Kind.ROOT, (), v))[: 2 if b else 1]
+    watched = ((Kind.ROOT, (0.0,), u), (Kind.ROOT, (0.0,), v))[: 2 if b else 1]
     return Curve(lambda t: base(t) + a * np.abs(u(t)) + b * np.abs(v(t)), watched, (c, d))
 
 
@@ -179,17 +179,17 @@ ALONE = (smooth, pole, root, switch, knot, steps, rate, soft, power)
 KINDS = {kind.__name__: kind for kind in (*ALONE, mixed, swinging)}
 
 WORK = {
-    "smooth": 61,
-    "pole": 1217,
-    "root": 665,
+    "smooth": 45,
+    "pole": 1184,
+    "root": 467,
     "switch": 1635,
     "knot": 90,
     "steps": 2649,
-    "rate": 24595,
+    "rate": 24562,
     "soft": 4554,
-    "power": 1293,
-    "mixed": 5355,
-    "swinging": 6884,
+    "power": 1263,
+    "mixed": 5215,
+    "swinging": 6878,
 }
 """Times at which the search evaluates forty drawn curves of each kind, those of the instants not
 counted. A search that takes fewer is better.
@@ -341,7 +341,7 @@ def test_quantities_of_several_curves_at_places():
         np.testing.assert_allclose(
             peaks.xi[quantity], ratios[furthest] + 0.1 * peaks.t[quantity], rtol=1e-12
         )
-    assert work == 5212
+    assert work == 4720
 
 
 @pytest.mark.parametrize("kind", [smooth, pole, root, switch, rate])
@@ -394,7 +394,21 @@ def test_what_zigzags_by_rounding_is_not_searched():
     assert work < 20
 
 
+def test_what_rounding_raises_is_not_searched():
+    """Where a curve is all but level, rounding far below its size is all that rises."""
+    draw, work = np.random.default_rng(5), 0
+    for _ in range(40):
+        base = polynomial(draw)
+        peaks, times = searched([Curve(lambda t, of=base: 1 + of(t) / 1000 + wild(t) / 1e8)])
+        assert peaks.resolved.all()
+        work += times
+    assert work == 894
+
+
+def wild(t):
+    return (1e9 * (t + 1)).astype(int) * 2654435761 % 1009 / 1009
+
+
 def test_a_wild_curve_ends_its_own_search_alone():
-    wild = Curve(lambda t: (1e9 * (t + 1)).astype(int) * 2654435761 % 1009 / 1009)
     calm = Curve(lambda t: t * (1 - t))
-    assert searched([wild, calm], (0, 1), (0, 1))[0].resolved.tolist() == [False, True]
+    assert searched([Curve(wild), calm], (0, 1), (0, 1))[0].resolved.tolist() == [False, True]

@@ -15,34 +15,25 @@ static search_real search_flanks(const search_real* row, long long i, long long 
   return search_inflected(row, i, n, sign);
 }
 
-/* Upper bounds of a curve in step i of n - 1, and of what it is below zero. Where it bends downwards at both ends of a step, a curve is
-   below the chords of the steps beside it; where upwards, below its own. Where it bends both ways, and in the first step and the last,
-   it rises above an end at most as far as a kink in the middle would that bends it as much. To all this comes what the flanks of a kink
-   bend upwards; so beside an inflection, through which the chord rises though the curve may fall. */
-static void search_bounds(const search_real* row, long long i, long long n, search_real* up, search_real* down) {
-  const search_real *y = row + i, a = y[0], b = y[1];
-  const search_real left = i == 0 ? 2*search_bend(y + 1) : search_bend(y);
-  const search_real right = i == n - 2 ? 2*search_bend(y) : search_bend(y + 1);
-  const search_real l = search_magnitude(left)/2, r = search_magnitude(right)/2;
-  *up = search_upper(a, b);
-  *down = search_upper(-a, -b);
-  if (i > 0 && i < n - 2 && left >= 0 && right >= 0) {
-    if (a > y[-1] && b > y[2]) *up = a + (a - y[-1])*(right/(left + right)) + search_flanks(row, i, n, 1);
-    else *up += search_inflected(row, i, n, 1);
-  } else if (i > 0 && i < n - 2 && left <= 0 && right <= 0) {
-    if (a < y[-1] && b < y[2]) *down = (y[-1] - a)*(right/(left + right)) - a + search_flanks(row, i, n, -1);
-    else *down += search_inflected(row, i, n, -1);
-  } else {
-    *up = search_upper(a + l, b + r) + search_flanks(row, i, n, 1);
-    *down = search_upper(l - a, r - b) + search_flanks(row, i, n, -1);
+/* An upper bound of a curve, times a sign, in step i of n - 1. Where it bends downwards at both ends of a step, a curve is below the
+   chords of the steps beside it; where upwards, below its own. Where it bends both ways, and in the first step and the last, it rises
+   above an end at most as far as a kink in the middle would that bends it as much. To all this comes what the flanks of a kink bend
+   upwards; so beside an inflection, through which the chord rises though the curve may fall. */
+LANES_INLINE search_real search_above(const search_real* row, long long i, long long n, search_real sign) {
+  const search_real *y = row + i, a = sign*y[0], b = sign*y[1];
+  const search_real left = sign*(i == 0 ? 2*search_bend(y + 1) : search_bend(y));
+  const search_real right = sign*(i == n - 2 ? 2*search_bend(y) : search_bend(y + 1));
+  if (i == 0 || i == n - 2 || !((left >= 0 && right >= 0) || (left <= 0 && right <= 0))) {
+    return search_upper(a + search_magnitude(left)/2, b + search_magnitude(right)/2) + search_flanks(row, i, n, sign);
   }
+  if (left < 0 || right < 0) return search_upper(a, b);
+  if (a > sign*y[-1] && b > sign*y[2]) return a + (a - sign*y[-1])*(right/(left + right)) + search_flanks(row, i, n, sign);
+  return search_upper(a, b) + search_inflected(row, i, n, sign);
 }
 
 /* An upper bound of its size. */
 static search_real search_furthest(const search_real* row, long long i, long long n) {
-  search_real up, down;
-  search_bounds(row, i, n, &up, &down);
-  return search_upper(up, down);
+  return search_upper(search_above(row, i, n, 1), search_above(row, i, n, -1));
 }
 
 static search_real search_floor(search_real x) { return x - x == 0 ? (search_real) floor((double) x) : x; }
@@ -62,7 +53,7 @@ static int search_from(const search_now* now, int watch, search_real x) {
 /* How many kinks one of the watched has in step i of a panel, 2 for more; or SEARCH_MANY where it may do anything. Unless it may have a
    kink itself there, as bent says, one that bends little beside how far it goes stays between its ends. */
 #define SEARCH_MANY 100
-#define SEARCH_NUMBERED(kind) ((kind) == SEARCH_IS_SWITCH || (kind) == SEARCH_IS_KNOT)
+#define SEARCH_NUMBERED(kind) ((kind) == SEARCH_IS_SWITCH || (kind) == SEARCH_IS_KNOT || (kind) == SEARCH_IS_ROOT)
 static int search_kinks(const search_now* now, const search_panel* panel, int watch, long long i, int bent) {
   const search_real *row = search_watched(now, panel, watch), *at = now->curves->watch_at;
   const search_real a = row[i], b = row[i + 1], least = search_lower(a, b), most = search_upper(b, a);
@@ -83,15 +74,14 @@ static int search_kinks(const search_now* now, const search_panel* panel, int wa
     }
     return 0;
   }
-  search_bounds(row, i, n, &high, &low);
-  low = -low;
+  high = search_above(row, i, n, 1);
+  low = -search_above(row, i, n, -1);
   if (!bent && most - least >= SEARCH_STRAIGHT*((high - most) + (least - low))) {
     low = least;
     high = most;
   }
-  if (kind == SEARCH_IS_POLE || kind == SEARCH_IS_ROOT) {
+  if (kind == SEARCH_IS_POLE) {
     nearest = a > 0 ? low : -high;
-    if (kind == SEARCH_IS_ROOT) return (a > 0) != (b > 0) || nearest < 0;
     if ((a > 0) != (b > 0) || nearest < SEARCH_DIP*search_lower(search_magnitude(a), search_magnitude(b))) return SEARCH_MANY;
     if ((a - a == 0 || a != a) && (b - b == 0 || b != b)) return 0;
     for (j = 0; j < n; ++j) if (row[j] - row[j] == 0 || row[j] != row[j]) return SEARCH_MANY;
@@ -154,7 +144,6 @@ static search_real search_gap(const search_now* now, int watch, search_real x) {
   search_real gap = SEARCH_LARGEST;
   int j, k;
   if (curves->watch[watch] == SEARCH_IS_STEP) return search_magnitude(x - search_floor(x + SEARCH_HALF));
-  if (curves->watch[watch] == SEARCH_IS_ROOT) return search_magnitude(x);
   for (k = search_from(now, watch, x), j = k - 1; j <= k; ++j) {
     if (j < curves->watch_first[watch] || j == curves->watch_first[watch + 1]) continue;
     gap = search_lower(search_magnitude(x - curves->watch_at[j]), gap);
@@ -172,19 +161,19 @@ static search_real search_side(const search_now* now, int watch, search_real x) 
 
 static int search_is_switching(const search_now* now, int watch) {
   const int kind = now->curves->watch[watch];
-  return SEARCH_NUMBERED(kind) || kind == SEARCH_IS_ROOT || kind == SEARCH_IS_STEP;
+  return SEARCH_NUMBERED(kind) || kind == SEARCH_IS_STEP;
 }
 
 static int search_depends(const search_now* now, int watch, int quantity) {
   return now->curves->depends[watch*now->curves->quantities + quantity];
 }
 
-/* Whether what is found at a time of a panel counts for a quantity: where one of the watched that it depends on may be on a side by rounding, that
-   must be one that it has at an instant before or after, or the number between both. */
+/* Whether what is found at a time of a panel counts for a quantity: where one of the watched that it depends on may be on a side by
+   rounding, that must be one that it has at an instant before or after. */
 static int search_counts(const search_now* now, int quantity, const search_panel* panel, long long at) {
   const double x = (panel->t[at] - now->all.t[0])/(2*now->half);
   long long i = now->step >= 0 ? now->step : x > 0 ? (long long) x : 0;
-  search_real value, side, ends[2];
+  search_real value, side;
   int j, k, seen;
   i = i < now->all.n - 2 ? i : now->all.n - 2;
   for (k = 0; k < now->curves->watches; ++k) {
@@ -194,11 +183,9 @@ static int search_counts(const search_now* now, int quantity, const search_panel
     if (now->step >= 0 && !(now->noise[k] > 0 && search_gap(now, k, value) <= now->noise[k])) continue;
     side = search_side(now, k, value);
     for (seen = j = 0; j < 2; ++j) {
-      ends[j] = search_side(now, k, search_watched(now, &now->all, k)[i + j]);
-      seen |= side == ends[j];
+      seen |= side == search_side(now, k, search_watched(now, &now->all, k)[i + j]);
       seen |= now->step >= 0 && side == now->sides[2*k + j];
     }
-    seen |= now->step < 0 && search_lower(ends[0], ends[1]) < side && side < search_upper(ends[0], ends[1]);
     if (!seen) return 0;
   }
   return 1;
@@ -368,7 +355,7 @@ static int search_leaps(const search_now* now, const search_panel* panel, int wa
 }
 
 /* Find in which steps of a panel something may hide; inside a step between instants, kinks of the motion are counted too. In the
-   finest steps rounding makes kinks, where what is watched is nearly zero, and poles alone hide more. */
+   finest steps rounding makes kinks, where what is watched is nearly zero. */
 static void search_hide(search_now* now, const search_panel* panel, int depth) {
   const lagrange_casadi_curves* curves = now->curves;
   const long long steps = panel->n - 1;
@@ -392,7 +379,7 @@ static void search_hide(search_now* now, const search_panel* panel, int depth) {
         continue;
       }
       if (found == SEARCH_MANY) {
-        if (depth < SEARCH_FINEST || kind == SEARCH_IS_POLE) panel->hiding[i] |= SEARCH_HIDES;
+        if (depth < SEARCH_FINEST) panel->hiding[i] |= SEARCH_HIDES;
         continue;
       }
       if (found && (kind == SEARCH_IS_SWITCH || kind == SEARCH_IS_STEP) && search_leaps(now, panel, k, i)) panel->hiding[i] |= SEARCH_HIDES;

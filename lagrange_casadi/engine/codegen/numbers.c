@@ -14,7 +14,7 @@ typedef lanes_real search_real;
 #define SEARCH_STRETCH ((search_real) 1e-2)
 /* Growth of a quantity over the last step towards a pole, relative to its peak, at which it has come to its end. */
 #define SEARCH_LAST ((search_real) 1e-5)
-/* Panels within each other; and the level in whose steps nothing hides but beside a pole. */
+/* Panels within each other; and the level in whose steps nothing hides. */
 #define SEARCH_DEEPEST 8
 #define SEARCH_FINEST 5
 #else

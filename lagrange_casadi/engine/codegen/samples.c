@@ -1,7 +1,6 @@
 /* Looks at curves where polynomials say that they are largest. */
 #define SEARCH_SUMMITS 64
-#define SEARCH_ENTRIES (4*SEARCH_SUMMITS)
-#define SEARCH_LOOKS (5*SEARCH_SUMMITS)
+#define SEARCH_ENTRIES (3*SEARCH_SUMMITS)
 /* Of a step: times that are one. */
 #define SEARCH_SAME_TIME 1e-11
 
@@ -12,19 +11,11 @@ typedef struct {
   search_real bound;
 } search_entry;
 
-/* An end step through which a polynomial goes straight on: its value in the middle, and how far off that may be. */
-typedef struct {
-  long long step;
-  int curve;
-  search_real middle, off;
-} search_stretched;
-
 /* What of a panel is to be looked at, and what is left open. */
 typedef struct {
   search_summit summits[SEARCH_SUMMITS];
-  search_stretched stretches[SEARCH_SUMMITS];
   search_entry entries[SEARCH_ENTRIES];
-  int looks, ends, open;
+  int looks, open;
 } search_list;
 
 /* Look at so many times, each for a curve: the values found there. What is proportional has its summits at the same time, but for
@@ -33,9 +24,9 @@ static void search_look(search_now* now, double step, const double* times, const
   const double same = SEARCH_SAME_TIME*step;
   const int together = now->call->together;
   search_panel panel;
-  double t[SEARCH_LOOKS];
+  double t[SEARCH_SUMMITS];
   unsigned long long need;
-  int lane[SEARCH_LOOKS], apart = 0, known, first, j, k;
+  int lane[SEARCH_SUMMITS], apart = 0, known, first, j, k;
   for (k = 0; k < many; ++k) {
     known = apart;
     /* No loop that ends early, for compilers make packs of this one. */
@@ -85,6 +76,7 @@ static int search_closed(const search_now* now, const search_panel* panel, searc
   summit->again = 1;
   summit->t -= search_width(panel)*(double) (slope/summit->curve_there);
   summit->size = found + gain;
+  summit->slope = 0;
   return 0;
 }
 
@@ -136,8 +128,8 @@ static int search_broken(const search_now* now, const search_panel* panel, int c
   return 0;
 }
 
-/* Where polynomials through the values around each summit say to look. All are begun, then all solved: what is solved waits for
-   divisions, in which the next may begin. */
+/* Where polynomials through the values around each summit say to look, unless one goes straight on. All are begun, then all solved:
+   what is solved waits for divisions, in which the next may begin. */
 static void search_aim(const search_now* now, const search_panel* panel, search_list* list) {
   const double step = search_width(panel);
   search_fit fits[SEARCH_SUMMITS/LANES], *fit;
@@ -157,6 +149,7 @@ static void search_aim(const search_now* now, const search_panel* panel, search_
   for (j = 0; j < list->looks; ++j) {
     search_summit* summit = list->summits + j;
     const search_peak* peak = now->peaks + now->quantity[summit->curve];
+    if (summit->straight) continue;
     fit = fits + j/LANES;
     lane = j % LANES;
     first = search_window(summit->at, panel->n);
@@ -166,80 +159,43 @@ static void search_aim(const search_now* now, const search_panel* panel, search_
     summit->curve_there = fit->curve.lane[lane];
     summit->steep = fit->steep.lane[lane];
     summit->rough = fit->rough.lane[lane];
-    summit->trust = fit->x.lane[lane] > -2 && fit->x.lane[lane] < 2 ? SEARCH_TRUST : SEARCH_TRUST_ASIDE;
-    summit->kinked = 0;
-    if (first == summit->at - 3) search_kink(search_row(panel, summit->curve) + summit->at, summit, panel->t[summit->at], step);
+    summit->trust = SEARCH_TRUST;
     summit->broken = search_broken(now, panel, summit->curve, first);
     summit->closed = !summit->broken && summit->curve_there < 0 && summit->rough <= -SEARCH_ROUGH*summit->curve_there &&
                      summit->size + summit->rough < peak->least;
+    summit->again = !summit->closed;
   }
 }
 
-/* Look for all summits of a list; what is left open becomes its entries. */
+/* Look for all summits of a list, for some twice; what is left open becomes its entries. */
 static void search_settle(search_now* now, const search_panel* panel, search_list* list) {
-  double times[SEARCH_LOOKS];
-  search_real found[SEARCH_LOOKS], off, most, rounding, missed;
-  int curves[SEARCH_LOOKS], many = 0, j, k;
-  const double width = search_width(panel);
+  double times[SEARCH_SUMMITS];
+  search_real found[SEARCH_SUMMITS];
+  int curves[SEARCH_SUMMITS], look, many, k;
+  search_summit *summit, *const end = list->summits + list->looks;
   long long step;
   search_aim(now, panel, list);
-  for (j = 0; j < list->ends; ++j) {
-    step = list->stretches[j].step;
-    times[many] = (panel->t[step] + panel->t[step + 1])/2;
-    curves[many++] = list->stretches[j].curve;
-  }
-  for (j = 0; j < list->looks; ++j) {
-    const search_summit* summit = list->summits + j;
-    for (k = 0; !summit->closed && k < 1 + 3*summit->kinked; ++k) {
-      times[many] = k == 0 ? summit->t : summit->kink_t[k - 1];
+  for (look = 0; look < 2; ++look) {
+    many = 0;
+    for (summit = list->summits; summit < end; ++summit) {
+      if (!summit->again) continue;
+      times[many] = summit->t;
       curves[many++] = summit->curve;
     }
-  }
-  search_look(now, width, times, curves, found, many);
-  for (many = 0; many < list->ends; ++many) {
-    const search_stretched* end = list->stretches + many;
-    if (search_magnitude(found[many] - end->middle) <= end->off) continue;
-    search_open(now, panel, list, end->curve, end->step, 0);
-  }
-  for (j = 0; j < list->looks; ++j) {
-    search_summit* summit = list->summits + j;
-    if (summit->closed) continue;
-    summit->again = 0;
-    summit->closed = search_closed(now, panel, summit, summit->sign*found[many++]);
-    if (summit->kinked) {
-      most = 0;
-      for (k = 0; k < 3; ++k) {
-        off = search_magnitude(summit->sign*found[many++] - summit->kink_size[k]);
-        if (!(off <= most)) most = off;
-      }
-      if (most <= now->peaks[now->quantity[summit->curve]].rounding) summit->closed = 1;
+    search_look(now, search_width(panel), times, curves, found, many);
+    many = 0;
+    for (summit = list->summits; summit < end; ++summit) {
+      if (!summit->again) continue;
+      summit->again = 0;
+      summit->closed = search_closed(now, panel, summit, summit->sign*found[many++]);
     }
   }
-  many = 0;
-  for (j = 0; j < list->looks; ++j) {
-    const search_summit* summit = list->summits + j;
-    if (summit->closed || !summit->again) continue;
-    times[many] = summit->t;
-    curves[many++] = summit->curve;
-  }
-  search_look(now, width, times, curves, found, many);
-  many = 0;
-  for (j = 0; j < list->looks; ++j) {
-    search_summit* summit = list->summits + j;
-    if (!summit->closed && summit->again) {
-      rounding = now->peaks[now->quantity[summit->curve]].rounding;
-      missed = search_magnitude(summit->sign*found[many++] - summit->size);
-      /* What was missed now bends the slope in turn. */
-      summit->closed = missed <= rounding || 10*missed*missed*(1 + summit->steep*summit->steep) <= -summit->curve_there*rounding;
-    }
-    if (summit->closed) continue;
-    for (k = 0; k < 2; ++k) {
+  for (summit = list->summits; summit < end; ++summit) {
+    for (k = 0; k < 2 && !summit->closed; ++k) {
       step = summit->at - 1 + k;
       if (step < 0 || step > panel->n - 2) continue;
-      search_open(now, panel, list, summit->curve, step,
-                   (summit->t >= panel->t[step] && summit->t < panel->t[step + 1]) ||
-                   (summit->kinked && summit->kink_t[1] < panel->t[step + 1] && summit->kink_t[2] >= panel->t[step]));
+      search_open(now, panel, list, summit->curve, step, summit->t >= panel->t[step] && summit->t < panel->t[step + 1]);
     }
   }
-  list->looks = list->ends = 0;
+  list->looks = 0;
 }

@@ -63,7 +63,7 @@ static void search_enter(search_now* now, const search_panel* panel, int curve, 
 static void search_flush(search_now* now, const search_panel* panel, search_list* list, int depth) {
   search_real rise, most, best;
   int j, chosen;
-  if (list->looks || list->ends) search_settle(now, panel, list);
+  if (list->looks) search_settle(now, panel, list);
   while (list->open) {
     chosen = 0;
     most = -1;
@@ -98,43 +98,41 @@ static int search_located_before(const search_now* now, const search_panel* pane
   return same;
 }
 
-/* Whether a polynomial goes straight on through an end step; then the middle of that is to be looked at. */
-static int search_list_stretch(const search_now* now, const search_panel* panel, int curve, long long step, search_list* list) {
-  const search_real *row = search_row(panel, curve), rounding = now->peaks[now->quantity[curve]].rounding;
-  const int inward = step == 0 ? 1 : -1;
-  search_stretched* end = list->stretches + list->ends;
-  search_real least, rough;
-  if ((step > 0 && step < panel->n - 2) || search_kinked(now, panel, step)) return 0;
-  if (step > 0) row += panel->n - 1;
-  least = search_stretch(row, inward, &end->middle);
-  rough = row[0] + row[6*inward] - 6*(row[inward] + row[5*inward]) + 15*(row[2*inward] + row[4*inward]) - 20*row[3*inward];
-  if (!(least > 0 && search_magnitude(rough) <= rounding + SEARCH_ROUGH*least)) return 0;
-  end->curve = curve;
-  end->step = step;
-  end->off = search_upper(rounding, SEARCH_STRETCH*least);
-  ++list->ends;
-  return 1;
-}
-
 /* List what of a step may rise above what is known: a summit beside it, or the step itself. */
 static void search_list_step(search_now* now, const search_panel* panel, int curve, long long step, search_list* list) {
-  const search_real *row = search_row(panel, curve);
+  const search_real *row = search_row(panel, curve), rounding = now->peaks[now->quantity[curve]].rounding;
+  const long long last = panel->n - 1;
+  search_summit* summit = list->summits + list->looks;
   search_real size[4];
   long long i;
   int k, topped = 0;
-  if (search_switches(now, panel, curve, step) || search_located_before(now, panel, curve, step) || search_list_stretch(now, panel, curve, step, list)) return;
+  if (search_switches(now, panel, curve, step) || search_located_before(now, panel, curve, step)) return;
+  summit->curve = curve;
+  summit->straight = (step == 0 || step == last - 1) && !search_kinked(now, panel, step) &&
+                     search_straight(step == 0 ? row : row + last, step == 0 ? 1 : -1, rounding, summit);
+  if (summit->straight) {
+    summit->at = step == 0 ? 0 : last;
+    summit->t = (panel->t[step] + panel->t[step + 1])/2;
+    summit->closed = summit->broken = 0;
+    summit->again = 1;
+    ++list->looks;
+    return;
+  }
   for (k = 0; k < 4; ++k) {
     i = step - 1 + k;
-    size[k] = i < 0 || i >= panel->n ? -1 : row[i] < 0 ? -row[i] : row[i];
+    size[k] = i < 0 || i > last ? -1 : search_magnitude(row[i]);
   }
   for (k = 1; k < 3; ++k) {
     i = step - 1 + k;
     if (!(size[k - 1] < size[k] && size[k] >= size[k + 1])) continue;
     topped = 1;
-    if (list->looks && list->summits[list->looks - 1].curve == curve && list->summits[list->looks - 1].at == i) continue;
-    list->summits[list->looks].curve = curve;
-    list->summits[list->looks].at = i;
-    list->summits[list->looks++].sign = row[i] < 0 ? -1 : 1;
+    if (list->looks && summit[-1].curve == curve && summit[-1].at == i && !summit[-1].straight) continue;
+    summit->curve = curve;
+    summit->straight = 0;
+    summit->at = i;
+    summit->sign = row[i] < 0 ? -1 : 1;
+    ++list->looks;
+    ++summit;
   }
   if (!topped) search_open(now, panel, list, curve, step, 0);
 }
@@ -152,7 +150,7 @@ static void search_list_steps(search_now* now, const search_panel* panel, int cu
     for (step = i > 0 && !(j > 0 && where >> (j - 1) & 1) ? i - 1 : i; step <= i && step < n - 1; ++step) {
       if (!(search_furthest(row, step, n) > search_level(now, panel, curve, step))) continue;
       search_list_step(now, panel, curve, step, list);
-      if (list->looks < SEARCH_SUMMITS - 1 && list->ends < SEARCH_SUMMITS && list->open < SEARCH_SUMMITS) continue;
+      if (list->looks < SEARCH_SUMMITS - 1 && list->open < SEARCH_SUMMITS) continue;
       search_flush(now, panel, list, depth);
     }
   }
@@ -204,7 +202,7 @@ LANES_INLINE void search_panel_of(search_now* now, const search_panel* panel, in
   search_real limit;
   long long i;
   int q, k;
-  list.looks = list.ends = list.open = 0;
+  list.looks = list.open = 0;
   if (panel->n < SEARCH_FIT) {
     for (i = 0; i < panel->n - 1; ++i) panel->hiding[i] = SEARCH_HIDES;
   } else {
@@ -273,20 +271,17 @@ static void search_largest(search_now* now) {
   int j, k, q;
   memset(now->none, 0, (size_t) curves->curves);
   memset(now->ignored, 0, (size_t) curves->watches);
-  for (q = 0; q < curves->quantities; ++q) now->peaks[q].base = 0;
+  memset(now->peaks, 0, (size_t) curves->quantities*sizeof *now->peaks);
   if (now->call->way) search_one_way(now);
   if (now->call->way || now->call->rests) search_leave_out(now);
   for (k = 0; k < curves->units; ++k) now->scale[k] = now->call->scales ? now->call->scales[k] : 0;
   memset(now->zigzags, -1, (size_t) curves->curves);
   for (q = 0; q < curves->quantities; ++q) {
     search_peak* peak = now->peaks + q;
-    peak->best = 0;
     peak->size = -1;
     peak->t = INFINITY;
     peak->place = (search_real) NAN;
     peak->sign = 1;
-    peak->going = 0;
-    peak->unlocated = 0;
     peak->open = now->call->open && now->call->open[q];
     for (j = now->call->rests, k = curves->first[q]; k < curves->first[q + 1]; ++k) {
       j &= now->none[k];
@@ -449,7 +444,7 @@ static void search_lay(search_now* now, lagrange_casadi_search_call* call) {
 /* The peak of every quantity of n instants t in equal steps: its value, its time and its place, NaN for what is open, and whether it is
    located. Where way is 1 or -1, the peak of a quantity is the largest of its values times that, else of its size. Where error is not
    NULL, peaks are those at the instants, and it becomes how much larger quantities may be between them. tops, unless it is NULL,
-   becomes for each quantity SEARCH_TOPS local peaks down to a share of the largest: the number of the curve among the quantity's own,
+   is NAN and becomes for each quantity SEARCH_TOPS local peaks down to a share of the largest: the number of the curve among the quantity's own,
    which is NAN where there are no more, time, ratio and value. rows are those of curves, of their places and of what is watched, stride
    values apart, filled up to whole packs by the last instant or NaN; what rests is NaN. most are the largest sizes of curves at the
    instants. scales, unless it is NULL, says how large others
@@ -460,7 +455,7 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_search(lagrange_casadi_search_call* 
   const lagrange_casadi_curves* curves = call->curves;
   search_now now;
   search_peak* peak;
-  int q, located;
+  int q;
   search_lay(&now, call);
   if (!call->room) return;
   now.call = call;
@@ -476,7 +471,6 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_search(lagrange_casadi_search_call* 
   now.all.rows = call->rows;
   now.all.hiding = call->hiding;
   now.all.kinks = call->hiding + call->stride;
-  for (q = 0; call->tops && q < 4*SEARCH_TOPS*curves->quantities; ++q) call->tops[q] = NAN;
   search_largest(&now);
   if (call->error) search_errors(&now);
   else if (call->n > 1) search_panel_of(&now, &now.all, 0);
@@ -488,8 +482,7 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_search(lagrange_casadi_search_call* 
       continue;
     }
     if (peak->best - peak->best == 0) {
-      located = !(peak->unlocated || now.stopped || peak->going > peak->best/2);
-      call->located[q] = (signed char) located;
+      call->located[q] = !(peak->unlocated || now.stopped || peak->going > peak->best/2);
       search_sampled(&now, q);
     }
     call->value[q] = call->way ? call->way*(peak->sign*peak->best + peak->base) : peak->sign*peak->best;

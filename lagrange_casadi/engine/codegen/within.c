@@ -67,15 +67,14 @@ static double search_where(const search_real* row, long long i, long long n, sea
   return ((double) level - (double) row[i])/((double) row[i + 1] - (double) row[i]);
 }
 
-static int search_beyond(int kind, search_real value, search_real level) {
-  return kind == SEARCH_IS_STEP ? value >= level : value > level;
-}
+/* Whether a number is beyond one at which a watched one switches: a whole one is beyond itself. */
+static int search_beyond(int whole, search_real value, search_real level) { return whole ? value >= level : value > level; }
 
 /* Evaluate both sides of where one of the watched passes a number in a step, and there; whether they are on both sides. */
 static int search_apart(search_now* now, const search_panel* panel, long long step, int watch, search_real level, double* t,
                         const search_panel* sides) {
   const search_real *row = search_watched(now, panel, watch), *ends = search_watched(now, sides, watch);
-  const int kind = now->curves->watch[watch];
+  const int whole = now->curves->watch[watch] == SEARCH_IS_STEP;
   const double start = panel->t[step], stop = panel->t[step + 1], beside = search_beside(now, panel);
   double at, place = search_where(row, step, panel->n, level), slope = (double) row[step + 1] - (double) row[step], before = 0, was = 0;
   search_real sum;
@@ -94,7 +93,7 @@ static int search_apart(search_now* now, const search_panel* panel, long long st
     apart = sum == 0;
     for (j = 0; j < 2; ++j) {
       if (t[j] == panel->t[step + j]) continue;
-      apart &= search_beyond(kind, ends[j], level) == search_beyond(kind, row[step + j], level);
+      apart &= search_beyond(whole, ends[j], level) == search_beyond(whole, row[step + j], level);
     }
     if (apart) return 1;
     if (trial) slope = ((double) ends[2] - was)/(place - before);
@@ -109,29 +108,24 @@ static int search_apart(search_now* now, const search_panel* panel, long long st
 static int search_find_sides(search_now* now, const search_panel* panel, long long step, double* t, const search_panel* sides) {
   const lagrange_casadi_curves* curves = now->curves;
   search_real low, high, level;
-  int numbered, kind, j, k, tried = 0;
+  int j, k, tried = 0;
   if (panel->n < SEARCH_FIT || !panel->kinks[step]) return 0;
   if (!(panel->t[step + 1] - panel->t[step] > 8*search_beside(now, panel))) return 0;
   for (k = 0; k < curves->watches; ++k) {
-    kind = curves->watch[k];
-    if (kind == SEARCH_IS_STEP || SEARCH_NUMBERED(kind) || now->ignored[k]) continue;
-    if (search_kinks(now, panel, k, step, 0) == SEARCH_MANY) return 0;
+    if (!search_is_switching(now, k) && !now->ignored[k] && search_kinks(now, panel, k, step, 0) == SEARCH_MANY) return 0;
   }
-  for (numbered = 0; numbered < 2; ++numbered) {
-    for (k = 0; k < curves->watches; ++k) {
-      const search_real* row = search_watched(now, panel, k);
-      kind = curves->watch[k];
-      if ((numbered ? !SEARCH_NUMBERED(kind) : kind != SEARCH_IS_STEP) || now->ignored[k]) continue;
-      low = search_lower(row[step], row[step + 1]);
-      high = search_upper(row[step], row[step + 1]);
-      if (!(high - low <= SEARCH_LARGEST) || (!numbered && search_floor(high) != search_floor(low) + 1)) continue;
-      for (j = search_from(now, k, low); j < (numbered ? curves->watch_first[k + 1] : curves->watch_first[k] + 1); ++j) {
-        level = numbered ? curves->watch_at[j] : search_floor(high);
-        if (search_beyond(kind, low, level) || !search_beyond(kind, high, level)) continue;
-        if (search_undecided(now, panel, k, step)) continue;
-        if (tried++ == SEARCH_WATCHED) return 0;
-        if (search_apart(now, panel, step, k, level, t, sides)) return 1;
-      }
+  for (k = 0; k < curves->watches; ++k) {
+    const search_real* row = search_watched(now, panel, k);
+    const int whole = curves->watch[k] == SEARCH_IS_STEP;
+    low = search_lower(row[step], row[step + 1]);
+    high = search_upper(row[step], row[step + 1]);
+    if (!search_is_switching(now, k) || now->ignored[k] || !(high - low <= SEARCH_LARGEST)) continue;
+    if (search_undecided(now, panel, k, step) || (whole && search_floor(high) != search_floor(low) + 1)) continue;
+    for (j = search_from(now, k, low); j < (whole ? curves->watch_first[k] + 1 : curves->watch_first[k + 1]); ++j) {
+      level = whole ? search_floor(high) : curves->watch_at[j];
+      if (search_beyond(whole, low, level) || !search_beyond(whole, high, level)) continue;
+      if (tried++ == SEARCH_WATCHED) return 0;
+      if (search_apart(now, panel, step, k, level, t, sides)) return 1;
     }
   }
   return 0;

@@ -445,5 +445,5 @@ def _gap(watch: Watch, values: Array) -> Array:
     """Distance of a watched function from the nearest number at which it makes a kink or a jump."""
     if watch.kind is Kind.STEP:
         return np.asarray(values - np.round(values))
-    gaps = values[:, None] - np.array(watch.at or (0.0,))
+    gaps = values[:, None] - np.array(watch.at)
     return np.take_along_axis(gaps, np.abs(gaps).argmin(axis=1)[:, None], 1)[:, 0]
