@@ -50,10 +50,15 @@ static int search_from(const search_now* now, int watch, search_real x) {
   return first;
 }
 
+/* Whether a curve may jump, or have a kink, where one of the watched passes a number. */
+static int search_is_switching(const search_now* now, int watch) {
+  const int kind = now->curves->watch[watch];
+  return kind == SEARCH_IS_STEP || kind == SEARCH_IS_SWITCH || kind == SEARCH_IS_KNOT || kind == SEARCH_IS_ROOT;
+}
+
 /* How many kinks one of the watched has in step i of a panel, 2 for more; or SEARCH_MANY where it may do anything. Unless it may have a
    kink itself there, as bent says, one that bends little beside how far it goes stays between its ends. */
 #define SEARCH_MANY 100
-#define SEARCH_NUMBERED(kind) ((kind) == SEARCH_IS_SWITCH || (kind) == SEARCH_IS_KNOT || (kind) == SEARCH_IS_ROOT)
 static int search_kinks(const search_now* now, const search_panel* panel, int watch, long long i, int bent) {
   const search_real *row = search_watched(now, panel, watch), *at = now->curves->watch_at;
   const search_real a = row[i], b = row[i + 1], least = search_lower(a, b), most = search_upper(b, a);
@@ -87,7 +92,12 @@ static int search_kinks(const search_now* now, const search_panel* panel, int wa
     for (j = 0; j < n; ++j) if (row[j] - row[j] == 0 || row[j] != row[j]) return SEARCH_MANY;
     return 0;
   }
-  if (SEARCH_NUMBERED(kind)) {
+  if (kind == SEARCH_IS_STEP) {
+    if (search_floor(high) > search_floor(most) || search_floor(low) < search_floor(least)) return SEARCH_MANY;
+    nearest = search_floor(most) - search_floor(least);
+    return nearest > 1 ? 2 : nearest > 0;
+  }
+  if (search_is_switching(now, watch)) {
     high = search_upper(high, most);
     for (k = search_from(now, watch, search_lower(low, least)); k < last && at[k] < high; ++k) {
       if ((a > at[k]) != (b > at[k])) {
@@ -98,11 +108,6 @@ static int search_kinks(const search_now* now, const search_panel* panel, int wa
       }
     }
     return kinks;
-  }
-  if (kind == SEARCH_IS_STEP) {
-    if (search_floor(high) > search_floor(most) || search_floor(low) < search_floor(least)) return SEARCH_MANY;
-    nearest = search_floor(most) - search_floor(least);
-    return nearest > 1 ? 2 : nearest > 0;
   }
   if (kind == SEARCH_IS_SOFT) {
     if ((high > most + SEARCH_CHANGE || low < least - SEARCH_CHANGE) && low < at[last - 1] && high > -at[last - 1]) return SEARCH_MANY;
@@ -157,11 +162,6 @@ static search_real search_side(const search_now* now, int watch, search_real x) 
   const int k = search_from(now, watch, x);
   if (curves->watch[watch] == SEARCH_IS_STEP) return 2*search_floor(x) + (search_floor(x) == x);
   return (search_real) (2*k + (k < curves->watch_first[watch + 1] && curves->watch_at[k] == x));
-}
-
-static int search_is_switching(const search_now* now, int watch) {
-  const int kind = now->curves->watch[watch];
-  return SEARCH_NUMBERED(kind) || kind == SEARCH_IS_STEP;
 }
 
 static int search_depends(const search_now* now, int watch, int quantity) {

@@ -75,12 +75,7 @@ static void search_count(const search_now* now, int curve, search_real* row, lon
 
 /* A panel of a few times. */
 static search_panel search_few(double* t, long long n, search_real* rows) {
-  search_panel panel;
-  memset(&panel, 0, sizeof panel);
-  panel.n = n;
-  panel.stride = SEARCH_STRIDE;
-  panel.t = t;
-  panel.rows = rows;
+  const search_panel panel = {n, SEARCH_STRIDE, t, rows, 0, 0};
   return panel;
 }
 

@@ -453,6 +453,7 @@ static void search_lay(search_now* now, lagrange_casadi_search_call* call) {
    searched, and size becomes how many bytes of it a search takes. */
 LAGRANGE_CASADI_EXPORT void lagrange_casadi_search(lagrange_casadi_search_call* call) {
   const lagrange_casadi_curves* curves = call->curves;
+  const search_panel all = {call->n, call->stride, call->t, call->rows, call->hiding, call->hiding + call->stride};
   search_now now;
   search_peak* peak;
   int q;
@@ -465,12 +466,7 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_search(lagrange_casadi_search_call* 
   now.left = now.quota = SEARCH_PANELS + 4*call->n;
   now.ignoring = now.stopped = 0;
   now.step = -1;
-  now.all.n = call->n;
-  now.all.stride = call->stride;
-  now.all.t = call->t;
-  now.all.rows = call->rows;
-  now.all.hiding = call->hiding;
-  now.all.kinks = call->hiding + call->stride;
+  now.all = all;
   search_largest(&now);
   if (call->error) search_errors(&now);
   else if (call->n > 1) search_panel_of(&now, &now.all, 0);

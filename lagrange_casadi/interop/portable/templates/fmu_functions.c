@@ -73,8 +73,7 @@ fmi2Status fmi2EnterInitializationMode(fmi2Component c) { return enter(c, INSTAN
 /* From here on loops and angles go on; the first instant begins anew. */
 fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
   Unit* unit = (Unit*) c;
-  if (out_of_order(unit, INITIALIZING, "fmi2ExitInitializationMode")) return fmi2Error;
-  unit->state.mode = RUNNING;
+  if (enter(c, INITIALIZING, RUNNING, "fmi2ExitInitializationMode") != fmi2OK) return fmi2Error;
   unit->state.begun = unit->state.current = 0;
   return prepare(unit);
 }
