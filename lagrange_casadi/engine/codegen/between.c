@@ -355,7 +355,7 @@ static int search_leaps(const search_now* now, const search_panel* panel, int wa
 }
 
 /* Find in which steps of a panel something may hide; inside a step between instants, kinks of the motion are counted too. In the
-   finest steps rounding makes kinks, where what is watched is nearly zero. */
+   finest steps rounding makes kinks, where what is watched is nearly zero, and poles alone hide more. */
 static void search_hide(search_now* now, const search_panel* panel, int depth) {
   const lagrange_casadi_curves* curves = now->curves;
   const long long steps = panel->n - 1;
@@ -379,7 +379,7 @@ static void search_hide(search_now* now, const search_panel* panel, int depth) {
         continue;
       }
       if (found == SEARCH_MANY) {
-        if (depth < SEARCH_FINEST) panel->hiding[i] |= SEARCH_HIDES;
+        if (depth < SEARCH_FINEST || kind == SEARCH_IS_POLE) panel->hiding[i] |= SEARCH_HIDES;
         continue;
       }
       if (found && (kind == SEARCH_IS_SWITCH || kind == SEARCH_IS_STEP) && search_leaps(now, panel, k, i)) panel->hiding[i] |= SEARCH_HIDES;
