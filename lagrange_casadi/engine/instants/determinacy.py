@@ -40,8 +40,11 @@ def completed(
     """Report what least strain energy determined at instants ``t``, why some are ``indeterminate``,
     and its residual for a certificate.
     """
-    completion, known = program.completion, np.isfinite(found.out).all(axis=0)
-    if completion is None or not known.any():
+    completion = program.completion
+    if completion is None:
+        return Elasticity(), {}
+    known = np.isfinite(found.out).all(axis=0)
+    if not known.any():
         return Elasticity(), {}
     driven = program.motion(t[None, known], p)
     iterated = np.asarray(found.iterated, float)[:, known]
@@ -65,6 +68,8 @@ def _beyond(
     program: Program, changes: Mapping[Output, Array], p: Array, method: EvaluationMethod
 ) -> tuple[Output, ...]:
     """The outputs that change at any of some instants by more than what is none."""
+    if not changes:
+        return ()
     at = program.tolerances(method.precision, method.newton, program.extent(p))
     checks = [Check("open", output) for output in changes]
     limits = [bound.verdict.limit(at) for bound in bounds_of(checks, program.data.kinds, ())]

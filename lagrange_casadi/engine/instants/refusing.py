@@ -84,6 +84,8 @@ def refusal(
     most = program.limits(precision, method.newton, program.extent(p))
     near = _beside(program, evaluated, most, t, p)
     numbers = first_broken(program, evaluated.out, most, near, evaluated.status)
+    if not numbers.any() and not (evaluated.status == Status.NOT_FINITE).any():
+        return None
     statuses = np.array([Status.OK, *(rule.status for rule, _ in program.rules)])[numbers]
     finite = (evaluated.status != Status.NOT_FINITE) | (statuses == Status.AT_REST)
     bad = ~(finite & ((statuses == Status.OK) | (statuses == Status.AT_REST)))
