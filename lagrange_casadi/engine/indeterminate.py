@@ -37,6 +37,8 @@ class Forces:
     @classmethod
     def over(cls, acting: Mapping[Column, ca.SX], free: ca.SX) -> Forces:
         """Forces ``acting`` that are expressions of what is open, ``free``."""
+        if not free.numel():
+            return cls(acting, {})
         forces = column(map(ca.SX, acting.values()))
         slopes = ca.jacobian(forces, free)
         slopes, forces = (
@@ -57,6 +59,8 @@ class Forces:
         """Add what is ``made`` of these forces, which is open with what goes into it."""
         symbols: dict[Column, Any] = {output: ca.SX.sym(str(output)) for output in self.open}
         more = made({**self.values, **symbols})
+        if not symbols or not more:
+            return replace(self, values={**self.values, **more})
         found, names = column(map(ca.SX, more.values())), column(symbols.values())
         sparsity = ca.jacobian_sparsity(found, names)
         into = {

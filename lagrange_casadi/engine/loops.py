@@ -52,6 +52,9 @@ class ClosedForm:
         """The form with coordinates that it must not hold at rest, for they stand in it by rounding
         alone.
         """
+        absent = held((*self.variables, *(() if self.closure is None else (self.closure,))), absent)
+        if not absent:
+            return self
         closure = None if self.closure is None else at_rest(self.closure, absent)
         return replace(
             self, variables=tuple(at_rest(v, absent) for v in self.variables), closure=closure
