@@ -38,10 +38,16 @@ def check_connected(
 ) -> None:
     """Raise :class:`DeclarationError` for bodies that no chain of joints connects to the ground."""
     joined = list(joints)
-    left, reached = [{body.name for body in joint.bodies} for joint in joined], {ground.name}
-    while some := [ends for ends in left if ends & reached]:
-        reached |= set().union(*some)
-        left = [ends for ends in left if not ends <= reached]
+    neighbours: dict[str, set[str]] = {}
+    for joint in joined:
+        parent, child = (body.name for body in joint.bodies)
+        neighbours.setdefault(parent, set()).add(child)
+        neighbours.setdefault(child, set()).add(parent)
+    reached, waiting = {ground.name}, [ground.name]
+    while waiting:
+        new = neighbours.get(waiting.pop(), set()) - reached
+        reached |= new
+        waiting += new
     apart = [f"'{body.name}'" for body in bodies if body.name not in reached]
     if apart:
         raise DeclarationError(
