@@ -611,25 +611,9 @@ class SpatialMechanism(Mechanism):
             if not turned and near and far and start.body.oriented and end.body.oriented:
                 zero, placed = near.directions_of(far), True
         else:
-            if turned:
-                raise DeclarationError(
-                    f"{what}: turned needs points of bodies; at= already sets the reference posture"
-                )
-            found, place = [], self.ownership.vector(f"{what}: at", at, "m")
-            for body in bodies:
-                if not isinstance(body, Body) or self.bodies.get(body.name) is not body:
-                    got = (
-                        f"a point of '{body.body.name}'" if isinstance(body, Point) else repr(body)
-                    )
-                    raise DeclarationError(
-                        f"{what}: at needs bodies of '{self.name}', not their points, got {got}"
-                    )
-                if isinstance(body, PointMass):
-                    self.references.setdefault(body.name, Reference(place))
-                found.append((self._reference(what, body), body))
-            start, end = (self.ownership.point(what, one.point(on, place)) for one, on in found)
-            (first, _), (second, _) = found
-            directions, zero = first.directions(directions), first.directions_of(second)
+            start, end, directions, zero = self._at_reference(
+                what, parent, child, at, directions, turned
+            )
         check_ends(what, kind, start, end)
         if not start.body.oriented or not end.body.oriented:
             kind = "spherical" if kind == "revolute" else kind
@@ -641,6 +625,41 @@ class SpatialMechanism(Mechanism):
             self.hard.add(name)
             self.rough |= {axis.coordinate: 0.0 for axis in joint.axes}
         return joint
+
+    def _at_reference(
+        self,
+        what: str,
+        parent: Body | Point,
+        child: Body | Point,
+        at: Expression,
+        directions: Triad,
+        turned: Turns,
+    ) -> tuple[Point, Point, Triad, tuple[Vector, Vector]]:
+        """Points, directions and orientation of a joint from where it is
+        in the reference posture.
+        """
+        if turned:
+            raise DeclarationError(
+                f"{what}: turned needs points of bodies; at= already sets the reference posture"
+            )
+        for body in (parent, child):
+            if not isinstance(body, Body) or self.bodies.get(body.name) is not body:
+                got = f"a point of '{body.body.name}'" if isinstance(body, Point) else repr(body)
+                raise DeclarationError(
+                    f"{what}: at needs bodies of '{self.name}', not their points, got {got}"
+                )
+        assert isinstance(parent, Body)
+        assert isinstance(child, Body)
+        place = self.ownership.vector(f"{what}: at", at, "m")
+        for body in (parent, child):
+            if isinstance(body, PointMass) and body.name not in self.references:
+                self.references[body.name] = Reference(place)
+        first, second = self._reference(what, parent), self._reference(what, child)
+        start, end = (
+            self.ownership.point(what, one.point(body, place))
+            for one, body in ((first, parent), (second, child))
+        )
+        return start, end, first.directions(directions), first.directions_of(second)
 
     def _reference(self, what: str, body: Body) -> Reference:
         if body.name not in self.references:

@@ -107,23 +107,18 @@ class EvaluationMethod:
             raise DeclarationError(
                 f"flags: expected options of a compiler, got {self.flags!r}: {error}"
             ) from None
-        interpreted = self.backend == "vm"
-        for wrong, why in (
-            (
-                self.newton is not None and self.table is not None,
-                "newton and table exclude each other: a table is read, no loop is closed",
-            ),
-            (
-                interpreted and self.precision == "single",
-                "backend 'vm' computes in doubles only; precision 'single' needs lanes or c",
-            ),
-            (
-                interpreted and words,
-                f"backend 'vm' compiles nothing; flags '{self.flags}' need lanes or c",
-            ),
-        ):
-            if wrong:
-                raise DeclarationError(why)
+        if self.newton is not None and self.table is not None:
+            raise DeclarationError(
+                "newton and table exclude each other: a table is read, no loop is closed"
+            )
+        if self.backend == "vm" and self.precision == "single":
+            raise DeclarationError(
+                "backend 'vm' computes in doubles only; precision 'single' needs lanes or c"
+            )
+        if self.backend == "vm" and words:
+            raise DeclarationError(
+                f"backend 'vm' compiles nothing; flags '{self.flags}' need lanes or c"
+            )
 
     def check(self, program: Program) -> None:
         """Raise :class:`DeclarationError` where a graph has nothing that the method chooses."""
