@@ -7,10 +7,11 @@ A text names only dataclasses that its reader lists, so reading one calls nothin
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass
-from functools import cache
-from typing import Any, Generic, TypeVar, cast
+from functools import cache, cached_property, partial
+from operator import itemgetter
+from typing import Any, Generic, TypeAlias, TypeVar, cast
 
 import casadi as ca
 import numpy as np
@@ -22,17 +23,33 @@ from .symbolic import Graphs, symbolic
 Tree = TypeVar("Tree")
 Part = TypeVar("Part")
 
+_Numbers: TypeAlias = Sequence[Expression] | Array
+_Fill: TypeAlias = Callable[[_Numbers], Any]
+
+
+_Parts: TypeAlias = tuple[Collection[Any], Callable[[Iterable[object]], Any]]
+"""The parts of a tree, and a function that makes a tree of its kind of other parts."""
+
 
 def mapped(tree: Any, leaf: Callable[[Any], object]) -> Any:
     """Return a tree with ``leaf(value)`` for each value that has no parts."""
+    of = _parts(tree)
+    if of is None:
+        return leaf(tree)
+    parts, again = of
+    return again([mapped(part, leaf) for part in parts])
+
+
+def _parts(tree: Any) -> _Parts | None:
+    """Return the parts of a tree, and what makes a tree of others; None of a value without."""
     kind = type(tree)
     if kind is dict:
-        return {key: mapped(part, leaf) for key, part in tree.items()}
+        return tree.values(), lambda parts: dict(zip(tree, parts, strict=True))
     if kind is tuple or kind is list:
-        return kind([mapped(part, leaf) for part in tree])
+        return tree, kind
     if names := _names(tree.__class__):
-        return _again(kind, [mapped(getattr(tree, name), leaf) for name in names])
-    return leaf(tree)
+        return [getattr(tree, name) for name in names], partial(_again, kind)
+    return None
 
 
 @cache
@@ -79,7 +96,11 @@ class Template(Graphs, Generic[Tree]):
     def at(self, p: Sequence[float] | Array) -> Tree:
         """Return the tree of numbers for parameters ``p``."""
         numbers = self.numbers(np.asarray(p, float)).full().ravel().tolist()
-        return _filled(self.content, numbers)
+        return cast(Tree, self._fill(numbers))
+
+    @cached_property
+    def _fill(self) -> _Fill:
+        return _filler(self.content) or (lambda _: self.content)
 
     def each(self, content: Part, p: Array) -> Part:
         """Return a part of the content with numbers (n,) for parameters ``p`` (n, parameters)."""
@@ -93,8 +114,23 @@ class Template(Graphs, Generic[Tree]):
         return _filled(content, numbers)
 
 
-def _filled(tree: Part, numbers: Sequence[Expression] | Array) -> Part:
+def _filled(tree: Part, numbers: _Numbers) -> Part:
+    """Return a tree with ``numbers`` for its leaves."""
     return cast(Part, mapped(tree, lambda leaf: numbers[leaf] if type(leaf) is Leaf else leaf))
+
+
+def _filler(tree: Any) -> _Fill | None:
+    """Return the function that makes the tree of numbers, parts without leaves being its own; None
+    of a tree without leaves.
+    """
+    if type(tree) is Leaf:
+        return itemgetter(int(tree))
+    parts, again = _parts(tree) or ((), tuple)
+    fills = [_filler(part) for part in parts]
+    if not any(fills):
+        return None
+    pairs = [*zip(parts, fills, strict=True)]
+    return lambda numbers: again([part if fill is None else fill(numbers) for part, fill in pairs])
 
 
 _READ: dict[str, Callable[[Any], object]] = {

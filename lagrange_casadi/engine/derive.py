@@ -40,7 +40,7 @@ from .mobility import internal_forces
 from .model_data import ModelData, template
 from .moving import Moving
 from .multibody import Multibody
-from .placement import explain
+from .placement import explained
 from .program import Program
 from .reciprocals import share_reciprocals
 from .sampling import Sampling
@@ -97,12 +97,8 @@ def compile_scene(
         If the loops cannot be solved.
     """
     values = None if parameters is None else scene.values(parameters)
-    try:
-        program, _ = derived(scene, wanted, values)
-    except (AssemblyError, MobilityError) as error:
-        explain(error, scene, values)
-        raise
-    return program
+    with explained(scene, values):
+        return derived(scene, wanted, values)[0]
 
 
 derive = compile_scene

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Collection, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -93,12 +93,22 @@ def place_scene(
     )
 
 
-def explain(
+@contextmanager
+def explained(scene: Scene, values: Mapping[str, float] | None) -> Iterator[None]:
+    """Give :class:`AssemblyError` and :class:`MobilityError` that are raised in the context the
+    placement that shows them, and say in their message what is apart; or of a motion that began,
+    the last instant at which all loops close.
+    """
+    try:
+        yield
+    except (AssemblyError, MobilityError) as error:
+        _explain(error, scene, values)
+        raise
+
+
+def _explain(
     error: AssemblyError | MobilityError, scene: Scene, values: Mapping[str, float] | None
 ) -> None:
-    """Give an error the placement that shows it, and say in its message what is apart; or of a
-    motion that began, the last instant at which all loops close.
-    """
     t = error.t if isinstance(error, AssemblyError) else None
     with suppress(LagrangeCasadiError):
         found = place_scene(scene, t=t, values=values, closed=t is not None)

@@ -8,15 +8,15 @@ import numpy as np
 
 from ..base.quantities import Output
 from ..base.space import cores, in_words, require
-from ..engine.derive import compile_scene
+from ..engine.derive import derived
 from ..engine.instants.determinacy import completed, determinate, undetermined
 from ..engine.instants.evaluation_method import EvaluationMethod, seconds
 from ..engine.instants.from_table import columns
 from ..engine.instants.phases import outputs_of, phases
 from ..engine.instants.refusing import refuse, refuse_laws
-from ..engine.placement import explain
+from ..engine.placement import explained
 from ..engine.program import Program
-from ..errors import AssemblyError, CertificateWarning, DeclarationError, warn
+from ..errors import CertificateWarning, DeclarationError, warn
 from ..model.even_points import checked_ratios, points
 from ..model.scene import Scene
 from ..model.scene_arguments import Elastic
@@ -58,8 +58,9 @@ def solve(
     ratios = checked_ratios(scene.xi if request.xi is None else request.xi)
     names = scene.wanted if request.wanted is None else request.wanted
 
-    program, p = compile_scene(scene, names, parameters=values), np.array(list(values.values()))
-    data = program.data
+    with explained(scene, values):
+        program, _ = derived(scene, names, values)
+    data, p = program.data, np.array(list(values.values()))
     method.check(program)
     refuse_laws(data, checked_span(data.laws, timing, values), tuple(p.tolist()))
     copies = _CHECKED if certificate else 1
@@ -72,11 +73,8 @@ def solve(
     if method.table is not None:
         program, indeterminate = determinate(program, instants.t, p)
     evaluated, provenance = columns(program, instants.t, p, method, threads)
-    try:
+    with explained(scene, values):
         refuse(program, evaluated, instants.t, p, method)
-    except AssemblyError as error:
-        explain(error, scene, values)
-        raise
     out = np.asarray(evaluated.out, float)
     data.corners.refuse_constraints(
         lambda name: out[..., program.seen_columns(name), :], p.tolist()

@@ -36,7 +36,7 @@ SAYS = {
 @pytest.fixture(autouse=True)
 def _bare(monkeypatch):
     """Tell of a refusal its reason alone, for to draw how far parts are apart takes longest."""
-    monkeypatch.setattr("lagrange_casadi.studies.solving.explain", lambda *_: None)
+    monkeypatch.setattr("lagrange_casadi.engine.placement._explain", lambda *_: None)
 
 
 def quarter():
