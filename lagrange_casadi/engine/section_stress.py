@@ -16,11 +16,11 @@ import casadi as ca
 import numpy as np
 
 from ..base.arrays import Array, Expression, Operand
-from ..base.scalars import called
+from ..base.scalars import called, column, graph
 from ..base.symbolic import Graphs, symbolic
 from ..base.tables import table_of
 from ..model.beams.beam import Beam, Notch
-from ..model.beams.properties import Properties, smaller
+from ..model.beams.properties import Properties
 from ..model.beams.shape import Shape, between
 
 _PLACES = {False: (0, 1, 5), True: (0, 1, 2, 3, 4, 5)}
@@ -43,13 +43,15 @@ class Fibres(Graphs):
     """The fibres of cross-sections of one kind, by their ``names``.
 
     ``factors(dimensions) -> (3 fibres, forces)`` is a function of the dimensions alone: what normal
-    stresses, and then shear stresses along y and along z, take of section forces. ``alone`` are the
-    fibres but those that are like another one; ``needed`` those of them that have not the normal
-    stress of another one, and no shear.
+    stresses, and then shear stresses along y and along z, take of section forces; so is
+    ``sizes(dimensions) -> (6,)``: area, second moments about z and y, product of inertia, elastic
+    moduli about z and y. ``alone`` are the fibres but those that are like another one; ``needed``
+    those of them that have not the normal stress of another one, and no shear.
     """
 
     names: tuple[str, ...]
     factors: Any
+    sizes: Any
     alone: tuple[int, ...]
     needed: tuple[int, ...]
 
@@ -69,9 +71,13 @@ def _fibres(kind: str, dimensions: tuple[str, ...], space: bool) -> Fibres:
     factors = ca.Function(
         "factors", [symbols], [ca.densify(ca.vertcat(*rows))], ["dimensions"], ["factors"]
     )
+    sizes = graph(
+        "sizes", {"dimensions": symbols}, sizes=column([p.area, p.iz, p.iy, p.iyz, p.wz, p.wy])
+    )
     names = tuple(fibre.name for fibre in p.fibres)
     plain = [_plain(row, space) for row in every]
-    return Fibres(names, factors, _differing(plain, lower=False), _differing(plain, lower=True))
+    alone, needed = (_differing(plain, lower=lower) for lower in (False, True))
+    return Fibres(names, factors, sizes, alone, needed)
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,13 +141,17 @@ class CrossSections:
         for cell, ((first, last), (low, high)) in enumerate(
             zip(self.beam.course.cells, itertools.pairwise(self.beam.course.breaks), strict=True)
         ):
+            sizes = self.fibres(cell).sizes
             for u in [low] if first is last else np.linspace(low, high, _SAMPLED).tolist():
-                p = self.properties(cell, u)
-                straight = p.iyz.is_zero() if isinstance(p.iyz, ca.SX) else not p.iyz
-                half = (p.iz + p.iy) / 2
-                least = half - (((p.iz - p.iy) / 2) ** 2 + p.iyz**2) ** 0.5
-                every.append((p.area, *((p.iz, p.iy) if straight else (least, least)), p.wz, p.wy))
-        area, *others = (functools.reduce(smaller, values) for values in zip(*every, strict=True))
+                found = sizes(ca.vertcat(*self.shape(cell, u).dimensions.values()))
+                area, iz, iy, iyz, wz, wy = ca.vertsplit(found)
+                if not iyz.is_zero():
+                    half = (iz + iy) / 2
+                    iz = iy = half - (((iz - iy) / 2) ** 2 + iyz**2) ** 0.5
+                every.append(ca.vertcat(area, iz, iy, wz, wy))
+        least = functools.reduce(ca.fmin, every)
+        known = isinstance(least, ca.DM)
+        area, *others = least.full().ravel().tolist() if known else ca.vertsplit(least)
         return area, others[:2], others[2:]
 
 
