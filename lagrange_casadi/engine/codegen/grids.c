@@ -106,7 +106,8 @@ static void grid(const lagrange_casadi_grid_call* call, long long from, long lon
   double* out = call->out;
   double tile[TILE], other[TILE];
   const double* along[MOST];
-  const long long width = k < TILE ? k : TILE, rows = TILE/width;
+  /* Rows that need no room of their own are written all at once. */
+  const long long width = k < TILE ? k : TILE, rows = k <= TILE && planes == 1 && !call->streams ? to - from : TILE/width;
   long long first, start;
   int m;
   for (start = 0; start < k; start += width) {

@@ -150,14 +150,14 @@ def fill(
     if out.shape != (len(sums), n, k):
         raise DeclarationError(f"out: expected an array of shape {(n, k)}, got {out.shape[1:]}")
     plain = out[0].flags.c_contiguous and out.dtype == np.float64
-    most = max(len(columns.columns) for columns, _ in sums)
+    most = max([len(columns.columns) for columns, _ in sums])
     library = _compiled() if plain and out.size >= WORTH_COMPILING and most <= _MOST else None
     if library is None:
         for (columns, functions), rows in zip(sums, out, strict=True):
             _fill_in_blocks(columns, functions.rows, u, rows, slack)
         return
     at = after = None
-    if any(columns.loads for columns, _ in sums):
+    if any([columns.loads for columns, _ in sums]):
         u = np.ascontiguousarray(u, dtype=np.float64)
         beyond = edge(u, slack)
         at, after = u.ctypes.data, beyond.ctypes.data
