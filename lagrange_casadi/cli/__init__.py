@@ -20,7 +20,7 @@ import click
 
 from ..base.interrupts import SENTENCE, STATUS, interrupts, keep_status
 from ..base.standard_streams import lead_nowhere
-from ..errors import LagrangeCasadiError, PostureError, UnknownNameError, one_line
+from ..errors import LagrangeCasadiError, UnknownNameError, one_line
 from ..version import __version__
 from .commands import GROUPS, PLACES
 from .echo import echo
@@ -66,9 +66,7 @@ class _Commands(click.Group):
         return sorted(PLACES)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        if cmd_name in PLACES:
-            self.commands.setdefault(cmd_name, command(PLACES[cmd_name]))
-        return self.commands.get(cmd_name)
+        return command(PLACES[cmd_name]) if cmd_name in PLACES else None
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         write_commands(GROUPS, formatter)
@@ -120,21 +118,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         asked: dict[str, Any] = {}
         try:
             result = program.main(arguments, prog_name=_NAME, standalone_mode=False, obj=asked)
-        except PostureError as error:
-            from .drawing import drawn_ways
-
-            words, postures = drawn_ways(error, asked)
-            status = _fail(f"{error}{words}", error.exit_status)
-            for line in postures:
-                _say(line)
-            return status
         except LagrangeCasadiError as error:
             from .drawing import drawn
 
-            return _fail(f"{error}{drawn(error, asked)}", error.exit_status)
+            words, postures = drawn(error, asked)
+            return _fail(f"{error}{words}", error.exit_status, *postures)
         except click.exceptions.NoArgsIsHelpError as error:
-            for line in error.format_message().splitlines():
-                _say(line)
+            _say(*error.format_message().splitlines())
             return error.exit_code
         except click.ClickException as error:
             return _fail(error.format_message(), error.exit_code)
@@ -219,13 +209,13 @@ class _Insistent:
         raise KeyboardInterrupt
 
 
-def _fail(message: str, status: int) -> int:
+def _fail(message: str, status: int, *more: str) -> int:
     for keyword, option in _OPTIONS.items():
         message = message.replace(keyword, option)
-    _say(f"error: {' '.join(message.split())}")
+    _say(f"error: {' '.join(message.split())}", *more)
     return status
 
 
-def _say(line: str) -> None:
+def _say(*lines: str) -> None:
     with suppress(OSError):  # the terminal may be gone
-        echo(line, err=True)
+        echo(*lines, err=True)

@@ -30,23 +30,17 @@ def draw_with_progress(
     from ..views.figures.solution_figures import default_figures, draw
 
     chosen = specs or default_figures(solution)
-    skipped: list[str] = []
-    drawn: list[Path] = []
-    for spec, path in bar_of("figures", draw(solution, chosen, folder, si, svg), len(chosen)):
-        if path:
-            drawn.append(path)
-        else:
-            skipped.append(spec.name)
-    write_index(solution.case, drawn, folder)
-    if skipped:
+    done = list(bar_of("figures", draw(solution, chosen, folder, si, svg), len(chosen)))
+    write_index(solution.case, [path for _, path in done if path], folder)
+    if skipped := [spec.name for spec, path in done if path is None]:
         echo(
             f"note: not drawn, because their outputs were not evaluated: {', '.join(skipped)}",
             err=True,
         )
 
 
-def drawn_ways(error: PostureError, asked: Mapping[str, object]) -> tuple[str, list[str]]:
-    """Draw the ways in which an undecided loop can be assembled.
+def drawn(error: LagrangeCasadiError, asked: Mapping[str, object]) -> tuple[str, list[str]]:
+    """Draw the placement of an error, or the ways in which an undecided loop can be assembled.
 
     The picture is named after the case's file, and lies beside what the command was ``asked`` to
     write, else in the current folder.
@@ -54,40 +48,34 @@ def drawn_ways(error: PostureError, asked: Mapping[str, object]) -> tuple[str, l
     Returns what goes behind the error, nothing where nothing can be drawn, and lines beneath it:
     the posture to paste for each picture, where the error itself does not have them.
     """
-    scene = error.scene
-    if not isinstance(scene, Scene) or error.lacking:
-        return "", []
-    path = _beside("postures.png", asked)
     with suppress(LagrangeCasadiError):
-        picture, postures, complete = draw_postures(scene)
-        if picture is not None:
-            with writing(path) as file:
-                next(frames(picture)).save(file, "PNG")
-            many = f"the {len(postures)}" if complete else str(len(postures))
-            words = (
-                f"; {path} draws {many} of these that close{'' if len(postures) > 1 else 's'} all"
-                " loops, each with its posture"
-            )
-            if not complete:
-                words += ", and says how to get the others"
-            return words, numbered(postures) if len(error.assembly_modes) > 1 else []
+        if isinstance(error, PostureError):
+            return _drawn_ways(error, _beside("postures.png", asked))
+        if error.placement is not None:
+            from ..views.drawing import draw_error
+
+            path = _beside("open.svg", asked)
+            draw_error(error, path)
+            return f"; {path} draws it", []
     return "", []
 
 
-def drawn(error: LagrangeCasadiError, asked: Mapping[str, object]) -> str:
-    """Draw the placement of an error, beside what the command was ``asked`` to write.
-
-    Returns what goes behind the error, nothing where nothing can be drawn.
-    """
-    if error.placement is None:
-        return ""
-    from ..views.drawing import draw_error
-
-    path = _beside("open.svg", asked)
-    with suppress(LagrangeCasadiError):
-        draw_error(error, path)
-        return f"; {path} draws it"
-    return ""
+def _drawn_ways(error: PostureError, path: Path) -> tuple[str, list[str]]:
+    """Draw the ways in which an undecided loop can be assembled: see :func:`drawn`."""
+    scene = error.scene
+    if not isinstance(scene, Scene) or error.lacking:
+        return "", []
+    picture, postures, complete = draw_postures(scene)
+    if picture is None:
+        return "", []
+    with writing(path) as file:
+        next(frames(picture)).save(file, "PNG")
+    many, others = ("the ", "") if complete else ("", ", and says how to get the others")
+    words = (
+        f"; {path} draws {many}{len(postures)} of these that close"
+        f"{'' if len(postures) > 1 else 's'} all loops, each with its posture{others}"
+    )
+    return words, numbered(postures) if len(error.assembly_modes) > 1 else []
 
 
 def _beside(ending: str, asked: Mapping[str, object]) -> Path:

@@ -6,8 +6,6 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import cast
 
-import click
-
 from ..base.files import check_writable
 from ..base.units import quantity
 from ..errors import NoDesignError
@@ -20,6 +18,7 @@ from ..views.charts.usual_designs import default_plots
 from ..views.shapes.index import MANIFEST, NAME, write_index
 from .drawing import draw_with_progress
 from .echo import echo
+from .options import refuse
 from .progress import bar_of
 from .strength_lines import not_evaluated_lines
 
@@ -58,14 +57,18 @@ def plot(
     """
     check_writable(out, folder=True)
     MANIFEST.check(out)
-    if is_sweep(file):
-        if si:
-            raise click.UsageError("--si goes with the file of a run; figures of a sweep are in SI")
+    swept = is_sweep(file)
+    refuse(
+        (swept and si, "--si goes with the file of a run; figures of a sweep are in SI"),
+        (
+            not swept and (over or at or against),
+            "--over, --at and --against go with a sweep's file",
+        ),
+    )
+    if swept:
         sweep = Sweep.open(file)
         there = {name: _number(sweep, name, value) for name, value in at.items()}
         _draw(sweep, default_plots(sweep, over, there, against), out, svg)
-    elif over or at or against:
-        raise click.UsageError("--over, --at and --against go with a sweep's file")
     else:
         solution, drawn = load(file), cast("Sequence[FigureSpec]", figure_specs(file))
         with reported_as(_UNDRAWN, file), MANIFEST.filling(out) as draft:
@@ -80,16 +83,12 @@ def _draw(sweep: Sweep, specs: Sequence[Spec], out: Path, svg: bool) -> None:
 
     Raises :class:`NoDesignError` where no figure shows anything.
     """
-    skipped, drawn = [], []
     with reported_as(_UNDRAWN, sweep.path), MANIFEST.filling(out) as draft:
-        for path, why in bar_of("figures", draw_sweep(sweep, specs, draft, svg), len(specs)):
-            if why:
-                skipped.append(f"{path.name}: {why}")
-            else:
-                drawn.append(path)
+        done = list(bar_of("figures", draw_sweep(sweep, specs, draft, svg), len(specs)))
+        skipped = [f"{path.name}: {why}" for path, why in done if why]
         if len(skipped) == len(specs):
             raise NoDesignError(f"there is nothing to draw: {'; '.join(dict.fromkeys(skipped))}")
-        write_index(sweep.case, drawn, draft)
+        write_index(sweep.case, [path for path, why in done if not why], draft)
     echo(*(f"note: not drawn: {line}" for line in skipped), err=True)
 
 
