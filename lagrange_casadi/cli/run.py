@@ -9,14 +9,13 @@ from contextlib import nullcontext, suppress
 from pathlib import Path
 from typing import Any
 
-import click
 import numpy as np
 
 from ..base.arrays import Array
 from ..base.files import check_writable
 from ..base.quantities import AVERAGED, Output
 from ..base.streams import is_standard_output
-from ..base.table_writers import TableFile, aligned
+from ..base.table_writers import aligned
 from ..base.vocabulary import Backend
 from ..engine.instants.backends import peak_search
 from ..errors import CompilerError, DeclarationError
@@ -26,7 +25,6 @@ from ..model.times import Timing
 from ..model.wanted_names import among
 from ..results.data_frames import TIME, columns
 from ..results.drive_use import Use
-from ..results.elastic.vibration import vibration
 from ..results.ordering import error_of, ordered
 from ..results.sensitivity.peak_derivatives import PeakKind
 from ..results.solution import Solution
@@ -41,8 +39,8 @@ from ..views.shapes.index import MANIFEST
 from .drawing import draw_with_progress
 from .echo import echo
 from .options import HDF5, refuse, table_file, target
-from .report import Rows, card, ratio, readable
-from .strength_lines import evaluated, not_evaluated_lines, strength_cards, strength_lines, worst
+from .report import Rows, readable
+from .strength_lines import not_evaluated_lines, strength_cards, strength_lines
 
 _SCREEN = 39
 """Lines of a screen, but for that of the next prompt."""
@@ -121,7 +119,7 @@ def run(
     scene, usual = loaded.scene, Path(f"{loaded.name}.h5")
     out = target("--out", out, str(usual), HDF5)
     folder = None if no_figures else figures or Path(f"{loaded.name}_figures")
-    _check_places(out, folder, table)
+    _check_places(out, folder, csv)
     if refine_peaks:
         peak_search()  # so that a compiler that lacks is named at once
     solution = evaluate(
@@ -151,9 +149,8 @@ def run(
     head = [_head(solution, refine_peaks if rows.rows else None), *rows.cards()]
     shown, details = wanted or scene.wanted, list[str]()
     if wanted or verbose:
-        details = [*strength_lines(solution, shown, strength), *elastic_lines(solution, shown)]
+        details += strength_lines(solution, shown, strength)
     else:
-        head += elastic_card(solution, shown)
         head += strength_cards(solution, shown, strength)
     head += drive_lines(solution)
     rest = [*slope_lines(solution, scene, given["backend"]), *details, *rows.notes()]
@@ -193,22 +190,22 @@ def _grids(
     return [link for link in links if link not in pieces or link in asked]
 
 
-def _check_places(out: Path, folder: Path | None, csv: TableFile | None) -> None:
+def _check_places(out: Path, folder: Path | None, csv: Path | None) -> None:
     """Raise ``click.UsageError`` for places that are the same, and what says that one cannot be
     written.
     """
     check_target(out)
+    file, figures, table = (os.path.realpath(one) if one else None for one in (out, folder, csv))
+    refuse(
+        (figures == file, f"--figures {folder}: expected another place than the file's"),
+        (
+            table and table in (file, figures),
+            f"--csv {csv}: expected another place than the file's and the figures'",
+        ),
+    )
     if folder:
-        if os.path.realpath(folder) == os.path.realpath(out):
-            raise click.UsageError(f"--figures {folder}: expected another place than the file's")
         check_writable(folder, folder=True)
         MANIFEST.check(folder)
-    if csv and os.path.realpath(csv.path) in [
-        os.path.realpath(other) for other in (out, folder) if other
-    ]:
-        raise click.UsageError(
-            f"--csv {csv.path}: expected another place than the file's and the figures'"
-        )
 
 
 def _head(solution: Solution, refined: bool | None) -> str:
@@ -246,35 +243,6 @@ def drive_lines(solution: Solution) -> Iterator[str]:
         heads = ["drive", "effort", "", "of limit", "speed", "", "of limit"]
         rows = [[name, *cells(one.effort), *cells(one.speed)] for name, one in found.items()]
         yield from aligned(heads, rows, left=(0, 2, 5))
-
-
-_FROM = {"ends": "from the line between its ends", "base": "from its axis at the base"}
-
-
-def elastic_lines(solution: Solution, wanted: Sequence[str]) -> Iterator[str]:
-    """Write the deflections that are wanted of links that have a beam, or why there are none."""
-    if links := among("deflection", solution.description.beams, wanted):
-        yield "deflections across the links, largest in size:"
-        for link in links:
-            yield from evaluated(link, lambda name: list(_lines(solution, name)))
-
-
-def elastic_card(solution: Solution, wanted: Sequence[str]) -> Iterator[str]:
-    """Write the largest deflection that is wanted."""
-
-    def deflection(link: str) -> tuple[float, str]:
-        line = next(_lines(solution, link))
-        return -solution.deflection(link).peak().value, card("deflection", line)
-
-    yield from worst(among("deflection", solution.description.beams, wanted), deflection)
-
-
-def _lines(solution: Solution, link: str) -> Iterator[str]:
-    found = solution.deflection(link)
-    peak = found.peak()
-    where = f"t = {peak.t:.5g} s, xi/l = {ratio(peak.xi)}, {_FROM[found.against]}"
-    yield f"  {f'deflection:{link}':<28} {peak.value * 1e3 + 0.0:>12.6g} mm   at {where}"
-    yield f"    {vibration(solution, link).words}"
 
 
 _WIDTH = 13

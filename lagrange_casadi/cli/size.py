@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
-
-import click
 
 from ..base.vocabulary import Criterion, Yielding
 from ..model.beams.profiles import read_profiles
@@ -15,6 +13,7 @@ from ..studies.case import load_case
 from ..studies.sizing import Sized
 from ..studies.sizing import size as choose
 from .echo import echo
+from .options import refuse
 from .strength_lines import evaluated, safety_lines
 
 
@@ -51,10 +50,12 @@ def size(
     """
     loaded = load_case(case)
     beside = loaded.path.parent / "profiles.csv"
-    if profiles is None and not beside.is_file():
-        raise click.UsageError(
-            f"--profiles: expected a table of profiles; the folder of the case has none, {beside}"
+    refuse(
+        (
+            profiles is None and not beside.is_file(),
+            f"--profiles: expected a table of profiles; the folder of the case has none, {beside}",
         )
+    )
     table = read_profiles(profiles or beside)
     found = choose(
         loaded.scene,
@@ -69,33 +70,32 @@ def size(
     stiff = (
         "" if deflection is None else f", and a deflection of at most {deflection:g} of its length"
     )
+    solution = found.solution
     echo(
-        f"{found.solution.case}: the lightest of {len(table)} profiles with a factor of"
-        f" safety of at least {safety:g}{stiff}:"
+        f"{solution.case}: the lightest of {len(table)} profiles with a factor of safety of at"
+        f" least {safety:g}{stiff}:"
     )
     for sized in found.links:
         echo(*_lines(sized))
-    safety_of = partial(found.solution.safety, criterion=criterion, yield_criterion=yield_criterion)
+    safety_of = partial(solution.safety, criterion=criterion, yield_criterion=yield_criterion)
     for name, why in found.left.items():
-        echo(f"{name}: not sized: {why}")
-        echo(*evaluated(name, lambda link: list(safety_lines(safety_of(link)))))
-    solution = found.solution
+        shown = evaluated(name, lambda link: safety_lines(safety_of(link)))
+        echo(f"{name}: not sized: {why}", *shown)
     verdict = "holds" if solution.certified else "fails" if solution.failed else "not computed"
     loads = f"{found.evaluations} evaluations of the loads"
-    echo(f"together {found.mass:.6g} kg; {loads}; certificate: {verdict}")
-    echo(" ".join(f"--set {name}={value!r}" for name, value in found.parameters.items()))
+    echo(
+        f"together {found.mass:.6g} kg; {loads}; certificate: {verdict}",
+        " ".join(f"--set {name}={value!r}" for name, value in found.parameters.items()),
+    )
 
 
-def _lines(sized: Sized) -> list[str]:
+def _lines(sized: Sized) -> Iterator[str]:
     """A link with what was chosen for it, what governs, and why nothing lighter will do."""
-    lines = [
-        f"{sized.link}: '{sized.profile.name}', {sized.mass:.6g} kg",
-        *safety_lines(sized.safety),
-    ]
+    yield f"{sized.link}: '{sized.profile.name}', {sized.mass:.6g} kg"
+    yield from safety_lines(sized.safety)
     if sized.lighter is not None:
         profile, found = sized.lighter
-        lines.append(
+        yield (
             f"    lighter: '{profile.name}' has a factor of {found.factor:.4g} against"
             f" {found.governs.against}"
         )
-    return lines
