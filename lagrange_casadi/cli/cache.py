@@ -36,10 +36,10 @@ def cache(
         echo(f"note: {place} is not used, because {distrusted}", err=True)
     what = f"{counted(names.count('.graph'), 'graph')}, {libraries}, {size / 1e6:.3g} MB"
     if not clear:
-        echo(f"{place}: {what} in {counted(len(names), 'file')}")
         echo(
+            f"{place}: {what} in {counted(len(names), 'file')}",
             f"limit: {most / 1e6:g} MB, least recently used files are removed first;"
-            f" ${kept.VARIABLE} sets another"
+            f" ${kept.VARIABLE} sets another",
         )
         return
     removed = kept.remove(entries)

@@ -67,22 +67,31 @@ def export(
         fmu=(fmu_by or True) if fmu else False,
         **given,
     )
-    for original, called in made.mapped.items():
-        echo(f"{original} is called {called} in C")
     p = made.prefix
-    echo(
-        f"wrote {out}: {p}.h, {p}.c and what goes with them; {len(made.inputs)} inputs,"
-        f" {len(made.outputs)} outputs"
+    others = (
+        (fmu, f"{out / f'{p}.fmu'}: FMI 2.0, for Model Exchange and Co-Simulation"),
+        (
+            given["control"],
+            f"{out / f'{p}_control.hpp'}: for controllers in C++, with {p}_control_test.cpp",
+        ),
+        (
+            given["structured_text"],
+            f"{out / f'{p}.st'}: structured text of IEC 61131-3, with its test",
+        ),
+        (
+            given["wasm"],
+            f"{out / f'{p}.wasm'} and {p}.js: README.wasm.md says how a web page uses them",
+        ),
     )
-    if fmu:
-        echo(f"wrote {out / f'{p}.fmu'}: FMI 2.0, for Model Exchange and Co-Simulation")
-    if given["control"]:
-        echo(f"wrote {out / f'{p}_control.hpp'}: for controllers in C++, with {p}_control_test.cpp")
-    if given["structured_text"]:
-        echo(f"wrote {out / f'{p}.st'}: structured text of IEC 61131-3, with its test")
-    if given["wasm"]:
-        echo(f"wrote {out / f'{p}.wasm'} and {p}.js: README.wasm.md says how a web page uses them")
     echo(
-        f"try it: cd {shlex.quote(str(out))} && cmake -B build && cmake --build build && ctest"
-        " --test-dir build"
+        *(f"{original} is called {called} in C" for original, called in made.mapped.items()),
+        (
+            f"wrote {out}: {p}.h, {p}.c and what goes with them; {len(made.inputs)} inputs,"
+            f" {len(made.outputs)} outputs"
+        ),
+        *(f"wrote {what}" for asked, what in others if asked),
+        (
+            f"try it: cd {shlex.quote(str(out))} && cmake -B build && cmake --build build && ctest"
+            " --test-dir build"
+        ),
     )

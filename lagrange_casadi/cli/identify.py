@@ -125,8 +125,7 @@ def _lines(found: Identification, second: Comparison | None) -> Iterator[str]:
         for one in found.base
     ]
     yield from aligned(["combination", "value", "error", "t", ""], rows, left=(0, 4))
-    for note in found.notes:
-        yield f"  {note}"
+    yield from (f"  {note}" for note in found.notes)
     for title, compared in (("record", found.comparison), ("validation", second)):
         if compared is not None:
             for name, share in compared.relative.items():

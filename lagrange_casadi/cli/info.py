@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from ..engine.derive import compile_scene
@@ -43,108 +43,113 @@ def info(
         Count the instructions of these outputs; default: those of the case.
     """
     folder = unfinished(target)
-    if folder or target.suffix in HDF5:
-        refuse((wanted, "--want goes with a case, not with a file"))
-        if folder:
-            _describe_sweep(identity_of(folder))
-            echo(progress(folder))
-        elif is_sweep(target):
-            _describe_whole(Sweep.open(target))
-        else:
-            _describe_file(store.load(target))
+    file = folder or target.suffix in HDF5
+    refuse((file and wanted, "--want goes with a case, not with a file"))
+    if folder:
+        echo(*_sweep_lines(identity_of(folder)), progress(folder))
+    elif not file:
+        echo(*_case_lines(load_case(target).scene, wanted))
+    elif is_sweep(target):
+        echo(*_whole_lines(Sweep.open(target)))
     else:
-        _describe_case(load_case(target).scene, wanted)
+        echo(*_file_lines(store.load(target)))
 
 
-def _describe_case(scene: Scene, wanted: Sequence[str] | None) -> None:
+def _case_lines(scene: Scene, wanted: Sequence[str] | None) -> list[str]:
     program = compile_scene(scene, wanted)
-    _describe_mechanism(template(scene).at([*scene.values().values()]))
-    echo(*scene_lines(scene))
-    timing = scene.timing()
-    echo(asked_line(timing.words(program.data.symbols)[:4], timing.slides))
-    echo(f"xi/l: {scene.xi[0]:g} to {scene.xi[1]:g}, {scene.xi[2]} points")
-    outputs = scene.outputs
-    whole = kinds(outputs)
-    echo(
-        f"outputs: {', '.join(outputs)}" + (f"; all of a kind: {', '.join(whole)}" if whole else "")
-    )
-    echo(f"wanted: {', '.join(wanted or scene.wanted)}")
+    timing, whole = scene.timing(), kinds(scene.outputs)
     loops = [
         f"{name} ({'iterated' if program.iterates(name) else 'closed form'})"
         for name in program.checks("closure")
     ]
-    echo(f"loops closed by: {', '.join(loops) or 'none'}")
     counts = ", ".join(f"{name} {count}" for name, count in program.instructions.items())
-    echo(f"instructions an instant: {sum(program.instructions.values())} ({counts})")
+    return [
+        *_mechanism_lines(template(scene).at([*scene.values().values()])),
+        *scene_lines(scene),
+        asked_line(timing.words(program.data.symbols)[:4], timing.slides),
+        _ratios(*scene.xi),
+        f"outputs: {', '.join(scene.outputs)}"
+        + (f"; all of a kind: {', '.join(whole)}" if whole else ""),
+        f"wanted: {', '.join(wanted or scene.wanted)}",
+        f"loops closed by: {', '.join(loops) or 'none'}",
+        f"instructions an instant: {sum(program.instructions.values())} ({counts})",
+    ]
 
 
-def _describe_file(solution: Solution) -> None:
-    _describe_mechanism(solution.description)
-    provenance = solution.provenance
-    echo(f"t [s]: {solution.t[0]:g} to {solution.t[-1]:g}, {solution.t.size} points")
-    if solution.over:
-        first, last = (solution.over.drawn(solution.over.values[k]) for k in (0, -1))
-        echo(f"in equal steps of {solution.over.label}: {first:.6g} to {last:.6g}")
-    echo(f"xi/l: {solution.xi[0]:g} to {solution.xi[-1]:g}, {solution.xi.size} points")
-    made = (provenance.backend, provenance.precision, provenance.compiler, provenance.flags)
-    _describe_method(made, provenance.method, provenance.versions)
-    echo(*(f"note: {note}" for note in solution.notes), *not_evaluated_lines(solution))
+def _file_lines(solution: Solution) -> Iterator[str]:
+    yield from _mechanism_lines(solution.description)
+    yield asked_line((float(solution.t[0]), float(solution.t[-1]), solution.t.size), False)
+    if over := solution.over:
+        first, last = (over.drawn(over.values[k]) for k in (0, -1))
+        yield f"in equal steps of {over.label}: {first:.6g} to {last:.6g}"
+    yield _ratios(solution.xi[0], solution.xi[-1], solution.xi.size)
+    made = solution.provenance
+    yield from _method_lines(
+        (made.backend, made.precision, made.compiler, made.flags), made.method, made.versions
+    )
+    yield from (f"note: {note}" for note in solution.notes)
+    yield from not_evaluated_lines(solution)
     if solution.sensitivities.by:
         by = ", ".join(solution.sensitivities.parameters)
-        echo(f"sensitivities: of {len(solution.sensitivities.quantities)} quantities by {by}")
-    echo(*Rows.of_all(solution).table())
+        yield f"sensitivities: of {len(solution.sensitivities.quantities)} quantities by {by}"
+    yield from Rows.of_all(solution).table()
 
 
-def _describe_sweep(identity: Identity) -> None:
+def _sweep_lines(identity: Identity) -> Iterator[str]:
     mechanism = described(identity["mechanism"])
-    _describe_mechanism(mechanism)
-    for name, words in identity["grid"].items():
-        echo(f"swept {name}: {words}")
-    asked, xi = identity["t"][:4], identity["xi"]
-    echo(asked_line(asked, len(asked) > 3 and mechanism.coordinates[asked[3]] == "slide"))
-    if xi:
-        echo(f"xi/l: {xi[0]:g} to {xi[1]:g}, {xi[2]} points")
+    yield from _mechanism_lines(mechanism)
+    yield from (f"swept {name}: {words}" for name, words in identity["grid"].items())
+    asked = identity["t"][:4]
+    yield asked_line(asked, len(asked) > 3 and mechanism.coordinates[asked[3]] == "slide")
+    if identity["xi"]:
+        yield _ratios(*identity["xi"])
     made = (identity["backend"], identity["precision"], identity["compiler"], identity["flags"])
-    _describe_method(made, identity["rung"], identity["versions"])
+    yield from _method_lines(made, identity["rung"], identity["versions"])
 
 
-def _describe_method(made: Sequence[str], method: str, versions: Mapping[str, str]) -> None:
-    """Describe the backend, precision, compiler and flags that made numbers, and their method."""
-    backend, *others = made
-    echo(f"backend: {backend}, {' '.join(others)}".rstrip())
-    echo(f"method: {method}")
-    echo(f"versions: {', '.join(f'{name} {version}' for name, version in versions.items())}")
-
-
-def _describe_whole(sweep: Sweep) -> None:
-    _describe_sweep(sweep.identity)
+def _whole_lines(sweep: Sweep) -> Iterator[str]:
+    yield from _sweep_lines(sweep.identity)
     for status, count in sweep.counts().items():
         if count:
-            echo(f"{counted(count)}: {sweep.statuses[status][1]}")
-    echo("columns:")
+            yield f"{counted(count)}: {sweep.statuses[status][1]}"
+    yield "columns:"
     for kept in sweep.columns.values():
         axes = f" over {in_words(kept.axes)}" if kept.axes else ""
-        echo(f"  {kept.name:<36} {kept.unit:<4} {kept.long_name}{axes}")
+        yield f"  {kept.name:<36} {kept.unit:<4} {kept.long_name}{axes}"
 
 
-def _describe_mechanism(description: Description) -> None:
-    echo(f"mechanism: {description.name}")
+def _ratios(first: float, last: float, count: int) -> str:
+    return f"xi/l: {first:g} to {last:g}, {count} points"
+
+
+def _method_lines(made: Sequence[str], method: str, versions: Mapping[str, str]) -> list[str]:
+    """Describe the backend, precision, compiler and flags that made numbers, and their method."""
+    backend, *others = made
+    return [
+        f"backend: {backend}, {' '.join(others)}".rstrip(),
+        f"method: {method}",
+        f"versions: {', '.join(f'{name} {version}' for name, version in versions.items())}",
+    ]
+
+
+def _mechanism_lines(description: Description) -> Iterator[str]:
+    yield f"mechanism: {description.name}"
     for name, p in description.parameters.items():
         limits = (
             "" if math.isinf(p.low) and math.isinf(p.high) else f" (range {p.low:g} to {p.high:g})"
         )
-        echo(f"  parameter {name} = {p.value:g} {p.unit}{limits}")
+        yield f"  parameter {name} = {p.value:g} {p.unit}{limits}"
     for name, body in description.bodies.items():
         size = "point mass" if body.length is None else f"link of {body.length:g} m,"
         thick = ", slices with rotary inertia" if body.slices else ""
-        echo(f"  {size} {name}: {body.mass:g} kg{thick}")
+        yield f"  {size} {name}: {body.mass:g} kg{thick}"
     for name, joint in description.joints.items():
         ends = " - ".join(f"{p.body} {_vector(description.components(p.at))}" for p in joint.ends)
         moves = (_in_space if description.space else _in_plane)(joint, description)
-        echo(f"  {joint.kind} joint {name}: {ends}{moves}")
-    echo(f"  gravity: {_vector(description.components(description.gravity))} m/s^2")
+        yield f"  {joint.kind} joint {name}: {ends}{moves}"
+    yield f"  gravity: {_vector(description.components(description.gravity))} m/s^2"
     if description.bars:
-        echo(f"  two-force links, whose spin has no effect: {', '.join(description.bars)}")
+        yield f"  two-force links, whose spin has no effect: {', '.join(description.bars)}"
 
 
 def _in_plane(joint: JointNumbers, description: Description) -> str:

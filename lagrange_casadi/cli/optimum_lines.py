@@ -25,9 +25,8 @@ def optimum_lines(found: Optimum) -> Iterator[str]:
         kept = (
             "active" if limit.active else f"VIOLATED by {excess:.4g}" if excess > 0.0 else "holds"
         )
-        relaxed = ""
-        if limit.active and found.feasible:
-            relaxed = f"; the objective falls by {limit.multiplier:.4g} {found.unit}{_RELAXED}"
+        gain = f"; the objective falls by {limit.multiplier:.4g} {found.unit}{_RELAXED}"
+        relaxed = gain if limit.active and found.feasible else ""
         yield f"  {limit.constraint}: {limit.value:.8g}, {kept}{relaxed}"
     for name, multiplier in found.bounds.items():
         if multiplier and found.feasible:
@@ -55,8 +54,7 @@ def optimum_lines(found: Optimum) -> Iterator[str]:
         yield "  no design that was found is within all limits"
     elif not found.converged:
         yield f"  not known to be an optimum: {found.start.ending}"
-    for note in found.notes:
-        yield f"  note: {note}"
+    yield from (f"  note: {note}" for note in found.notes)
 
 
 def front_lines(front: Front) -> Iterator[str]:
@@ -80,8 +78,7 @@ def front_lines(front: Front) -> Iterator[str]:
         f"  gain: decrease of {first} per unit of the other objective; {front.evaluations} designs"
         " evaluated"
     )
-    for note in front.notes:
-        yield f"  note: {note}"
+    yield from (f"  note: {note}" for note in front.notes)
 
 
 def _cells(point: FrontPoint) -> list[str]:

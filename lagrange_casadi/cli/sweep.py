@@ -83,15 +83,10 @@ def sweep(
     fixed, t, over = (given[name] for name in ("parameters", "t", "over"))
     turning = turning_note(scene, scene.timing(t, over), swept, fixed)
     rests = resting_note(scene, found, fixed, t=t, over=over, wanted=given["wanted"])
-    for note in filter(
-        None, (*drawing_notes(found.description), rests, turning, *fatigue_notes(found))
-    ):
-        echo(f"note: {note}")
-    echo(
-        f"wrote {found.path}"
-        if progress.begun
-        else f"{found.path} was complete already: nothing was done"
-    )
+    notes = (*drawing_notes(found.description), rests, turning, *fatigue_notes(found))
+    written = f"wrote {found.path}"
+    complete = f"{found.path} was complete already: nothing was done"
+    echo(*(f"note: {note}" for note in notes if note), written if progress.begun else complete)
     if wrong := found.counts()[Status.UNCERTIFIED]:
         raise CertificateError(
             f"{counted(wrong)} of those that were checked in full, one of each block,"
@@ -103,7 +98,11 @@ def sweep(
 def _report(found: Sweep) -> None:
     shape = " x ".join(str(length) for length in found.dimensions.values())
     product = f"{shape} = " if len(found.dimensions) > 1 else ""
-    echo(f"{found.case}: {product}{counted(found.size)} over {', '.join(found.parameters)}")
-    for status, many in found.counts().items():
-        if status and many:
-            echo(f"  {grouped(many)} without a result: {found.statuses[status][1]}")
+    echo(
+        f"{found.case}: {product}{counted(found.size)} over {', '.join(found.parameters)}",
+        *(
+            f"  {grouped(many)} without a result: {found.statuses[status][1]}"
+            for status, many in found.counts().items()
+            if status and many
+        ),
+    )

@@ -58,12 +58,14 @@ def tolerances(
 
 def _print(found: Spreads) -> None:
     failed = f", {found.failed} of them without a result" if found.failed else ""
-    echo(
-        f"{found.case}: {found.drawn} designs drawn{failed}; sigma and worst to first order, the"
-        " rest of what was drawn"
-    )
     heads = ["peak of", "nominal", "+- worst", "sigma", "drawn", "least", "largest", "due to"]
-    echo(*aligned(heads, [_cells(spread) for spread in found.peaks.values()], left=(0, 7)))
+    echo(
+        (
+            f"{found.case}: {found.drawn} designs drawn{failed}; sigma and worst to first order,"
+            " the rest of what was drawn"
+        ),
+        *aligned(heads, [_cells(spread) for spread in found.peaks.values()], left=(0, 7)),
+    )
 
 
 def _cells(spread: Spread) -> list[str]:

@@ -76,11 +76,6 @@ def _print(found: Trade) -> None:
         (one.seconds for one in found.measurements if one.method == EvaluationMethod("lanes")),
         found.measurements[0].seconds,
     )
-    echo(
-        f"{found.case}: every output at {found.instants} instants, processor time of one thread;"
-        f" errors at {found.compared} instants, relative to each quantity's peak; * nothing is"
-        " faster and more accurate; times within 20 % are held to be equal"
-    )
     heads = ["", "method", "ns/instant", "instructions", "x lanes", "largest", "median"]
     rows = [
         [
@@ -95,15 +90,16 @@ def _print(found: Trade) -> None:
         ]
         for one in found.measurements
     ]
-    echo(*aligned([*heads, "worst quantity"], rows, left=(0, 1, 7), indent=""))
-    for options, reason in found.refused.items():
-        echo(f"  {options}: {reason}")
+    echo(
+        (
+            f"{found.case}: every output at {found.instants} instants, processor time of one"
+            f" thread; errors at {found.compared} instants, relative to each quantity's peak; *"
+            " nothing is faster and more accurate; times within 20 % are held to be equal"
+        ),
+        *aligned([*heads, "worst quantity"], rows, left=(0, 1, 7), indent=""),
+        *(f"  {options}: {reason}" for options, reason in found.refused.items()),
+    )
     if found.peaks:
-        echo(
-            "how far peaks of forces fall short, by instants of the cycle; refined: between them,"
-            " as by run --refine-peaks"
-        )
-        heads = ["instants", "worst", "median", "refined worst", "refined median"]
         rows = [
             [
                 str(row.count),
@@ -119,14 +115,22 @@ def _print(found: Trade) -> None:
             ]
             for row in found.peaks
         ]
-        echo(*aligned(heads, rows))
-    if found.searches:
         echo(
-            "peaks of designs, all of them; error of the worst quantity, and its bound, relative to"
-            " its peak"
+            (
+                "how far peaks of forces fall short, by instants of the cycle; refined: between"
+                " them, as by run --refine-peaks"
+            ),
+            *aligned(["instants", "worst", "median", "refined worst", "refined median"], rows),
         )
+    if found.searches:
         rows = [
             [cost.peaks, f"{1e9 * cost.seconds:.4g}", f"{cost.error:.1e}", f"{cost.bound:.1e}"]
             for cost in found.searches
         ]
-        echo(*aligned(["peaks", "ns/instant", "error", "bound"], rows, left=(0,)))
+        echo(
+            (
+                "peaks of designs, all of them; error of the worst quantity, and its bound,"
+                " relative to its peak"
+            ),
+            *aligned(["peaks", "ns/instant", "error", "bound"], rows, left=(0,)),
+        )
