@@ -68,16 +68,13 @@ def animate(
     file = target.suffix in HDF5
     refuse((file and any(given.values()), "--set, --t and --over go with a case, not with a file"))
     film = Film(width, rate, seconds, forces, section, not no_names)
-    if out:
-        check_ending(out)
     case = None if file else load_case(target)
     out = out or Path(f"{case.name if case else target.stem}.gif")
+    check_ending(out)
     check_writable(out)
-    if case is None:
-        solution = load(target)
-    else:
-        scene = case.scene
-        solution = evaluate(scene, wanted=_wanted(scene, film), **given)
+    solution = (
+        evaluate(case.scene, wanted=_wanted(case.scene, film), **given) if case else load(target)
+    )
     with reported_as("cannot be shown", target) if file else nullcontext():
         write_animation(solution, out, film)
     echo(f"wrote {out}")

@@ -8,7 +8,6 @@ import ast
 import os
 import re
 import shlex
-import shutil
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -40,15 +39,12 @@ def cases(
         for name, folder in found.items():
             echo(f"{name:18} {_sentence(folder / 'case.py')}")
         return
-    if copy.exists():
-        raise PathError(f"{copy} exists: expected a new folder")
-    with filling(copy) as draft:
-        for name, folder in found.items():
-            for file in sorted(folder.rglob("*")):
-                if file.is_file() and "__pycache__" not in file.parts:
-                    place = draft / name / file.relative_to(folder)
-                    place.parent.mkdir(parents=True, exist_ok=True)
-                    shutil.copyfile(file, place)
+    files = {
+        f"{name}/{file}": content
+        for name, folder in found.items()
+        for file, content in _files(folder).items()
+    }
+    _put(files, copy)
     echo(
         f"copied {len(found)} cases: begin with lagrange-casadi run"
         f" {shlex.quote(str(copy / next(iter(found))))}"
@@ -58,6 +54,26 @@ def cases(
 def _sentence(file: Path) -> str:
     """The first line of what a case says of itself."""
     return (ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or "").partition("\n")[0]
+
+
+def _files(folder: Path) -> dict[str, bytes]:
+    """The files of a case by their names, but for compiled modules."""
+    return {
+        file.relative_to(folder).as_posix(): file.read_bytes()
+        for file in sorted(folder.rglob("*"))
+        if file.is_file() and "__pycache__" not in file.parts
+    }
+
+
+def _put(files: Mapping[str, bytes], folder: Path) -> None:
+    """Write files into a new folder. Raises :class:`PathError` if it is there."""
+    if os.path.lexists(folder):
+        raise PathError(f"{folder} exists: expected a new folder")
+    with filling(folder) as draft:
+        for name, content in files.items():
+            place = draft / name
+            place.parent.mkdir(parents=True, exist_ok=True)
+            place.write_bytes(content)
 
 
 def new(
@@ -127,11 +143,7 @@ def new(
         )
         files = {"case.py": text.encode()}
         notes = [line[2:] for line in text.splitlines() if line.startswith("# ")]
-    if os.path.lexists(folder):
-        raise PathError(f"{folder} exists: expected a new folder")
-    with filling(folder) as draft:
-        for name, content in files.items():
-            (draft / name).write_bytes(content)
+    _put(files, folder)
     echo(*notes)
     echo(
         f"wrote {folder / 'case.py'}: {'change' if source is None else 'read'} it, then"
@@ -145,11 +157,8 @@ def _copied(like: str, folder: Path) -> dict[str, bytes]:
     """
     found = shipped_cases()
     check_known("case", [like], found)
-    files = {
-        file.name: file.read_bytes()
-        for file in sorted(found[like].iterdir())
-        if file.is_file() and file.name != "README.md"  # which says what the other one is
-    }
+    files = _files(found[like])
+    files.pop("README.md", None)  # which says what the other one is
     name = re.sub(r"[^A-Za-z0-9_]", "_", Path(os.path.abspath(folder)).name)
     if name[:1].isalpha():
         case = files["case.py"].decode()

@@ -3,22 +3,29 @@
 from __future__ import annotations
 
 import subprocess
+from collections.abc import Callable
 from pathlib import Path
 
 from ..base.apart import LostError, run_apart
 from ..base.vocabulary import TIME_LIMIT
 from ..errors import StoreError
 from ..results.store import runs as store
-from ..results.store.opening import IDENTIFICATION, SEARCH, check_identification, kind_of
+from ..results.store.opening import IDENTIFICATION, SEARCH, SWEEP, check_identification, kind_of
 from ..results.store.untrusted import structured
 from ..studies.optimise.search_file import check_optimum
-from ..studies.sweep import is_sweep
 from ..studies.sweep.checking import check_sweep, flaws, progress, unfinished
 from .echo import echo
 from .options import refuse
 
 _VARIABLES = {"HDF5_PLUGIN_PRELOAD": "::"}
 """Environment by which HDF5 loads no filters from outside."""
+
+_CHECKS: dict[str | None, Callable[[Path], list[str]]] = {
+    SWEEP: check_sweep,
+    SEARCH: check_optimum,
+    IDENTIFICATION: check_identification,
+}
+"""Checks of files of each kind, but for those of runs."""
 
 _LONGEST = 1e6
 _LINES, _LENGTH = 100, 1000
@@ -63,11 +70,7 @@ def _findings(file: Path) -> list[str]:
     folder = unfinished(file)
     if folder:
         return [progress(folder), *flaws(folder)]
-    if kind_of(file) == SEARCH:
-        return check_optimum(file)
-    if kind_of(file) == IDENTIFICATION:
-        return check_identification(file)
-    return check_sweep(file) if is_sweep(file) else store.check(file)
+    return _CHECKS.get(kind_of(file), store.check)(file)
 
 
 def _findings_apart(file: Path, seconds: float) -> list[str]:

@@ -9,8 +9,6 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-import click
-
 from ..base.arrays import Array
 from ..base.units import quantity, typed
 from ..errors import NoDesignError, check_known
@@ -147,16 +145,18 @@ def _choose(
     Raises ``click.UsageError`` where its ratio is left open, and :class:`.NoDesignError`.
     """
     linear, slide = catalogue[0].linear, slides(solution, name)
-    if lead is not None and (linear or not slide):
-        why = "linear motors have no lead" if linear else f"drive '{name}' turns; expected --ratio"
-        raise click.UsageError(f"--lead: {why}")
-    if slide and not linear and lead is None and not ratios:
-        raise click.UsageError(
-            f"drive '{name}' slides: expected --lead, the travel per turn of the motor, or linear"
-            " motors"
-        )
-    per_unit = 1.0 if lead is None else math.tau / lead
-
+    refuse(
+        (lead and linear, "--lead: linear motors have no lead"),
+        (lead and not slide, f"--lead: drive '{name}' turns; expected --ratio"),
+        (
+            slide and not (linear or lead or ratios),
+            (
+                f"drive '{name}' slides: expected --lead, the travel per turn of the motor, or"
+                " linear motors"
+            ),
+        ),
+    )
+    per_unit = math.tau / lead if lead else 1.0
     beside_rotor = quantity("--inertia", inertia, "kg" if linear else "kg m^2")
 
     def asked(ratio: float, rotor: float) -> Duty:
@@ -175,11 +175,7 @@ def _choose(
 
 def _load_lines(load: Duty) -> Iterator[str]:
     """Lines of the load at the drive itself."""
-    force = "N" if load.linear else "N m"
-    yield (
-        f"{load.joint}: rms {load.rms_torque:.5g} {force}, peak {load.peak_torque:.5g} {force},"
-        f" {_speed(load)}, peak power {load.peak_power:.5g} W"
-    )
+    yield f"{load.joint}: {_peaks(load)}"
     yield f"  {_energy(load)}"
     if load.carried is not None:
         unit = "kg" if load.linear else "kg m^2"
@@ -196,7 +192,6 @@ def _load_lines(load: Duty) -> Iterator[str]:
 def _choice_lines(choice: Choice, count: int) -> Iterator[str]:
     """The motor, what it is used to, and why nothing smaller will do."""
     duty, motor = choice.duty, choice.motor
-    force = "N" if duty.linear else "N m"
     yield (
         f"  smallest suitable of {count} motors: '{motor.name}', {motor.rated_power:.5g} W, with a"
         f" ratio of {duty.ratio:.6g}"
@@ -207,10 +202,7 @@ def _choice_lines(choice: Choice, count: int) -> Iterator[str]:
             f"    {name:<12} {share:>8.4g}"
             f" |{'#' * min(_BAR, math.ceil(share * _BAR)):<{_BAR}}|{governs}"
         )
-    yield (
-        f"    rms {duty.rms_torque:.5g} {force}, peak {duty.peak_torque:.5g} {force},"
-        f" {_speed(duty)}, peak power {duty.peak_power:.5g} W"
-    )
+    yield f"    {_peaks(duty)}"
     yield f"    {_energy(duty)}"
     if duty.inertia > 0.0:
         ratio = duty.inertia_ratio
@@ -221,13 +213,12 @@ def _choice_lines(choice: Choice, count: int) -> Iterator[str]:
     yield from (f"    smaller: {why}" for why in choice.refused)
 
 
-def _speed(duty: Duty) -> str:
-    speed = (
-        f"{duty.peak_speed:.5g} m/s"
-        if duty.linear
-        else f"{duty.peak_speed * 60.0 / math.tau:.5g} 1/min"
+def _peaks(duty: Duty) -> str:
+    force, per_unit, unit = ("N", 1.0, "m/s") if duty.linear else ("N m", 60.0 / math.tau, "1/min")
+    return (
+        f"rms {duty.rms_torque:.5g} {force}, peak {duty.peak_torque:.5g} {force}, peak speed"
+        f" {duty.peak_speed * per_unit:.5g} {unit}, peak power {duty.peak_power:.5g} W"
     )
-    return f"peak speed {speed}"
 
 
 def _energy(duty: Duty) -> str:

@@ -105,17 +105,16 @@ def free(
         "start": None if start is None else _numbers("--start", start, 2),
         "cycle": math.tau * cycle,
     }
-    wheel = None
-    if fluctuation is not None:
+    if fluctuation is None:
+        found = run(loaded.scene, inertia=inertia, t=t, steady=steady, **given)
+        echo(*_lines(found))
+    else:
         wheel = flywheel(loaded.scene, fluctuation=fluctuation, **given)
         found = wheel.motion
-    else:
-        found = run(loaded.scene, inertia=inertia, t=t, steady=steady, **given)
-    echo(*_lines(found))
-    if wheel is not None:
         echo(
+            *_lines(found),
             f"flywheel: {wheel.inertia:.6g} kg m^2 by the exact cycle, {wheel.textbook:.6g} kg m^2"
-            f" by the energy method, for a swing of {wheel.energy:.6g} J"
+            f" by the energy method, for a swing of {wheel.energy:.6g} J",
         )
     save(found.solution, out)
     echo(f"wrote {out}")

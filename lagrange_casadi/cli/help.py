@@ -48,8 +48,7 @@ class Command(click.Command):
         """Write the options in two groups."""
         groups: dict[str, list[tuple[str, str]]] = {"Options": [], "Computation": []}
         for parameter in self.get_params(ctx):
-            record = parameter.get_help_record(ctx)
-            if isinstance(parameter, click.Option) and record:
+            if record := parameter.get_help_record(ctx):
                 groups["Computation" if parameter.name in _MACHINE else "Options"].append(record)
         for name, records in groups.items():
             if records:

@@ -94,8 +94,7 @@ def _reads(what: str) -> Callable[[Callable[[str], Value]], Callable[[str], Valu
     return decorate
 
 
-@_reads("START:STOP:COUNT, as in 0:0.08:801")
-def even_points(text: str) -> EvenPoints:
+def _even_points(text: str) -> EvenPoints:
     """START:STOP:COUNT, both ends included; START and STOP may have a unit, as 80ms."""
     start, stop, count = text.split(":")
     return _value(start), _value(stop), whole(count)
@@ -105,8 +104,7 @@ def even_points(text: str) -> EvenPoints:
 def steps_over(text: str) -> Over:
     """JOINT=START:STOP:COUNT; which units START and STOP may have is the joint's affair."""
     joint, steps = _named(text)
-    start, stop, count = steps.split(":")
-    return joint, _value(start), _value(stop), whole(count)
+    return joint, *_even_points(steps)
 
 
 @_reads(
@@ -154,11 +152,20 @@ def _in_unit(unit: str, what: str) -> Callable[[str], float]:
     return reader
 
 
-@_reads("a number in SI units, or one with its unit")
-def measured(text: str) -> float | str:
-    """A number, or a text with its unit, which is checked later."""
-    found: float | str = _value(text)
-    return found
+def _value(word: object) -> Any:
+    """A number, or the text of one with a unit, which is checked later; a default is a number
+    already.
+
+    Raises ``ValueError`` for anything else.
+    """
+    from ..base.units import typed
+
+    return word if not isinstance(word, str) or typed(word)[1] else real(word)
+
+
+measured: Callable[[str], float | str] = _reads("a number in SI units, or one with its unit")(
+    _value
+)
 
 
 @_reads("NAME=VALUE with a number in SI units, as in l=0.25 or phi=30deg")
@@ -238,10 +245,8 @@ def target(option: str, given: Path | None, usual: str, endings: Collection[str]
     that has none of some endings, and as :func:`.check_writable`.
     """
     path = given or Path(usual)
-    if path.suffix not in endings:
-        raise click.UsageError(
-            f"{option} {path}: expected a name that ends in {' or '.join(endings)}"
-        )
+    expected = f"{option} {path}: expected a name that ends in {' or '.join(endings)}"
+    refuse((path.suffix not in endings, expected))
     check_writable(path, hdf5=endings is HDF5)
     return path
 
@@ -252,16 +257,6 @@ def _named(text: str) -> tuple[str, str]:
     if not (name and words):
         raise ValueError(text)
     return name, words
-
-
-def _value(word: object) -> Any:
-    """A number, or the text of one with a unit; a default is a number already.
-
-    Raises ``ValueError`` for anything else.
-    """
-    from ..base.units import typed
-
-    return word if not isinstance(word, str) or typed(word)[1] else real(word)
 
 
 def _read(read: Callable[[str], Value], what: str, word: str, words: str) -> Value:
@@ -275,7 +270,7 @@ def _read(read: Callable[[str], Value], what: str, word: str, words: str) -> Val
 
 
 _READERS: Mapping[str, Kind] = {
-    EVEN_POINTS: even_points,
+    EVEN_POINTS: _reads("START:STOP:COUNT, as in 0:0.08:801")(_even_points),
     OVER: steps_over,
     AXIS: axis,
     BOUNDS: bounds,
@@ -380,28 +375,26 @@ def option(parameter: Parameter) -> click.Parameter:
     is a sequence or a mapping. The value may be left out where brackets stand for it.
     """
     name, kind = parameter.name, parameter.kind
-    says = re.sub(r"``(\w+)``", lambda one: _spelled(one[1]), parameter.says).replace("``", "")
-    says = says.replace("scene", "case")  # which has the scene
+    says = re.sub(r"``(\w+)``", lambda one: _spelled(one[1]), parameter.says)
+    says = says.replace("``", "").replace("scene", "case")  # which has the scene
     metavar = parameter.metavar or _SYNTAX.get(name) or None
     many = re.search(r"(Sequence|Mapping|tuple)\[|^Outputs", kind) is not None
     if parameter.positional:
         path = CASE if "CASE" in (metavar or name.upper()) else PATH
         return click.Argument([name], type=path, metavar=metavar, nargs=-1 if many else 1)
     spelled = _spelled(name)
-    if kind == "bool":
-        return click.Option([spelled, name], is_flag=True, help=says)
-    if kind == "bool | None":
-        return click.Option([f"{spelled}/--no-{name}", name], default=None, help=says)
+    if kind.startswith("bool"):
+        words = spelled if kind == "bool" else f"{spelled}/--no-{name}"
+        return click.Option([words, name], is_flag=True, default=parameter.value, help=says)
     base = re.findall(r"\w+", kind.replace("Annotated", "").replace("Sequence", ""))[0]
-    words = get_args(getattr(vocabulary, base, None))
+    choices = get_args(getattr(vocabulary, base, None))
     default = None if many else parameter.value
     alone: dict[str, Any] = (
         {"is_flag": False, "flag_value": ""} if (metavar or "").startswith("[") else {}
     )
-    says = f"{says} Repeatable." if many else says
     return click.Option(
         [spelled, name],
-        type=click.Choice(words) if words else _READERS.get(metavar or "", _READERS.get(base)),
+        type=click.Choice(choices) if choices else _READERS.get(metavar or "", _READERS.get(base)),
         nargs=len((metavar or name).split()),
         multiple=many,
         required=parameter.default is None,
@@ -409,7 +402,7 @@ def option(parameter: Parameter) -> click.Parameter:
         metavar=metavar,
         default=default,
         show_default=bool(default),
-        help=says,
+        help=f"{says} Repeatable." if many else says,
         **alone,
     )
 

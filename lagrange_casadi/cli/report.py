@@ -170,10 +170,10 @@ class Rows:
     @cached_property
     def _scales(self) -> dict[str, float]:
         """The largest size of each unit."""
-        scales: dict[str, float] = {}
-        for row in self.rows:
-            scales[row.unit] = max(scales.get(row.unit, 0.0), _size(row.peak))
-        return scales
+        return {
+            unit: max(_size(row.peak) for row in self.rows if row.unit == unit)
+            for unit in {row.unit for row in self.rows}
+        }
 
     def _nothing(self, row: Row) -> bool:
         """Mark what is zero within rounding, or indeterminate."""

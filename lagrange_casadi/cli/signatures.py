@@ -108,8 +108,8 @@ def _declared(node: ast.FunctionDef | ast.ClassDef) -> Iterator[Parameter]:
                 yield Parameter(ast.unparse(line.target), ast.unparse(line.annotation), line.value)
         return
     taken = node.args
-    defaults = [*[None] * (len(taken.args) - len(taken.defaults)), *taken.defaults]
-    for arguments, values in ((taken.args, defaults), (taken.kwonlyargs, taken.kw_defaults)):
-        for one, default in zip(arguments, values, strict=True):
-            kind = "" if one.annotation is None else ast.unparse(one.annotation)
-            yield Parameter(one.arg, kind, default, arguments is taken.args)
+    required = [None] * (len(taken.args) - len(taken.defaults))
+    values = [*required, *taken.defaults, *taken.kw_defaults]
+    for one, default in zip([*taken.args, *taken.kwonlyargs], values, strict=True):
+        kind = "" if one.annotation is None else ast.unparse(one.annotation)
+        yield Parameter(one.arg, kind, default, one in taken.args)
