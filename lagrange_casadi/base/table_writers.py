@@ -47,7 +47,7 @@ class TableFile:
     path: Path
     decimal_comma: bool = False
 
-    def check(self) -> None:
+    def __post_init__(self) -> None:
         """Raise where the table cannot be written, before anything is computed.
 
         Raises :class:`.DeclarationError` for a workbook with decimal commas or of another kind,
@@ -77,7 +77,6 @@ class TableFile:
         """Write rows, which are put into their place at the end, unless something fails; yields how
         many there are.
         """
-        self.check()
         with writing(self.path) as file:
             write = self._write_workbook if self._is_workbook else self._write_csv
             yield write(file, heads, rows)

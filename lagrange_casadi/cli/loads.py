@@ -73,8 +73,10 @@ def loads(
     check_writable(out, folder=True)
     scene, chosen = load_case(case).scene, tuple(dict.fromkeys(links))
     inside = {*chosen, *(re.split("[:@]", f"{name}:")[1] for name in spectra)}
-    wanted = certified_outputs(scene.outputs)
-    wanted += (name for name in scene.outputs if name in {f"section:{link}" for link in inside})
+    wanted = [
+        *certified_outputs(scene.outputs),
+        *(name for name in scene.outputs if name in {f"section:{link}" for link in inside}),
+    ]
     solution = evaluate(scene, wanted=wanted, **given)
     refuse_failed(solution)
     instants = solution.t.tolist() if every else None

@@ -6,7 +6,7 @@ import math
 import os
 import re
 from collections.abc import Callable, Collection, Mapping, Sequence
-from functools import wraps
+from functools import partial, wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, get_args
 
@@ -86,7 +86,7 @@ def _reads(what: str) -> Callable[[Callable[[str], Value]], Callable[[str], Valu
                 return read(text)
             except NumberError as error:  # a number in another unit
                 raise click.BadParameter(str(error)) from None
-            except ValueError:
+            except (ValueError, ZeroDivisionError):
                 raise click.BadParameter(f"expected {what}, got '{text}'") from None
 
         return reader
@@ -140,16 +140,11 @@ def axis(text: str) -> tuple[str, Axis]:
         raise click.BadParameter(f"{name}: {error}") from None
 
 
-def _in_unit(unit: str, what: str) -> Callable[[str], float]:
-    """The reader of a number, which may have another unit."""
+def _in_unit(unit: str, text: str) -> float:
+    """A number, which may have another unit."""
+    from ..base.units import number
 
-    @_reads(what)
-    def reader(text: str) -> float:
-        from ..base.units import number
-
-        return number(_value(text), unit, finite=False)
-
-    return reader
+    return number(_value(text), unit, finite=False)
 
 
 def _value(word: object) -> Any:
@@ -204,15 +199,13 @@ def table(text: str) -> float:
     return int(text) if re.fullmatch(r"[0-9]+", text) else real(text)
 
 
+@_reads("a share of the length, as 1/500")
 def share(text: str) -> float:
     """A positive number, or one over another."""
     above, _, below = text.partition("/")
-    try:
-        found = real(above) / real(below or "1")
-    except (ValueError, ZeroDivisionError):
-        found = math.nan
+    found = real(above) / real(below or "1")
     if not 0.0 < found < math.inf:
-        raise click.BadParameter(f"expected a share of the length, as 1/500, got {text!r}")
+        raise ValueError(text)
     return found
 
 
@@ -245,8 +238,12 @@ def target(option: str, given: Path | None, usual: str, endings: Collection[str]
     that has none of some endings, and as :func:`.check_writable`.
     """
     path = given or Path(usual)
-    expected = f"{option} {path}: expected a name that ends in {' or '.join(endings)}"
-    refuse((path.suffix not in endings, expected))
+    refuse(
+        (
+            path.suffix not in endings,
+            f"{option} {path}: expected a name that ends in {' or '.join(endings)}",
+        )
+    )
     check_writable(path, hdf5=endings is HDF5)
     return path
 
@@ -281,11 +278,11 @@ _READERS: Mapping[str, Kind] = {
     "JOINT=NAME": _reads("NAME=NAME")(_named),
     "NUMBER|NAME=NUMBER": counts,
     "NODES|ACCURACY": table,
-    "LENGTH": _in_unit("m", "a length [m], as in 0.005 or 5mm"),
+    "LENGTH": _reads("a length [m], as in 0.005 or 5mm")(partial(_in_unit, "m")),
     "TORQUE": measured,
     "INERTIA": measured,
-    "HZ": _in_unit("1/s", "a frequency [Hz], as in 50 or 50Hz"),
-    "SECONDS": _in_unit("s", "a time [s], as in 0.5 or 500ms"),
+    "HZ": _reads("a frequency [Hz], as in 50 or 50Hz")(partial(_in_unit, "1/s")),
+    "SECONDS": _reads("a time [s], as in 0.5 or 500ms")(partial(_in_unit, "s")),
     "SHARE": share,
     "N": click.IntRange(1),
     "THREADS": click.IntRange(1, MOST_THREADS),
@@ -296,7 +293,8 @@ _READERS: Mapping[str, Kind] = {
     "Count": int,
     "Starts": int,
     **dict.fromkeys(
-        ("float", "Positive", "NotNegative"), _in_unit("1", "a number, as in 0.05 or 5%")
+        ("float", "Positive", "NotNegative"),
+        _reads("a number, as in 0.05 or 5%")(partial(_in_unit, "1")),
     ),
 }
 """Readers of values, by what stands for them in the help, else by their type."""
@@ -419,7 +417,4 @@ def table_file(place: Path | None, decimal_comma: bool) -> TableFile | None:
     from ..base.table_writers import TableFile
 
     refuse((decimal_comma and not place, "--decimal-comma goes with --csv FILE.csv"))
-    table = None if place is None else TableFile(place, decimal_comma)
-    if table:
-        table.check()
-    return table
+    return None if place is None else TableFile(place, decimal_comma)
