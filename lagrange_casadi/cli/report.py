@@ -6,6 +6,7 @@ import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import product
 
 import numpy as np
 
@@ -49,6 +50,13 @@ class Row:
     peak: Peak | None = None
     error: float | None = None
 
+    @property
+    def card(self) -> str:
+        """Words for the largest of its kind, which has a line on the first screen; empty for
+        others.
+        """
+        return _CARDS.get((self.output.group, self.output.member), "")
+
 
 @dataclass(frozen=True)
 class Rows:
@@ -85,8 +93,13 @@ class Rows:
         ]
         lost = [Output.of(peak.name) for peak in refined if peak.least is not None]
         loads = dict.fromkeys(output.part for output in lost if output.group == "load")
-        rows = tuple(_row(solution, output, peaks) for output in outputs)
-        return cls(solution, rows, tuple(loads), tuple(margins(scene)), tuple(strokes(scene)))
+        return cls(
+            solution,
+            tuple(_row(solution, output, peaks) for output in outputs),
+            tuple(loads),
+            tuple(margins(scene)),
+            tuple(strokes(scene)),
+        )
 
     @classmethod
     def of_all(cls, solution: Solution) -> Rows:
@@ -97,28 +110,18 @@ class Rows:
         """Write the largest effort, reaction and section forces, each with its place and time, and
         the least margin of contacts.
         """
-        best: dict[tuple[str, str], Row] = {}
-        for row in self.rows:
-            words = _CARDS.get((row.output.group, row.output.member))
-            # Efforts of drives that turn and of drives that slide do not compare.
-            kind = (words or "", row.unit)
-            if (
-                words
-                and row.peak
-                and _size(row.peak) > _size(best[kind].peak if kind in best else None)
-            ):
-                best[kind] = row
-        order = list(dict.fromkeys(_CARDS.values()))
-        kinds = [kind for kind in best if not self._nothing(best[kind])]
-        width = max([28, *(len(str(best[kind].output)) for kind in kinds)])
-        for words, unit in sorted(kinds, key=lambda kind: order.index(kind[0])):
-            if peak := best[words, unit].peak:
-                yield card(words, peak_line(self.solution, peak, self._scales[unit], width))
+        cards = []
+        # Efforts of drives that turn and of drives that slide do not compare.
+        for words, unit in product(dict.fromkeys(_CARDS.values()), self._scales):
+            rows = (row for row in self.rows if (row.card, row.unit) == (words, unit))
+            largest = max(rows, key=lambda row: _size(row.peak), default=None)
+            if largest and largest.peak and not self._nothing(largest):
+                cards.append((words, largest.peak))
+        width = max([28, *(len(peak.name) for _, peak in cards)])
         if found := self._nearest:
-            least = _peak(self.solution, found, found.smallest)
-            yield card(
-                "least margin", peak_line(self.solution, least, self._scales[found.unit], width)
-            )
+            cards.append(("least margin", _peak(self.solution, found, found.smallest)))
+        for words, peak in cards:
+            yield card(words, peak_line(self.solution, peak, self._scales[peak.unit], width))
 
     def table(self, capacity: int | None = None) -> Iterator[str]:
         """Write a row for each quantity, or for the most important ones if ``capacity`` is for
@@ -172,7 +175,7 @@ class Rows:
         """The largest size of each unit."""
         return {
             unit: max(_size(row.peak) for row in self.rows if row.unit == unit)
-            for unit in {row.unit for row in self.rows}
+            for unit in dict.fromkeys(row.unit for row in self.rows)
         }
 
     def _nothing(self, row: Row) -> bool:
@@ -220,13 +223,13 @@ class Rows:
             return [str(row.output), _INDETERMINATE]
         value = shown(peak, row.error, scale)
         at = ["", ""] if value == "0" else self._place(peak)
-        others = (found.smallest.value, found.largest.value, found.mean, found.rms)
+        numbers = (found.smallest.value, found.largest.value, found.mean, found.rms)
         return [
             str(row.output),
             value,
             row.unit,
             *at,
-            *("" if number is None else readable(number, row.error, scale) for number in others),
+            *("" if number is None else readable(number, row.error, scale) for number in numbers),
         ]
 
     def _place(self, peak: Peak) -> list[str]:
@@ -267,21 +270,20 @@ def shown(peak: Peak, error: float | None, scale: float) -> str:
 def _matters(value: str, error: float) -> bool:
     """Return whether an error reaches the last digit shown of a value."""
     size = abs(float(value))
-    if not (math.isfinite(error) and math.isfinite(size)):
+    if not (math.isfinite(error) and 0.0 < size < math.inf):
         return False
-    last = 10.0 ** (math.floor(math.log10(size)) + 1 - _DIGITS) if size else math.inf
-    return error >= 0.5 * last
+    return error >= 0.5 * 10.0 ** (math.floor(math.log10(size)) + 1 - _DIGITS)
 
 
-def peak_line(solution: Solution, peak: Peak, scale: float | None = None, width: int = 28) -> str:
+def peak_line(solution: Solution, peak: Peak, scale: float, width: int) -> str:
     """Write a peak with its name, its place, and how far it may be off if that shows."""
-    where = f"t = {peak.t:.5g} s" + ("" if peak.xi is None else f", xi/l = {ratio(peak.xi)}")
-    if peak.over is not None and solution.over:
-        where = f"{solution.over.shown(peak.over)}, {where}"
-    error = error_of(solution, peak.name)
-    value = shown(peak, error, _size(peak) if scale is None else scale)
+    over = "" if peak.over is None or not solution.over else f"{solution.over.shown(peak.over)}, "
+    xi = "" if peak.xi is None else f", xi/l = {ratio(peak.xi)}"
+    value = shown(peak, error_of(solution, peak.name), scale)
     more = "" if peak.least is None else NOT_FOUND
-    return f"  {peak.name:<{width}} {value:>12} {peak.unit:<4} at {where}{more}"
+    return (
+        f"  {peak.name:<{width}} {value:>12} {peak.unit:<4} at {over}t = {peak.t:.5g} s{xi}{more}"
+    )
 
 
 def _row(solution: Solution, output: Output, peaks: Mapping[str, Peak]) -> Row:

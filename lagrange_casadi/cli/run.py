@@ -35,6 +35,7 @@ from ..studies.case import load_case
 from ..studies.evaluate import evaluate
 from ..studies.peaks_between import forces, refine, resultants
 from ..studies.sensitivities import Changes, sensitivities
+from ..studies.sweep.axes import counted
 from ..views.shapes.index import MANIFEST
 from .drawing import draw_with_progress
 from .echo import echo
@@ -178,16 +179,11 @@ def _rows(columns: Sequence[Array]) -> Iterator[list[float]]:
         yield from np.column_stack([column[start : start + _BLOCK] for column in columns]).tolist()
 
 
-def _grids(
-    solution: Solution, grids: bool | None, wanted: Sequence[str]
-) -> bool | list[str] | None:
+def _grids(solution: Solution, grids: bool | None, wanted: Sequence[str]) -> bool | list[str]:
     """Links whose grids are stored: pieces of bent bars where they were asked for by name."""
-    pieces = solution.description.pieces
-    links = solution.links_with_sections
-    asked = {link for link in links if link in pieces and f"section:{link}" in wanted}
-    if grids is not None or not asked:
-        return grids
-    return [link for link in links if link not in pieces or link in asked]
+    pieces, links = solution.description.pieces, solution.links_with_sections
+    usual = [link for link in links if link not in pieces or f"section:{link}" in wanted]
+    return usual if grids is None else grids
 
 
 def _check_places(out: Path, folder: Path | None, csv: Path | None) -> None:
@@ -318,7 +314,7 @@ def replaced_lines(
     over = [name for name in before if name in drawn]
     what = [str(file)] if replaced else []
     if over:
-        what.append(f"{len(over)} figure{'s' if len(over) > 1 else ''} in {folder}/")
+        what.append(f"{counted(len(over), 'figure')} in {folder}/")
     if what:
         yield f"replaced {' and '.join(what)}"
     older = sorted(set(before) - set(drawn))

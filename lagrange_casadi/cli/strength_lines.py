@@ -86,21 +86,24 @@ def not_evaluated_lines(solution: Solution, besides: Collection[str] = ()) -> It
     """Lines on links and joints without figures and tables of strength, and the reasons, except
     those reported before.
     """
-    for part, why in not_evaluated(solution).items():
-        if part not in besides:
-            yield f"note: no factor of safety of '{part}': {why}"
+    yield from (
+        f"note: no factor of safety of '{part}': {why}"
+        for part, why in not_evaluated(solution).items()
+        if part not in besides
+    )
 
 
 def safety_lines(found: Safety) -> Iterator[str]:
     """The factors of safety of a link, a bar of its utilisation first."""
     share = found.utilisation
-    bar = "#" * min(_BAR, math.ceil(share * _BAR)) if math.isfinite(share) else "#" * _BAR
+    bar = "#" * math.ceil(min(1.0, share) * _BAR)
     fails = ", FAILS" if share > 1.0 else ""
     yield f"  {found.link:<20} {share:>8.4g} |{bar:<{_BAR}}| {found.governs.against} governs{fails}"
-    for verdict in found.verdicts:
-        yield f"    {verdict.against:<18} {verdict.factor:>8.4g} {verdict.where}"
-    for word in found.not_evaluated:
-        yield f"    not evaluated: {word}"
+    yield from (
+        f"    {verdict.against:<18} {verdict.factor:>8.4g} {verdict.where}"
+        for verdict in found.verdicts
+    )
+    yield from (f"    not evaluated: {word}" for word in found.not_evaluated)
 
 
 def evaluated(part: str, lines: Callable[[str], Iterable[str]]) -> Iterator[str]:
