@@ -20,7 +20,7 @@ import click
 
 from ..base.interrupts import SENTENCE, STATUS, interrupts, keep_status
 from ..base.standard_streams import lead_nowhere
-from ..errors import LagrangeCasadiError, UnknownNameError, one_line
+from ..errors import LagrangeCasadiError, check_known, one_line
 from ..version import __version__
 from .commands import GROUPS, PLACES
 from .echo import echo
@@ -71,10 +71,9 @@ class _Commands(click.Group):
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         write_commands(GROUPS, formatter)
 
-    def invoke(self, ctx: click.Context) -> int | None:
+    def invoke(self, ctx: click.Context) -> Any:
         with _read(), _Insistent():
-            status: int | None = super().invoke(ctx)
-            return status
+            return super().invoke(ctx)
 
     def make_context(self, *arguments: Any, **keywords: Any) -> click.Context:
         with _read():  # help is said here
@@ -83,9 +82,8 @@ class _Commands(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        known = ctx.resilient_parsing or args[:1] == [] or args[0] in PLACES
-        if not (known or args[0].startswith("-")):
-            raise UnknownNameError("command", args[0], PLACES)
+        if not ctx.resilient_parsing:
+            check_known("command", [word for word in args[:1] if not word.startswith("-")], PLACES)
         return super().resolve_command(ctx, args)
 
 

@@ -83,7 +83,6 @@ def animate(
 
 def _wanted(scene: Scene, film: Film) -> list[str]:
     """Motion, and the forces that are to be shown."""
-    wanted = ["motion"]
-    if film.forces:
-        wanted += ["effort", "reaction", *(kind for kind in kinds(scene.outputs) if kind == "load")]
-    return [*wanted, "section"] if film.section else wanted
+    loads = ["load"] if "load" in kinds(scene.outputs) else []
+    forces = ["effort", "reaction", *loads] if film.forces else []
+    return ["motion", *forces, *(["section"] if film.section else [])]

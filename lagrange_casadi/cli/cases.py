@@ -39,12 +39,14 @@ def cases(
         for name, folder in found.items():
             echo(f"{name:18} {_sentence(folder / 'case.py')}")
         return
-    files = {
-        f"{name}/{file}": content
-        for name, folder in found.items()
-        for file, content in _files(folder).items()
-    }
-    _put(files, copy)
+    _put(
+        {
+            f"{name}/{file}": content
+            for name, folder in found.items()
+            for file, content in _files(folder).items()
+        },
+        copy,
+    )
     echo(
         f"copied {len(found)} cases: begin with lagrange-casadi run"
         f" {shlex.quote(str(copy / next(iter(found))))}"
@@ -120,16 +122,15 @@ def new(
         (posture and not model, "--posture needs --from FILE of a model"),
         (contacts and not model, "--contacts needs --from FILE of a model"),
     )
-    notes: list[str] = []
     if source is None:
-        files = _copied(SIMPLE if like is None else like, folder)
+        files, notes = _copied(SIMPLE if like is None else like, folder), list[str]()
     elif not model:
         from ..studies.script import case_of_script
 
         text, left = case_of_script(source)
         files = {"case.py": text.encode()}
-        if left:
-            notes = [f"left out, as it prints or follows the scene: lines {', '.join(left)}"]
+        said = f"left out, as it prints or follows the scene: lines {', '.join(left)}"
+        notes = [said] if left else []
     else:
         from ..interop.formats import case_of
 
@@ -161,7 +162,6 @@ def _copied(like: str, folder: Path) -> dict[str, bytes]:
     files.pop("README.md", None)  # which says what the other one is
     name = re.sub(r"[^A-Za-z0-9_]", "_", Path(os.path.abspath(folder)).name)
     if name[:1].isalpha():
-        case = files["case.py"].decode()
-        renamed = case.replace(f'Mechanism("{like}")', f'Mechanism("{name}")')
-        files["case.py"] = renamed.encode()
+        declared, renamed = (f'Mechanism("{one}")'.encode() for one in (like, name))
+        files["case.py"] = files["case.py"].replace(declared, renamed)
     return files

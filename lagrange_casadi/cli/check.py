@@ -59,8 +59,7 @@ def check(
         ),
     )
     findings = _findings_apart(file, seconds) if untrusted else _findings(file)
-    for finding in findings:
-        echo(f"{file}: {finding}", err=True)
+    echo(*(f"{file}: {finding}" for finding in findings), err=True)
     if not findings:
         echo(f"{file}: whole and consistent")
     return 1 if findings else 0

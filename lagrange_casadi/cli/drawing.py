@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 from ..base.files import writing
 from ..errors import LagrangeCasadiError, PostureError
@@ -39,7 +40,7 @@ def draw_with_progress(
         )
 
 
-def drawn(error: LagrangeCasadiError, asked: Mapping[str, object]) -> tuple[str, list[str]]:
+def drawn(error: LagrangeCasadiError, asked: Mapping[str, Any]) -> tuple[str, list[str]]:
     """Draw the placement of an error, or the ways in which an undecided loop can be assembled.
 
     The picture is named after the case's file, and lies beside what the command was ``asked`` to
@@ -78,9 +79,8 @@ def _drawn_ways(error: PostureError, path: Path) -> tuple[str, list[str]]:
     return words, numbered(postures) if len(error.assembly_modes) > 1 else []
 
 
-def _beside(ending: str, asked: Mapping[str, object]) -> Path:
+def _beside(ending: str, asked: Mapping[str, Any]) -> Path:
     """A file named after the case that a command was asked for, beside what it was to write."""
-    targets = asked.get("targets")
-    first = targets[0] if isinstance(targets, tuple) and targets else None
-    place = Path(str(first or asked.get("case") or asked.get("target") or "case.py")).resolve()
-    return Path(str(asked.get("out") or ".")).parent / f"{name_of(place)}_{ending}"
+    cases = (*asked.get("targets", ()), asked.get("case"), asked.get("target"), "case.py")
+    place = Path(next(filter(None, cases))).resolve()
+    return Path(asked.get("out") or ".").parent / f"{name_of(place)}_{ending}"

@@ -108,20 +108,19 @@ def drive(
         carried = inertia_at(scene, name, **given)
         load = duty_of(solution, name, linear=slides(solution, name), carried=carried)
         lines += _load_lines(load)
-        found: Duty | Choice = load
+        motor = None
         if catalogue:
             try:
-                found = _choose(
+                choice = _choose(
                     solution, name, catalogue, ratios, lead, efficiency, inertia, carried
                 )
             except NoDesignError as error:
                 failed.append(f"drive '{name}': {error}")
                 continue
-            lines += _choice_lines(found, len(catalogue))
+            lines += _choice_lines(choice, len(catalogue))
+            load, motor = choice.duty, choice.motor
         if plot is not None:
-            plot_duty(
-                *((found.duty, plot, found.motor) if isinstance(found, Choice) else (found, plot))
-            )
+            plot_duty(load, plot, motor)
             lines.append(f"wrote {plot}")
     lines += (f"note: {note}" for note in solution.notes)
     echo(*lines, summary(solution.certificate))
@@ -178,9 +177,9 @@ def _load_lines(load: Duty) -> Iterator[str]:
     yield f"{load.joint}: {_peaks(load)}"
     yield f"  {_energy(load)}"
     if load.carried is not None:
-        unit = "kg" if load.linear else "kg m^2"
         yield (
-            f"  inertia of what it drives: {_range(load.carried.min(), load.carried.max())} {unit}"
+            f"  inertia of what it drives: {_range(load.carried.min(), load.carried.max())}"
+            f" {'kg' if load.linear else 'kg m^2'}"
         )
     if load.coarse:
         yield (

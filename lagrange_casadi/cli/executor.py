@@ -18,14 +18,11 @@ _PATIENCE = 10.0
 
 
 @contextmanager
-def executor_at(address: str | None) -> Iterator[Executor | None]:
-    """A client of the Dask scheduler at an address; None where there is no address.
+def executor_at(address: str) -> Iterator[Executor]:
+    """A client of the Dask scheduler at an address.
 
     Raises :class:`ClusterError` where no scheduler answers.
     """
-    if address is None:
-        yield None
-        return
     if not _ADDRESS.fullmatch(address):
         raise DeclarationError(f"dask: expected an address like tcp://HOST:8786, got '{address}'")
     check_installed("distributed", "a cluster", "cluster")

@@ -138,9 +138,9 @@ def _numbers(what: str, text: str, many: int) -> list[float | str]:
         found = [measured(word) for word in text.split(",")]
     except click.BadParameter:
         found = []
-    if len(found) != many or not all(isinstance(x, str) or math.isfinite(x) for x in found):
-        numbers = "a finite number" if many == 1 else f"{many} finite numbers with commas between"
-        raise click.UsageError(f"{what}: expected {numbers}, got '{text}'")
+    finite = all(isinstance(x, str) or math.isfinite(x) for x in found)
+    numbers = "a finite number" if many == 1 else f"{many} finite numbers with commas between"
+    refuse((not finite or len(found) != many, f"{what}: expected {numbers}, got '{text}'"))
     return found
 
 

@@ -46,13 +46,10 @@ class Command(click.Command):
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the options in two groups."""
-        groups: dict[str, list[tuple[str, str]]] = {"Options": [], "Computation": []}
-        for parameter in self.get_params(ctx):
-            if record := parameter.get_help_record(ctx):
-                groups["Computation" if parameter.name in _MACHINE else "Options"].append(record)
-        for name, records in groups.items():
-            if records:
-                with formatter.section(name):
+        shown = [(one.name in _MACHINE, one.get_help_record(ctx)) for one in self.get_params(ctx)]
+        for title, machine in (("Options", False), ("Computation", True)):
+            if records := [record for group, record in shown if record and group == machine]:
+                with formatter.section(title):
                     formatter.write_dl(records)
 
 

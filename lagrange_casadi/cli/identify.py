@@ -7,8 +7,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-import click
-
 from ..base.table_writers import aligned
 from ..results.store.opening import IDENTIFICATION
 from ..results.store.runs import check_target
@@ -20,7 +18,7 @@ from ..views.charts.identification_chart import plot_identification
 from ..views.charts.identification_page import ENDINGS, report_identification
 from ..views.shapes.picture_files import check_picture
 from .echo import echo
-from .options import HDF5, target
+from .options import HDF5, refuse, target
 
 
 def identify(
@@ -83,8 +81,23 @@ def identify(
     check_picture(figure)
     check_picture(report, ENDINGS)
 
-    turns = _turns(counts_per_turn)
-    read = partial(read_measurements, names=names, noise=noise, counts_per_turn=turns)
+    turns = dict(counts_per_turn)
+    refuse(
+        (
+            "" in turns and len(counts_per_turn) > 1,
+            (
+                "--counts-per-turn: expected one NUMBER for all columns in counts, or NAME=NUMBER"
+                " for each"
+            ),
+        )
+    )
+    read = partial(
+        read_measurements,
+        names=names,
+        noise=noise,
+        # A number for all columns has no name.
+        counts_per_turn=turns.get("", turns or None),
+    )
     record, other = read(data), None if validate is None else read(validate)
     found = estimate(loaded.scene, record, trim=trim, **given)
     if record.first:
@@ -100,19 +113,6 @@ def identify(
         report_identification(found, report, second)
         echo(f"wrote {report}")
     echo(" ".join(f"--set {word}" for word in found.setting.split()))
-
-
-def _turns(given: Sequence[tuple[str, float]]) -> float | dict[str, float] | None:
-    """Return counts in one turn by column, or those of all, which have no name."""
-    named = dict(given)
-    if "" not in named:
-        return named or None
-    if len(given) > 1:
-        raise click.UsageError(
-            "--counts-per-turn: expected one NUMBER for all columns in counts, or NAME=NUMBER for"
-            " each"
-        )
-    return named[""]
 
 
 def _lines(found: Identification, second: Comparison | None) -> Iterator[str]:

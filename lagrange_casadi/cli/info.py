@@ -109,9 +109,11 @@ def _sweep_lines(identity: Identity) -> Iterator[str]:
 
 def _whole_lines(sweep: Sweep) -> Iterator[str]:
     yield from _sweep_lines(sweep.identity)
-    for status, count in sweep.counts().items():
-        if count:
-            yield f"{counted(count)}: {sweep.statuses[status][1]}"
+    yield from (
+        f"{counted(count)}: {sweep.statuses[status][1]}"
+        for status, count in sweep.counts().items()
+        if count
+    )
     yield "columns:"
     for kept in sweep.columns.values():
         axes = f" over {in_words(kept.axes)}" if kept.axes else ""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import signal
 from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -67,7 +68,10 @@ def optimise(
     loaded = load_case(case)
     out = target("--out", out, f"{loaded.name}_optimum.h5", HDF5)
     figure = target("--figure", figure, f"{loaded.name}_optimum.png", PICTURES)
-    with executor_at(dask) as executor, bar_of("programs") as bar:
+    with (
+        nullcontext() if dask is None else executor_at(dask) as executor,
+        bar_of("programs") as bar,
+    ):
 
         def progress(start: int, objective: float, excess: float) -> None:
             bar.set_postfix_str(
@@ -89,6 +93,6 @@ def optimise(
             draw_optimum(scene, found, picture, figure.suffix)
         else:
             draw_front(scene, found, picture, figure.suffix)
-    echo(*(optimum_lines(found) if isinstance(found, Optimum) else front_lines(found)))
-    echo(f"wrote {out} and {figure}")
+    lines = optimum_lines(found) if isinstance(found, Optimum) else front_lines(found)
+    echo(*lines, f"wrote {out} and {figure}")
     return 0 if found.feasible and found.converged and not found.stopped else 1

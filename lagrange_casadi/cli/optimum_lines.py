@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from ..base.table_writers import aligned
 from ..studies.optimise import Front, Optimum
 from ..studies.optimise.front import FrontPoint
+from ..studies.sweep.axes import counted
 
 _RELAXED = " per SI unit by which it is relaxed"
 
@@ -38,18 +39,19 @@ def optimum_lines(found: Optimum) -> Iterator[str]:
         if math.isnan(found.transmission)
         else f", least sine of transmission angles {found.transmission:.4g}"
     )
-    ends = (
-        f"{sum(one.ending == 'converged' for one in found.starts)} of {len(found.starts)} starts"
-        " converged"
+    converged = sum(one.ending == "converged" for one in found.starts)
+    yield (
+        f"  {converged} of {len(found.starts)} starts converged, {found.evaluations} designs{angle}"
     )
-    yield f"  {ends}, {found.evaluations} designs{angle}"
     if found.feasible:
         yield f"  residual of the first-order conditions {found.residual:.1e}{_second(found)}"
     if len(found.optima) > 1:
         yield f"  {len(found.optima)} local optima:"
-        for one in found.optima:
-            starts = f"{one.starts} start{'s' if one.starts > 1 else ''}"
-            yield f"    {one.objective:.8g} {found.unit} at {_design(one.values, 6)}, of {starts}"
+        yield from (
+            f"    {one.objective:.8g} {found.unit} at {_design(one.values, 6)}, of"
+            f" {counted(one.starts, 'start')}"
+            for one in found.optima
+        )
     if not found.feasible:
         yield "  no design that was found is within all limits"
     elif not found.converged:

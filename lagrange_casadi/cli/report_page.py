@@ -80,8 +80,8 @@ def write(
         if live:
             timing = scene.timing(given["t"], given["over"])
             say_step(2, f"deriving the equations of {loaded.name}")
-            command = run_of(reference(loaded, Path()))
-            engine = Live.of(scene, timing, given["wanted"], command, given["parameters"])
+            run = run_of(reference(loaded, Path()))
+            engine = Live.of(scene, timing, given["wanted"], run, given["parameters"])
             size = grouped(statements(engine.source.code))
             say_step(3, f"compiling {size} statements for this machine and for the browser at once")
         # What a live page computes anew is what equilibrium determines.
@@ -168,8 +168,7 @@ def _announce(out: Path, *solutions: Solution) -> None:
 
     Raises :class:`CertificateError` where a certificate fails: the page is there, and says so.
     """
-    for solution in solutions:
-        echo(*not_evaluated_lines(solution), err=True)
+    echo(*(line for one in solutions for line in not_evaluated_lines(one)), err=True)
     echo(f"wrote {out}: open it in a browser")
     for solution in solutions:
         refuse_failed(solution, f"{out} says so")

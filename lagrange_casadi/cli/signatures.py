@@ -103,9 +103,11 @@ def _parts(node: ast.FunctionDef | ast.ClassDef) -> tuple[str, str]:
 def _declared(node: ast.FunctionDef | ast.ClassDef) -> Iterator[Parameter]:
     """Give the parameters of a signature, or the fields of a class, without descriptions."""
     if isinstance(node, ast.ClassDef):
-        for line in node.body:
-            if isinstance(line, ast.AnnAssign):
-                yield Parameter(ast.unparse(line.target), ast.unparse(line.annotation), line.value)
+        yield from (
+            Parameter(ast.unparse(line.target), ast.unparse(line.annotation), line.value)
+            for line in node.body
+            if isinstance(line, ast.AnnAssign)
+        )
         return
     taken = node.args
     required = [None] * (len(taken.args) - len(taken.defaults))

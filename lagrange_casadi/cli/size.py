@@ -82,9 +82,11 @@ def size(
         shown = evaluated(name, lambda link: safety_lines(safety_of(link)))
         echo(f"{name}: not sized: {why}", *shown)
     verdict = "holds" if solution.certified else "fails" if solution.failed else "not computed"
-    loads = f"{found.evaluations} evaluations of the loads"
     echo(
-        f"together {found.mass:.6g} kg; {loads}; certificate: {verdict}",
+        (
+            f"together {found.mass:.6g} kg; {found.evaluations} evaluations of the loads;"
+            f" certificate: {verdict}"
+        ),
         " ".join(f"--set {name}={value!r}" for name, value in found.parameters.items()),
     )
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from contextlib import closing
+from contextlib import closing, nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -77,16 +77,24 @@ def sweep(
     scene = loaded.scene
     out = target("--out", out, f"{loaded.name}_sweep.h5", HDF5)
     swept = read_designs(designs, scene.parameters) if designs else grid
-    with executor_at(dask) as executor, closing(Progress(quiet)) as progress:
+    with (
+        nullcontext() if dask is None else executor_at(dask) as executor,
+        closing(Progress(quiet)) as progress,
+    ):
         found = carry_out(loaded, swept, out=out, executor=executor, progress=progress, **given)
     _report(found)
     fixed, t, over = (given[name] for name in ("parameters", "t", "over"))
     turning = turning_note(scene, scene.timing(t, over), swept, fixed)
     rests = resting_note(scene, found, fixed, t=t, over=over, wanted=given["wanted"])
     notes = (*drawing_notes(found.description), rests, turning, *fatigue_notes(found))
-    written = f"wrote {found.path}"
-    complete = f"{found.path} was complete already: nothing was done"
-    echo(*(f"note: {note}" for note in notes if note), written if progress.begun else complete)
+    echo(
+        *(f"note: {note}" for note in notes if note),
+        (
+            f"wrote {found.path}"
+            if progress.begun
+            else f"{found.path} was complete already: nothing was done"
+        ),
+    )
     if wrong := found.counts()[Status.UNCERTIFIED]:
         raise CertificateError(
             f"{counted(wrong)} of those that were checked in full, one of each block,"

@@ -126,10 +126,10 @@ def table(
     elif _show(sweep, names, islice(found, min(rows, sys.maxsize))) == rows:
         satisfied, with_result = counts(sweep, where, along)
         if satisfied > rows:
-            what = counted(satisfied, what) + (" that meet the conditions" if where else "")
             echo(
-                f"... of {what}, {grouped(with_result)} with a result; --rows N shows more, --csv"
-                " OUT.csv writes all"
+                f"... of {counted(satisfied, what)}{' that meet the conditions' if where else ''},"
+                f" {grouped(with_result)} with a result; --rows N shows more, --csv OUT.csv writes"
+                " all"
             )
     if not columns:
         _mention_others(sweep, names)
@@ -151,11 +151,9 @@ def _rows(
 
 def _mention_others(sweep: Sweep, shown: Sequence[str]) -> None:
     """Name the columns that are not shown, by their axes, and how to show them."""
-    others: dict[tuple[str, ...], list[str]] = {}
-    for kept in sweep.columns.values():
-        if kept.name not in shown:
-            others.setdefault(kept.axes, []).append(kept.name)
-    for axes, names in others.items():
+    others = [kept for kept in sweep.columns.values() if kept.name not in shown]
+    for axes in dict.fromkeys(kept.axes for kept in others):
+        names = [kept.name for kept in others if kept.axes == axes]
         more = (
             f" and {len(names) - _LISTED} more (`lagrange-casadi info {sweep.path}` lists them)"
             if len(names) > _LISTED

@@ -10,14 +10,13 @@ from typing import Any
 from ..base.files import writing
 from ..base.table_writers import aligned
 from ..engine.instants.evaluation_method import EvaluationMethod
-from ..errors import DeclarationError
 from ..studies.case import load_case
 from ..studies.trade import METHODS, Trade
 from ..studies.trade import trade as measure
 from ..views.figures.trade_plot import draw_trade
 from ..views.shapes.picture_files import PICTURES
 from .echo import echo
-from .options import target
+from .options import refuse, target
 from .progress import bar_of
 
 
@@ -45,8 +44,12 @@ def trade(
     figure
         Draw time over error into this file; default: <case>_trade.png here.
     """
-    if accuracy is not None and not 0.0 < accuracy < math.inf:
-        raise DeclarationError(f"accuracy: expected a finite number above 0, got {accuracy!r}")
+    refuse(
+        (
+            accuracy is not None and not 0.0 < accuracy < math.inf,
+            f"accuracy: expected a finite number above 0, got {accuracy!r}",
+        )
+    )
     loaded = load_case(case)
     out = target("--out", out, f"{loaded.name}_trade.json", (".json",))
     figure = target("--figure", figure, f"{loaded.name}_trade.png", PICTURES)
