@@ -36,8 +36,7 @@ def cases(
     if not found:
         raise PathError("the cases were not installed with the package: they are in its repository")
     if copy is None:
-        for name, folder in found.items():
-            echo(f"{name:18} {_sentence(folder / 'case.py')}")
+        echo(*(f"{name:18} {_sentence(folder / 'case.py')}" for name, folder in found.items()))
         return
     _put(
         {

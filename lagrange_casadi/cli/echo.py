@@ -5,6 +5,9 @@ Whatever they quote, names of files and what is in them, moves no cursor and fak
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from pathlib import Path
+
 import click
 
 from ..errors import StoreError, escaped
@@ -21,6 +24,13 @@ def echo(*lines: str, err: bool = False) -> None:
         if err or isinstance(error, BrokenPipeError):  # nobody reads it
             raise
         raise StoreError(f"cannot write to standard output: {error.strerror}") from None
+
+
+def write_asked(path: Path | None, write: Callable[[Path], object]) -> None:
+    """Write a file, if it was asked for, and say so."""
+    if path is not None:
+        write(path)
+        echo(f"wrote {path}")
 
 
 def say_step(number: int, what: str) -> None:

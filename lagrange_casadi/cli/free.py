@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +21,7 @@ from ..studies.forward.running import flywheel
 from ..studies.forward.running import free as run
 from ..views.charts.free_cycle import plot_cycle
 from ..views.shapes.picture_files import check_picture
-from .echo import echo
+from .echo import echo, write_asked
 from .options import HDF5, measured, refuse, target
 
 LAWS: dict[str, tuple[Callable[..., Law], int]] = {
@@ -118,9 +119,7 @@ def free(
         )
     save(found.solution, out)
     echo(f"wrote {out}")
-    if plot is not None:
-        plot_cycle(found, plot)
-        echo(f"wrote {plot}")
+    write_asked(plot, partial(plot_cycle, found))
     echo(summary(found.solution.certificate))
     refuse_failed(found.solution)
 

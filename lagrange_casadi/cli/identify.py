@@ -17,7 +17,7 @@ from ..studies.identification.identification_file import save_identification
 from ..views.charts.identification_chart import plot_identification
 from ..views.charts.identification_page import ENDINGS, report_identification
 from ..views.shapes.picture_files import check_picture
-from .echo import echo
+from .echo import echo, write_asked
 from .options import HDF5, refuse, target
 
 
@@ -106,12 +106,8 @@ def identify(
     echo(*_lines(found, second))
     save_identification(found, out, second)
     echo(f"wrote {out}")
-    if figure is not None:
-        plot_identification(second or found.comparison, figure)
-        echo(f"wrote {figure}")
-    if report is not None:
-        report_identification(found, report, second)
-        echo(f"wrote {report}")
+    write_asked(figure, partial(plot_identification, second or found.comparison))
+    write_asked(report, lambda path: report_identification(found, path, second))
     echo(" ".join(f"--set {word}" for word in found.setting.split()))
 
 

@@ -38,7 +38,7 @@ class Progress:
 
     def __init__(self, quiet: bool) -> None:
         self.begun, self.quiet, self.what = False, quiet, ""
-        self.bar: tqdm[Any] = tqdm(disable=True)
+        self.bar: tqdm[Any] | None = None
 
     def __call__(self, what: str, done: float, total: float) -> None:
         """Show progress: of designs, and then of the file."""
@@ -55,12 +55,14 @@ class Progress:
             self.close()
             sys.stderr.flush()  # fails where a bar would, half made
             self.what, self.bar = what, _shown(what, done, total)
-        self.bar.update(done - self.bar.n)
+        if self.bar is not None:
+            self.bar.update(done - self.bar.n)
 
     def close(self) -> None:
         """Take the bar away."""
-        with suppress(OSError):
-            self.bar.close()
+        if self.bar is not None:
+            with suppress(OSError):
+                self.bar.close()
 
 
 def _shown(what: str, done: float, total: float) -> tqdm[Any]:
