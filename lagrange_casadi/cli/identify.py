@@ -84,10 +84,10 @@ def identify(
     turns = dict(counts_per_turn)
     refuse(
         (
-            "" in turns and len(counts_per_turn) > 1,
+            len(counts_per_turn) > (1 if "" in turns else len(turns)),
             (
-                "--counts-per-turn: expected one NUMBER for all columns in counts, or NAME=NUMBER"
-                " for each"
+                "--counts-per-turn: expected one NUMBER for all columns in counts, or one"
+                " NAME=NUMBER for each"
             ),
         )
     )

@@ -364,6 +364,11 @@ SENTENCES = [
     ("size CASE --profiles x.csv --deflection 0/1", 2, "expected a share of the length, as 1/500"),
     ("size CASE --profiles x.csv --deflection x", 2, "expected a share of the length, as 1/500"),
     ("identify CASE x.csv --counts-per-turn x", 2, "as in 4096 or O=4096, got 'x'"),
+    (
+        "identify CASE x.csv --counts-per-turn O=1 --counts-per-turn O=2",
+        2,
+        "all columns in counts, or one NAME=NUMBER for each",
+    ),
     ("plot CASE --out x --at l=inf", 2, "l: expected a finite number, got inf"),
     ("draw raises.py", 2, "ZeroDivisionError"),
     ("drive CASE --ratio 0", 2, "expected numbers other than 0, as in 5 or 5,10,20, got"),
