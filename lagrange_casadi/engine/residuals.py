@@ -13,17 +13,16 @@ from .sizes import directs, reach
 
 
 def loop_residual(multibody: Multibody, block: Block, length: ca.SX) -> ca.SX:
-    """Residual of a block's equations in one number [m]: distances as they are, others over their
-    slopes, times a ``length``.
+    """Residual of a block's equations in one number [m]: by their :func:`lengths`; and a direction
+    is missed by a half turn, which has no sine.
     """
     total = ca.SX(0)
-    for equation in block.equations:
-        if equation.loop.declared:
-            total += length * equation.residual / _slope(multibody, equation, length)
-        elif equation.aligns:
-            total += length * (ca.fabs(equation.residual) + _turned(multibody, equation))
+    factors = ca.vertsplit(lengths(multibody, block, length))
+    for equation, factor in zip(block.equations, factors, strict=True):
+        if equation.aligns:
+            total += factor * (ca.fabs(equation.residual) + _turned(multibody, equation))
         else:
-            total += equation.residual
+            total += factor * equation.residual
     return total
 
 
