@@ -260,7 +260,8 @@ def _joint_forces(
     }
     placed = ca.substitute(column(dependent.values()), friction.symbols, friction.values)
     pressed = dict(zip(dependent, entries(placed), strict=True))
-    acting = gathered(forces, free, links, Sampling.of(moving.body)) | pressed
+    sampling = Sampling.of(moving.body).over(moving.solved.found)
+    acting = gathered(forces, free, links, sampling) | pressed
     # Beside the start of the motion, for a drive through a gear moves little of what it drives, and
     # holds it all the same.
     for check in acting:

@@ -8,7 +8,7 @@ coefficient is distinguished from a coefficient. The points are the same in ever
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import casadi as ca
@@ -20,6 +20,7 @@ from ..base.interpret import Arithmetic, followable, interpret, numpy_arithmetic
 from ..base.scalars import column
 from .multibody import Coordinate, Multibody
 from .spherical import SphericalCoordinates, axes_of
+from .substitution import Expressions
 
 COUNT = 64
 _FEWEST = 8
@@ -91,6 +92,14 @@ class Sampling:
     def of(cls, multibody: Multibody) -> Sampling:
         """The values of a mechanism's coordinates, and the rounding of its axes and places."""
         return cls(multibody.coordinates, max(_ZERO, multibody.slack))
+
+    def over(self, known: Expressions) -> Sampling:
+        """The values of inputs, for expressions into which what is ``known`` was put: a slide that
+        is an input itself has its size.
+        """
+        slides = {c: known.put_into(c.value) for c in self.coordinates if c.kind == "slide"}
+        given = [replace(c, variables=x) for c, x in slides.items() if x.is_symbolic()]
+        return replace(self, coordinates=given)
 
     def vanish(self, expressions: Expression, beside: Expression = 1.0) -> bool:
         """Return whether expressions are zero for all values of their symbols, relative to the

@@ -125,12 +125,22 @@ def test_nor_do_these_that_did(seed):
     assert_drawn_the_same(seed)
 
 
+def assert_drawn_the_same_in_space(seed, units):
+    drawn = spatial_bridge.plain(SPATIAL[seed % len(SPATIAL)](seed))
+    assert_the_same(spatial_bridge.declared(drawn), units)
+
+
 @pytest.mark.sampled(347)
 @pytest.mark.parametrize("seed", range(1200))
 def test_random_mechanisms_in_space_do_not_depend_on_units(seed):
-    draw = SPATIAL[seed % len(SPATIAL)]
-    drawn = spatial_bridge.plain(draw(seed))
-    assert_the_same(spatial_bridge.declared(drawn), OTHER[seed % len(OTHER)])
+    # Every kind of mechanism in each of the units: their numbers are both even.
+    assert_drawn_the_same_in_space(seed, OTHER[seed // 2 % len(OTHER)])
+
+
+@pytest.mark.parametrize(("seed", "power"), [(12, -40), (714, 40)])
+def test_nor_do_these_in_space_that_did(seed, power):
+    """By sines beside gaps, and slides among the inputs at places of two loads."""
+    assert_drawn_the_same_in_space(seed, Units(metre=2.0**power))
 
 
 @pytest.mark.parametrize("speed", [1e-6, 1.0, 3e3, 1e5, 1e8])
