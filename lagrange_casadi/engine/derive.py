@@ -19,7 +19,7 @@ from ..base.arrays import Expression
 from ..base.quantities import Check, Column, Output
 from ..base.scalars import column, entries, graph
 from ..base.symbolic import symbolic
-from ..base.tables import Table, table_of
+from ..base.tables import MOMENT, Table, table_of
 from ..errors import AssemblyError, DeclarationError, MobilityError, PostureError
 from ..model.declared_parts import Asked, Link
 from ..model.end_conditions import effective_lengths, ends_of
@@ -31,20 +31,19 @@ from ..model.wanted_names import among
 from .deflections import deflections
 from .drives import closure
 from .identity import identity_of
-from .indeterminate import Forces
+from .indeterminate import SOME, Forces
 from .iteration import CLOSED
-from .kinematics import Kinematics
 from .least_energy import Completion, LeastEnergy, feeling, least_energy
 from .load_points import gathered
 from .mobility import internal_forces
 from .model_data import ModelData, template
 from .moving import Moving
-from .multibody import Multibody
 from .placement import explained
 from .program import Program
 from .reciprocals import share_reciprocals
 from .sampling import Sampling
 from .section_function import Place, Section
+from .sizes import extent
 from .two_force_links import find_two_force_links, unaimed
 from .utilisation import stresses, utilisation
 from .verdicts import OPEN
@@ -278,9 +277,18 @@ def _derive(scene: Scene, asked: Wanted) -> Program:
     columns, loop_angles = moving.columns()
     acting, free, frictions = _joint_forces(moving, columns)
     columns = {key: value for key, value in columns.items() if key not in acting}
-    acting |= user_outputs(moving.body, moving.solved, columns | acting)
+    units = {
+        Output("multiplier", equation.loop.name): extent(mechanism) / equation.unit
+        for block, _ in moving.solved.systems
+        for equation in block.equations
+        if equation.loop.declared
+    }
+    own, units_of_own = user_outputs(moving, columns | acting, free, units)
+    acting, units = acting | own, units | units_of_own
     least = _least_energy(scene, acting, free, frictions) if scene.elastic else None
-    forces = Forces.over(acting, free) if least is None else least.completed(acting, free)
+    forces = (
+        Forces.over(acting, free, units) if least is None else least.completed(acting, free, units)
+    )
     forces = forces.with_those_of(lambda found: _strength(scene, asked, {**columns, **found}))
     columns |= forces.columns
     columns = (
@@ -391,12 +399,13 @@ def _is_asked(key: Column, asked: Wanted) -> bool:
 
 
 def user_outputs(
-    body: Multibody, solved: Kinematics, found: Mapping[Column, ca.SX]
-) -> dict[Column, ca.SX]:
+    moving: Moving, found: Mapping[Column, ca.SX], free: ca.SX, units: Mapping[Output, Expression]
+) -> tuple[dict[Column, ca.SX], dict[Output, ca.SX]]:
     """The user's outputs as expressions of an instant, where ``found`` are the columns that they
-    may be made of.
+    may be made of; and by how much they change where each of these that changes with what is open,
+    ``free``, does as a force of one: by its ``units``.
     """
-    mechanism = body.mechanism
+    body, mechanism = moving.body, moving.body.mechanism
     asked = [
         asked
         for asked in mechanism.asked.values()
@@ -404,15 +413,19 @@ def user_outputs(
     ]
     values = column(_value(mechanism.links, one, found, table_of(mechanism.space)) for one in asked)
     symbols = column(one.symbol for one in asked)
-    placed = solved.found.put_into(column(body.user_outputs.values()))
-    return {
-        Output("output", name): value
-        for name, value in zip(
-            body.user_outputs,
-            ca.vertsplit(ca.substitute(placed, symbols, values)) if body.user_outputs else (),
-            strict=True,
-        )
-    }
+    placed = moving.solved.found.put_into(column(body.user_outputs.values()))
+    kinds, length = template(moving.scene).content.kinds, extent(mechanism)
+    changes = column(
+        (length if one.output.unit(kinds) == MOMENT else units.get(one.output, 1))
+        * ca.depends_on(value, free)
+        for one, value in zip(asked, entries(values), strict=True)
+    )
+    beside = ca.fabs(ca.jacobian(placed, symbols)) @ changes
+    made, beside = (ca.substitute(part, symbols, values) for part in (placed, beside))
+    beside = ca.substitute(beside, free, SOME * ca.SX.ones(free.numel()))
+    names = [Output("output", name) for name in body.user_outputs]
+    own: dict[Column, ca.SX] = dict(zip(names, entries(made), strict=True))
+    return own, dict(zip(names, entries(beside + (beside == 0)), strict=True))
 
 
 def _value(

@@ -8,10 +8,11 @@ from typing import Any
 
 import casadi as ca
 
-from ..base.quantities import Check, Column, Output
+from ..base.quantities import Column, Output
 from ..base.scalars import column, graph
 from ..base.symbolic import Graphs, symbolic
 from ..model.scene import Scene, Wanted
+from .indeterminate import Forces
 from .mesh_forces import transmissions_of
 from .mobility import internal_forces
 from .moving import Moving
@@ -44,13 +45,10 @@ def held_efforts(scene: Scene) -> HeldEfforts:
     losses = (t.loss.name for t in transmissions_of(mechanism).values() if t.loss is not None)
     signs = {name: ca.SX.sym(f"sign_{name}") for name in (*frictions_of(mechanism), *losses)}
     columns, free, _ = internal_forces(moving.body, moving.solved, want, scene, signs)
-    efforts = {key: value for key, value in columns.items() if isinstance(key, Output)}
-    slopes = ca.jacobian(column(efforts.values()), free)
-    columns |= {
-        Check("open", key): ca.sum2(ca.fabs(slopes[k, :]))
-        for k, key in enumerate(efforts)
-        if slopes[k, :].nnz()
+    efforts: dict[Column, Any] = {
+        key: value for key, value in columns.items() if isinstance(key, Output)
     }
+    columns |= Forces.over(efforts, free, {}).columns
     out = ca.substitute(column(columns.values()), free, 0)
     instant = graph("held", moving.solved.inputs | {"signs": column(signs.values())}, out=out)
     every_way = (

@@ -14,7 +14,7 @@ from ..base.arrays import Expression
 from ..base.quantities import Check, Column, Output
 from ..base.scalars import column, entries
 
-_SOME = 577.0
+SOME = 577.0
 """Value of what is open [N or N m] at which it is seen what changes with it: with nothing, a force
 that is zero has a size without a slope, and a square of slope zero.
 """
@@ -35,22 +35,29 @@ class Forces:
     before: Mapping[Output, Any] | None = None
 
     @classmethod
-    def over(cls, acting: Mapping[Column, ca.SX], free: ca.SX) -> Forces:
-        """Forces ``acting`` that are expressions of what is open, ``free``."""
+    def over(
+        cls, acting: Mapping[Column, ca.SX], free: ca.SX, units: Mapping[Output, Expression]
+    ) -> Forces:
+        """Forces ``acting`` that are expressions of what is open, ``free``; and by how much those
+        that are neither forces nor moments change beside a force, ``units``.
+        """
         if not free.numel():
             return cls(acting, {})
         forces = column(map(ca.SX, acting.values()))
         slopes = ca.jacobian(forces, free)
         slopes, forces = (
             ca.substitute(part, free, value * ca.SX.ones(free.numel()))
-            for part, value in ((slopes, _SOME), (forces, 0.0))
+            for part, value in ((slopes, SOME), (forces, 0.0))
         )
         doubted = {
             key: slopes[k, :]
             for k, key in enumerate(acting)
             if slopes[k, :].nnz() and isinstance(key, Output)
         }
-        sizes = {output: ca.sum2(ca.fabs(slope)) for output, slope in doubted.items()}
+        sizes = {
+            output: ca.sum2(ca.fabs(slope)) / units.get(output, 1)
+            for output, slope in doubted.items()
+        }
         return cls(dict(zip(acting, entries(forces), strict=True)), sizes)
 
     def with_those_of(

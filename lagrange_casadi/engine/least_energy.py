@@ -79,16 +79,21 @@ class LeastEnergy:
     firm: Mapping[str, str]
     rows: Any
 
-    def completed(self, acting: Mapping[Column, Expression], free: Expression) -> Forces:
+    def completed(
+        self,
+        acting: Mapping[Column, Expression],
+        free: Expression,
+        units: Mapping[Output, Expression],
+    ) -> Forces:
         """Forces ``acting`` that are expressions of what equilibrium leaves open, ``free``, with
-        what is chosen in its place.
+        what is chosen in its place; by their ``units``.
         """
         still = ca.SX.sym("still", free.numel())
         whole = ca.substitute(
             column(map(ca.SX, acting.values())), free, self.x + self.responses @ still
         )
-        found = Forces.over(dict(zip(acting, ca.vertsplit(whole), strict=True)), still)
-        return replace(found, before=Forces.over(acting, free).open)
+        found = Forces.over(dict(zip(acting, ca.vertsplit(whole), strict=True)), still, units)
+        return replace(found, before=Forces.over(acting, free, units).open)
 
 
 @dataclass(frozen=True, eq=False)

@@ -418,7 +418,9 @@ def bounds_of(
             continue
         kind, part = check.kind, check.part
         if isinstance(part, Output):
-            kind = "open moment" if part.unit(kinds) == MOMENT else kind
+            # The unit of a user's output says nothing of what it is made of.
+            moment = part.group != "output" and part.unit(kinds) == MOMENT
+            kind = "open moment" if moment else kind
         elif kind == "closure" and part in iterated:
             kind = "branch"
         if kind in VERDICTS:

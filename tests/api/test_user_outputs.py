@@ -67,18 +67,25 @@ def test_a_point_of_a_bar_between_two_balls_accelerates_as_it_moves():
         )
 
 
-def test_what_equilibrium_leaves_open_leaves_them_open():
-    """Two guides of one block share its load."""
-    m = Mechanism("two_guides")
-    block = m.link("block", length=1.0, mass=2.0)
-    one = m.prismatic("one", m.ground, block.base, axis=(1, 0))
-    two = m.prismatic("two", m.ground, block.tip, axis=(1, 0))
-    m.output("share", m.results.reaction(one).fy, unit="N")
-    m.output("whole", m.results.reaction(one).fy + m.results.reaction(two).fy, unit="N")
-    found = evaluate(Scene(m, {"one": motion.polynomial(0, 1.0)}, t=(0, 1, 3)))
-    assert "output:share" in found.undetermined
+@pytest.mark.parametrize("size", [1.0, 1e-12, 1e12])
+def test_what_equilibrium_leaves_open_leaves_them_open(size):
+    """A guide and a constraint share the load of a slider, in units of any size."""
+    m = Mechanism("guided_twice")
+    crank, rod = m.link("crank", length=0.1, mass=1.0), m.link("rod", length=0.4, mass=1.0)
+    slider = m.point_mass("slider", 2.0)
+    m.revolute("O", m.ground, crank)
+    m.revolute("A", crank.tip, rod)
+    m.revolute("B", rod.tip, slider)
+    guide = m.prismatic("guide", m.ground, slider, axis=(1, 0))
+    rest = m.constraint("rest", size * m.place(rod.tip)[1])
+    guided, borne = m.results.reaction(guide).fy, m.results.multiplier(rest) * size
+    m.output("share", size * guided, unit="N m")
+    m.output("whole", size * (guided + borne), unit="N m")
+    slowly = motion.polynomial(0.3, 1e-9)
+    found = evaluate(Scene(m, {"O": slowly}, t=(0, 1, 3), posture={"rod": 0.0}))
+    assert {"output:share", "multiplier:rest"} <= {*found.undetermined}
     assert "output:whole" not in found.undetermined
-    np.testing.assert_allclose(found.output("whole"), 2.0 * 9.81)
+    np.testing.assert_allclose(found.output("whole"), size * 2.5 * 9.81)
 
 
 @pytest.mark.parametrize(
