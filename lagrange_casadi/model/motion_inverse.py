@@ -25,8 +25,10 @@ from .sampled_laws import Laws
 _SHARE = 1 / 32
 """Fraction of the distance by which the coordinate changes in a step."""
 
-_FIRST = 1e-6
-"""Seconds of the first step from where a law rests with neither rate nor acceleration."""
+_FIRST, _LEAST = 1e-12, 1e-20
+"""First step from where a law rests with neither rate nor acceleration, which tell no time of its
+own: a fraction of the time there, and seconds at the least. Steps double until the law moves.
+"""
 
 _STEPS = 5000
 """Largest number of steps along a motion."""
@@ -185,7 +187,7 @@ class MotionInverse:
         onward = np.where(sense * (target - d) >= 0.0, 1.0, -1.0)
         share = _SHARE * np.maximum(passage, np.abs(target - d))
         step = _step(rate, bend, share, np.full(here.size, np.inf))
-        step = np.where(np.isfinite(step), step, _FIRST)
+        step = np.where(np.isfinite(step), step, np.maximum(_FIRST * np.abs(here), _LEAST))
         missed = np.where(np.isfinite(d), Missed.REACHED, Missed.NEVER)
         there = d == target
         visited, at, held = here.copy(), d.copy(), np.array([here, here])

@@ -513,6 +513,7 @@ RISING = {
     "backwards": polynomial(0.0, -0.25),
     "run-up": polynomial(0.0, 1.0, 1.5),
     "from rest": polynomial(0.0, 0.0, 0.3),
+    "from rest, and soon back": expression(lambda t: 7.0 * ca.sin(1e7 * t) ** 3),
     "nearly turning back": expression(lambda t: 3 * t - 0.999 * ca.sin(3 * t)),
     "steep": expression(lambda t: 1.0 - ca.exp(-25 * t) + 30.0 * t),
     "swing": harmonic(0.0, 9.0, 0.02),
