@@ -293,12 +293,14 @@ def _in_order(parts: Sequence[Part], loops: Sequence[LoopEquations]) -> list[Par
 
 def row_units(multibody: Multibody, rows: Sequence[Equation]) -> Expression:
     """Factors by which equations are of one size, a column: a user's constraint is a number of any
-    size; 1 for those of joints and transmissions, which are beside each other as they are.
+    size, and of what is rounded the least gaps are looked for; 1 for those of joints and
+    transmissions that hold, which are beside each other as they are.
     """
-    constraints, loops = multibody.mechanism.constraints, {equation.loop for equation in rows}
-    if len(rows) == 1 or all(
-        not loop.declared or constraints[loop.name].transmission for loop in loops
-    ):
+    mechanism, loops = multibody.mechanism, {equation.loop for equation in rows}
+    alike = not mechanism.rounding and all(
+        not loop.declared or mechanism.constraints[loop.name].transmission for loop in loops
+    )
+    if len(rows) == 1 or alike:
         return 1
     return ca.DM([1.0 / equation.unit for equation in rows])
 

@@ -58,6 +58,10 @@ class Forces:
             output: ca.sum2(ca.fabs(slope)) / units.get(output, 1)
             for output, slope in doubted.items()
         }
+        # What is lost is open where the friction is, however slowly it slides.
+        for output in sizes:
+            if output.member == "loss":
+                sizes[output] = sizes[replace(output, member="along")]
         return cls(dict(zip(acting, entries(forces), strict=True)), sizes)
 
     def with_those_of(

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeAlias
 
 import casadi as ca
@@ -418,8 +418,10 @@ def bounds_of(
             continue
         kind, part = check.kind, check.part
         if isinstance(part, Output):
-            # The unit of a user's output says nothing of what it is made of.
-            moment = part.group != "output" and part.unit(kinds) == MOMENT
+            # The unit of a user's output says nothing of what it is made of; a loss is seen by its
+            # friction.
+            force = replace(part, member="along") if part.member == "loss" else part
+            moment = force.group != "output" and force.unit(kinds) == MOMENT
             kind = "open moment" if moment else kind
         elif kind == "closure" and part in iterated:
             kind = "branch"

@@ -2,6 +2,7 @@
 the former ones times the sizes of their units.
 """
 
+import drawings
 import numpy as np
 import pytest
 import random_mechanisms
@@ -141,6 +142,12 @@ def test_random_mechanisms_in_space_do_not_depend_on_units(seed):
 def test_nor_do_these_in_space_that_did(seed, power):
     """By sines beside gaps, and slides among the inputs at places of two loads."""
     assert_drawn_the_same_in_space(seed, Units(metre=2.0**power))
+
+
+@pytest.mark.parametrize("name", ["bricard", "screw_lift"])
+def test_nor_do_drawings_that_are_rounded(name):
+    """Nor the least gaps of what does not close, and what is lost where equilibrium leaves it."""
+    assert_the_same(drawings.drawn(name, 1e-9), Units(metre=2.0**20))
 
 
 @pytest.mark.parametrize("speed", [1e-6, 1.0, 3e3, 1e5, 1e8])
