@@ -262,7 +262,7 @@ def test_a_damaged_graph_is_derived_again_and_said(fresh_cache, says):
 
 
 def test_a_motion_by_a_callback_is_not_kept(fresh_cache, monkeypatch):
-    monkeypatch.setattr("lagrange_casadi.model.corners._SAMPLED", 41)
+    monkeypatch.setattr("lagrange_casadi.engine.instants.refusing._SAMPLED", 41)
     scene = pendulum(law=Motion(doubled))
     assert name_of(scene) is None
     for _ in range(2):

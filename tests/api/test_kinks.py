@@ -109,7 +109,7 @@ def test_broken(name):
 
 def test_what_another_program_tells_is_followed_too(monkeypatch):
     """Its marks are not known; waves that are too fast to be followed are refused."""
-    monkeypatch.setattr("lagrange_casadi.model.corners._SAMPLED", 41)
+    monkeypatch.setattr("lagrange_casadi.engine.instants.refusing._SAMPLED", 41)
     assert "its slope jumps" in kink(Y - ca.fabs(doubled(X - 0.333)), count=41)
     monkeypatch.setattr("lagrange_casadi.model.kinks._MOST", 8)
     assert "changes too fast between two instants" in kink(Y - ca.sin(100 * doubled(X)), count=41)
