@@ -38,6 +38,14 @@ _OURS = re.compile(r"([0-9a-f]{32}(?:-iterated)?)\.(?:graph|c|cpp|so|sha256|log)
 _WORK, _ARRIVING = "lagrange_casadi-", "arriving"
 """First part of names of temporary folders, and name beside which files are written."""
 
+_SHARE = 16
+"""Divisor of the room in a folder: so much a process may fill before it looks at the folder again,
+beside others that fill it too.
+"""
+
+_left: dict[tuple[Path, int], float] = {}
+"""Bytes that this process may put into a folder, of a limit, before it looks at all files there."""
+
 
 @dataclass(frozen=True)
 class Entry:
@@ -224,9 +232,10 @@ def _arriving(place: Path) -> Iterator[Path]:
     with beside(place / _ARRIVING) as near:
         yield near
         names = sorted(name for name in os.listdir(near) if name != LOCK)
+        size = sum(os.path.getsize(near / name) for name in names)
         for name in names:
             os.replace(near / name, place / name)
-    _make_space(place, {name.partition(".")[0] for name in names})
+    _make_space(place, {name.partition(".")[0] for name in names}, size)
 
 
 def use(file: Path) -> None:
@@ -266,13 +275,18 @@ def remove(entries: Iterable[Entry]) -> int:
     return removed
 
 
-def _make_space(place: Path, fresh: set[str]) -> None:
-    """Remove what was used longest ago, until the rest is within the limit; what is ``fresh``
-    stays.
+def _make_space(place: Path, fresh: set[str], size: int) -> None:
+    """Remove what was used longest ago, until the rest is within the limit; what is ``fresh``, of a
+    ``size`` in bytes, stays.
     """
+    key = place, limit()
+    _left[key] = _left.get(key, 0.0) - size
+    if _left[key] > 0.0:
+        return
     with suppress(OSError):
         kept = entries(place)
         beyond = sum(entry.size for entry in kept.values()) - limit()
         for name, entry in kept.items():
             if beyond > 0 and name not in fresh:
                 beyond -= remove([entry])
+        _left[key] = -beyond / _SHARE
