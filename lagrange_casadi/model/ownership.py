@@ -153,8 +153,8 @@ class Ownership:
         """
         declared, measures = self.declared, self.declared.measures
         symbols = [parameter.symbol for parameter in declared.parameters.values()]
-        state = (declared.time, measures.places, measures.rates)
-        symbols += entries(column(state)) if moving else []
+        if moving:
+            symbols += entries(column((declared.time, measures.places, measures.rates)))
         symbols += (
             [*measures.accelerations, *(asked.symbol for asked in declared.asked.values())]
             if found

@@ -46,8 +46,8 @@ def test_a_film_is_made_by_ffmpeg(here, capsys, monkeypatch):
     program.parent.mkdir()
     program.write_text(FFMPEG)
     program.chmod(0o755)
-    monkeypatch.setenv("PATH", str(program.parent))
     save(press(TURN), "press.h5")
+    monkeypatch.setenv("PATH", str(program.parent))
     line = "animate press.h5 --out a.mp4 --width 160 --rate 5 --seconds 1"
     assert command(line) == 0
     program.with_name("fails").touch()

@@ -265,7 +265,7 @@ class Oracle:
         at zero: (3, gaps).
         """
         found = self._gap_jets(
-            [Jet(*x) for x in zip(q, rate, np.zeros_like(q), strict=True)], drives
+            [Jet(*x) for x in zip(q.tolist(), rate.tolist(), strict=True)], drives
         )
         return np.array([(g.v, g.d, g.a) for g in found]).reshape(-1, 3).T
 
@@ -273,9 +273,10 @@ class Oracle:
         """Slope of the gaps by q: beside a rate of zero, at which a guide's gap changes too."""
         still = {joint: (coordinate, 0, 0) for joint, (coordinate, *_) in drives.items()}
         rows = np.eye(q.size, q.size + 1, dtype=q.dtype)
-        along = self._gap_jets([Jet(x, row) for x, row in zip(q, rows, strict=True)], still)
-        rates = np.array([np.broadcast_to(g.d, q.size + 1) for g in along])
-        rates = rates.reshape(-1, q.size + 1)
+        along = self._gap_jets(
+            [Jet(x, row) for x, row in zip(q.tolist(), rows, strict=True)], still
+        )
+        rates = np.array([g.d + np.zeros_like(rows[0]) for g in along]).reshape(-1, q.size + 1)
         return rates[:, :-1] - rates[:, -1:]
 
     def _gap_jets(self, jets, drives):
