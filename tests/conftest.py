@@ -19,6 +19,8 @@ from hypothesis import settings
 # The processes of the tests have the cores already: threads of NumPy's linear algebra beside them
 # would mostly wait for each other. NumPy reads it when it is imported, so this comes before.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+# The tests' own cache would have each process make matplotlib's list of fonts anew.
+os.environ.setdefault("MPLCONFIGDIR", str(Path.home() / ".cache" / "matplotlib"))
 
 from internals import backends, compiler, cycle_table, grids
 

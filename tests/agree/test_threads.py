@@ -47,6 +47,7 @@ def jobs(threads, folder, cache):
     return json.loads(done.stdout)
 
 
+@pytest.mark.early
 def test_many_threads_give_the_bytes_of_one(tmp_path):
     """Scenes that they share and their own; single precision, Newton steps, sweeps, exports, files;
     a cold cache and a warm one.

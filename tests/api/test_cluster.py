@@ -179,6 +179,7 @@ def test_what_is_stopped_or_lost_is_one_line_and_loses_nothing(slider_crank, who
 
 
 def test_what_is_no_scheduler_is_one_line(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr("lagrange_casadi.cli.executor._PATIENCE", 1.0)
     monkeypatch.chdir(tmp_path)
     words = ["sweep", "slider_crank", "--grid", "l=0.2:0.4:9", "--dask"]
     for address, says in {

@@ -19,6 +19,7 @@ import sweeps
 from commands import command
 from damaging import damaged
 from forging import OWN, attributes, forging
+from matplotlib.figure import Figure
 from places import TESTS
 from resealing import ONCE
 
@@ -101,6 +102,7 @@ def told_by(read, capsys):
 @pytest.mark.parametrize("count", [25, pytest.param(10_000, marks=pytest.mark.long)])
 def test_damage_is_refused(here, slider_crank, monkeypatch, capsys, kind, count):
     """By every reader, in one line; all of them take the file as it was written."""
+    monkeypatch.setattr(Figure, "savefig", lambda self, file, **_: Path(file).write_bytes(b"drawn"))
     file = source(kind, here, slider_crank, monkeypatch)
     content, chance = file.read_bytes(), random.Random(count)
     assert not any(told_by(read, capsys) for read in READERS[kind])

@@ -11,6 +11,7 @@ is below 1e-6 nothing is judged. What a load magnifies is found by trial: see
 from __future__ import annotations
 
 import collections
+import functools
 import math
 from dataclasses import dataclass
 
@@ -87,6 +88,7 @@ class Comparison:
         }
         self.units: dict[str, float] = {}  # the force of a unit multiplier
         self.size = self.d.oracle(self.d.start).size
+        self.determined = functools.cache(solution.determined)
 
     def look(self, peaks=()) -> None:
         """Fill ``faults``, what is wrong, and ``notes``, what is doubtful: the first fault tells
@@ -244,7 +246,7 @@ class Comparison:
         told = self._told(i, ratios)
         for name, value in self._named(exact, model, ratios).items():
             full, loose = name.partition("@")[0], _open(exact, self._source(name)[0])
-            if not self.solution.determined(full):
+            if not self.determined(full):
                 self.withheld[full].append(loose)
             elif loose:
                 self.faults.append(f"'{name}' is given, and is not unique at t = {t:g} s")
