@@ -49,6 +49,18 @@ def test_what_was_used_longest_ago_goes_first(fresh_cache, monkeypatch):
     assert cache.read(f"{NAMES[6]}.graph") == "y" * 2900
 
 
+def test_the_folder_is_looked_through_where_it_may_be_full_and_never_beyond_its_limit(
+    fresh_cache, monkeypatch
+):
+    monkeypatch.setenv(cache.VARIABLE, "100k")
+    entries, looked = cache.entries, []
+    monkeypatch.setattr(cache, "entries", lambda place: looked.append(place) or entries(place))
+    for k in range(120):
+        cache.write(f"{k:032x}.graph", "y" * 935)
+        assert sum(path.stat().st_size for path in fresh_cache.iterdir()) <= 100_000
+        assert len(looked) < 60 or k > 90
+
+
 @pytest.mark.parametrize(
     ("text", "says"), [("12", "1.2e-05"), ("1.5k", "0.0015"), ("2 GB", "2000"), ("1T", "1e+06")]
 )
