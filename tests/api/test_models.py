@@ -3,6 +3,7 @@
 import model_parts
 import numpy as np
 import pytest
+from commands import run_here
 from internals import case_of
 from mechanisms import pins_of
 from model_files import (
@@ -40,6 +41,12 @@ from lagrange_casadi.motion import harmonic
 pytestmark = pytest.mark.usefixtures("interpreted")
 
 file = model_parts.file
+
+
+@pytest.fixture(autouse=True)
+def _compiled_here(monkeypatch):
+    """No file here is meant to harm: MuJoCo compiles them in this process."""
+    monkeypatch.setattr("lagrange_casadi.interop.formats.mjcf.run_apart", run_here)
 
 
 SDF_WEIGHT = WEIGHT / 9.81 * 9.8
