@@ -200,7 +200,7 @@ def test_a_second_process_derives_nothing(fresh_cache, tmp_path):
         " slider_crank;"
         " __import__('importlib').import_module('lagrange_casadi.engine.derive').assemble ="
         " None; from lagrange_casadi import evaluate; print(evaluate(slider_crank(),"
-        " backend='c').effort('O').tobytes().hex())"
+        " backend='vm').effort('O').tobytes().hex())"
     )
     done = subprocess.run(
         [sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=tmp_path
