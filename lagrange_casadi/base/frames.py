@@ -30,6 +30,11 @@ class Frame:
     ``acceleration`` is the anchor's; ``rate`` is the angular velocity in ground axes, ``angular``
     its change. The anchor is the joint that holds the body, so what sits there moves with the joint
     exactly, without a lever that cancels.
+
+    In space ``carried`` is the motion in axes at rest that lie along the body's own at the instant,
+    by the same anchor: there levers are short and a turn keeps a component. ``rotations`` lead to
+    it from the ground. After a single one, about an axis of the ground's, the motion is as short in
+    the ground's axes, where others want it too.
     """
 
     at: Vector = ZERO
@@ -39,6 +44,8 @@ class Frame:
     rate: Vector = ZERO
     angular: Vector = ZERO
     anchor: Vector = ZERO
+    carried: Frame | None = None
+    rotations: int = 0
 
     def place_of(self, point: Vector) -> Vector:
         """The place of the body's point."""
@@ -58,12 +65,22 @@ class Frame:
 
     def displaced(self, translation: Vector, turning: Vector) -> Frame:
         """The frame displaced at the anchor, by the rates of a translation and of a rotation."""
-        return replace(self, speed=plus(self.speed, translation), rate=plus(self.rate, turning))
+        local = self.carried and self.carried.displaced(
+            self.rotation.resolve(translation), self.rotation.resolve(turning)
+        )
+        return replace(
+            self, speed=plus(self.speed, translation), rate=plus(self.rate, turning), carried=local
+        )
+
+    def displaced_along(self, translation: Vector, turning: Vector) -> Frame:
+        """Displacement by rates in the body's own axes."""
+        there = self.displaced(self.rotation.apply(translation), self.rotation.apply(turning))
+        return replace(there, carried=self.shortest.displaced(translation, turning))
 
     @property
     def shortest(self) -> Frame:
         """The motion of the body in those axes at rest in which it is shortest."""
-        return self
+        return self.carried if self.carried is not None and self.rotations > 1 else self
 
     def about_anchor(self) -> Frame:
         """The body as it turns about its anchor, which rests."""
@@ -71,8 +88,9 @@ class Frame:
 
     def along_axis(self) -> Frame:
         """The body at its origin, seen in axes at rest that lie along its own at the instant."""
-        speed, acceleration = (self.rotation.resolve(v) for v in self.motion_of(ZERO))
-        rate, angular = self.rotation.resolve(self.rate), self.rotation.resolve(self.angular)
+        seen = self.shortest
+        speed, acceleration = (seen.rotation.resolve(v) for v in seen.motion_of(ZERO))
+        rate, angular = seen.rotation.resolve(seen.rate), seen.rotation.resolve(seen.angular)
         return Frame(speed=speed, acceleration=acceleration, rate=rate, angular=angular)
 
     def _lever(self, point: Vector) -> Vector:
@@ -126,51 +144,6 @@ class Frame:
                     ),
                 ),
             ),
-        )
-
-
-@dataclass(frozen=True, eq=False)
-class Carried(Frame):
-    """A frame in space whose motion is also known in its own axes, where levers are short and a
-    turn keeps a component.
-
-    ``carried`` is the motion in axes at rest that lie along the body's own at the instant, by the
-    same anchor; ``rotations`` lead to it from the ground. After a single one, about an axis of the
-    ground's, the motion is as short in the ground's axes, where others want it too.
-    """
-
-    carried: Frame = field(default_factory=Frame)
-    rotations: int = 0
-
-    @property
-    def shortest(self) -> Frame:
-        """The motion of the body in those axes at rest in which it is shortest."""
-        return self.carried if self.rotations > 1 else self
-
-    def displaced(self, translation: Vector, turning: Vector) -> Carried:
-        """The frame displaced at the anchor, by the rates of a translation and of a rotation."""
-        local = self.carried.displaced(
-            self.rotation.resolve(translation), self.rotation.resolve(turning)
-        )
-        return replace(
-            self, speed=plus(self.speed, translation), rate=plus(self.rate, turning), carried=local
-        )
-
-    def displaced_along(self, translation: Vector, turning: Vector) -> Carried:
-        """Displacement by rates in the body's own axes."""
-        there = self.displaced(self.rotation.apply(translation), self.rotation.apply(turning))
-        return replace(there, carried=self.carried.displaced(translation, turning))
-
-    def along_axis(self) -> Frame:
-        """The body at its origin, seen in axes at rest that lie along its own at the instant."""
-        if self.shortest is not self.carried:
-            return super().along_axis()
-        speed, acceleration = self.carried.motion_of(ZERO)
-        return Frame(
-            speed=speed,
-            acceleration=acceleration,
-            rate=self.carried.rate,
-            angular=self.carried.angular,
         )
 
 

@@ -16,7 +16,7 @@ from typing import Any
 import casadi as ca
 
 from ..base.arrays import Expression
-from ..base.frames import Carried, Frame, Velocities
+from ..base.frames import Frame, Velocities
 from ..base.scalars import column
 from ..base.vectors import AXES, ZERO, dot, minus, nil, times
 from ..errors import DeclarationError
@@ -61,10 +61,8 @@ def assemble(
     ]
     carried = coordinates_of(mechanism, tree, driven, {*measured, *pushed})
     upward = times(-1, mechanism.gravity)
-    weighed = (
-        Carried(acceleration=upward, carried=Frame(acceleration=upward))
-        if mechanism.space
-        else Frame(acceleration=upward)
+    weighed = Frame(
+        acceleration=upward, carried=Frame(acceleration=upward) if mechanism.space else None
     )
     resting, accelerated = Grown(mechanism, carried, Frame()), Grown(mechanism, carried, weighed)
     for branch in tree.branches:

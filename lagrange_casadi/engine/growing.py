@@ -11,7 +11,7 @@ from typing import Any
 import casadi as ca
 
 from ..base.arrays import Expression
-from ..base.frames import Carried, Frame
+from ..base.frames import Frame
 from ..base.rotation import Rotation
 from ..base.scalars import column
 from ..base.vectors import AXES, ZERO, cross, dot, minus, plus, times
@@ -57,12 +57,7 @@ class Grown:
             many = (3, 6) if space else (2, 3)
             rates = ca.SX.sym(f"ed_{joint.name}", many[joint.bears_moment])
             self.mobilities[joint.name] = rates
-            if (
-                along
-                and branch.far.body.oriented
-                and isinstance(frame, Carried)
-                and frame.shortest is frame.carried
-            ):
+            if along and branch.far.body.oriented and frame.shortest is not frame:
                 frame = frame.displaced_along(*split(rates, space=space))
                 self.own_axes.add(joint.name)
             else:
@@ -168,7 +163,7 @@ class Grown:
             angular,
             anchor,
         )
-        if not isinstance(base, Carried):
+        if base.carried is None:
             return Frame(*motion)
         if free := [coordinate for coordinate in coordinates if coordinate.spherical is not None]:
             local = replace(
@@ -177,8 +172,8 @@ class Grown:
                 acceleration=rotation.resolve(moved.acceleration),
             )
         else:
-            local = _own(branch, coordinates, base)
-        return Carried(
+            local = _own(branch, coordinates, base.carried, base.rotation)
+        return Frame(
             *motion,
             replace(local, anchor=anchor),
             base.rotations + sum(coordinate.kind != "slide" for coordinate in coordinates),
@@ -380,20 +375,20 @@ def _spun(motion: Frame, axis: Vector, coordinate: Coordinate) -> Frame:
     return replace(motion, rate=rate, angular=plus(motion.angular, change))
 
 
-def _own(branch: Branch, coordinates: Sequence[Coordinate], base: Carried) -> Frame:
+def _own(
+    branch: Branch, coordinates: Sequence[Coordinate], base: Frame, rotation: Rotation
+) -> Frame:
     """The motion of the body that hangs on a branch, in its own axes: handed on from axes to axes,
-    each turned from the last.
+    each turned from the last. The first are those of ``base``, whose direction is ``rotation``.
     """
     slides = _slides(coordinates)
-    speed, acceleration = base.carried.motion_of(_ends(branch, slides)[0])
-    motion = Frame(
-        speed=speed, acceleration=acceleration, rate=base.carried.rate, angular=base.carried.angular
-    )
+    speed, acceleration = base.motion_of(_ends(branch, slides)[0])
+    motion = Frame(speed=speed, acceleration=acceleration, rate=base.rate, angular=base.angular)
     if not branch.reverse:
         motion = _slid(motion, slides)
     if not branch.far.body.oriented:
         # A point has no axes of its own: the ground's.
-        return replace(_seen_from(motion, base.rotation.inverse), rate=ZERO, angular=ZERO)
+        return replace(_seen_from(motion, rotation.inverse), rate=ZERO, angular=ZERO)
     zero, rotations = branch.joint.turned, [c for c in coordinates if c.kind == "angle"]
     if branch.reverse:
         motion = _seen_from(motion, zero.inverse)

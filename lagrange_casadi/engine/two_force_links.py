@@ -192,7 +192,7 @@ def two_force_frame(
         cross(x, course[0]),
         cross(x, course[1]),
         (two_force_link.start, 0.0, 0.0),
-        course,
+        course=course,
     )
     residual = (
         (dot(apart, apart) / length - length) / 2,
