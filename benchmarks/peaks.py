@@ -6,11 +6,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from typing import get_args
 
 import numpy as np
 
 from lagrange_casadi.base.arrays import Array
-from lagrange_casadi.base.vocabulary import PEAK_SEARCHES
+from lagrange_casadi.base.vocabulary import PeakSearch
 from lagrange_casadi.studies.designs.engine import DesignEngine
 from lagrange_casadi.studies.designs.outcome import KEPT
 
@@ -25,7 +26,7 @@ def report(rounds: int) -> str:
     over time alone, sampled peaks, exact peaks.
     """
     works: dict[str, Callable[[], object]] = {}
-    for peaks in PEAK_SEARCHES:
+    for peaks in get_args(PeakSearch):
         engine = DesignEngine.of(SCENE, WANTED, (0.0, 0.08, _INSTANTS), peaks=peaks)
         p = np.tile([*SCENE.mechanism.values().values()], (_DESIGNS, 1))
         p[:, engine.parameters.index("l")] = np.linspace(0.25, 0.5, _DESIGNS)

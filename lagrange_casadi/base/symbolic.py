@@ -12,22 +12,19 @@ import inspect
 import threading
 from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar, cast, overload
+from contextlib import ContextDecorator
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from .brief import no_attribute
 
-if TYPE_CHECKING:
-    from typing_extensions import Self
-
 Thing = TypeVar("Thing", bound=Callable[..., Any])
 Value = TypeVar("Value")
-_P = ParamSpec("_P")
 
 _lock = threading.RLock()
 _dropped: deque[dict[str, Any]] = deque()
 
 
-class _Symbolic:
+class _Symbolic(ContextDecorator):
     """A context in which expressions are made and dropped; and a decorator of functions, and of
     classes' methods, that do so.
     """
@@ -44,21 +41,13 @@ class _Symbolic:
 
     def __call__(self, thing: Thing) -> Thing:
         if not isinstance(thing, type):
-            return cast(Thing, self._alone(thing))
+            return super().__call__(thing)
         for name, method in list(vars(thing).items()):
             if inspect.isfunction(method) and (
                 not name.startswith("_") or name in ("__init__", "__post_init__")
             ):
-                setattr(thing, name, self._alone(method))
+                setattr(thing, name, super().__call__(method))
         return thing
-
-    def _alone(self, function: Callable[_P, Value]) -> Callable[_P, Value]:
-        @functools.wraps(function)
-        def called(*given: _P.args, **named: _P.kwargs) -> Value:
-            with self:
-                return function(*given, **named)
-
-        return called
 
 
 symbolic = _Symbolic()
@@ -68,25 +57,16 @@ class symbolic_property(functools.cached_property[Value]):  # noqa: N801 - like 
     """Property that makes expressions when it is first read, and is kept with its object.
 
     Until Python 3.12 a ``cached_property`` has a lock of its own. Two threads that take it and that
-    of expressions in turn would wait for each other; here there is one lock.
+    of expressions in turn would wait for each other; here that of expressions is always taken
+    first.
     """
 
-    @overload
-    def __get__(self, instance: None, owner: type | None = None) -> Self: ...
+    if not TYPE_CHECKING:
 
-    @overload
-    def __get__(self, instance: object, owner: type | None = None) -> Value: ...
-
-    def __get__(self, instance: object, owner: type | None = None) -> Self | Value:
-        """Return the value, which is made once."""
-        if instance is None:
-            return self
-        with symbolic:
-            kept, name = vars(instance), str(self.attrname)
-            if name not in kept:
-                kept[name] = self.func(instance)
-            value: Value = kept[name]
-            return value
+        def __get__(self, instance, owner=None):
+            """Return the value, which is made once."""
+            with symbolic:
+                return super().__get__(instance, owner)
 
 
 class Graphs:

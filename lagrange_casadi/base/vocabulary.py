@@ -5,25 +5,19 @@ from __future__ import annotations
 from typing import Literal
 
 Precision = Literal["double", "single"]
-PRECISIONS: tuple[Precision, ...] = ("double", "single")
 
 Compiled = Literal["auto", "lanes", "c"]
-COMPILED: tuple[Compiled, ...] = ("auto", "lanes", "c")
 """Backends of designs."""
 
 Backend = Literal[Compiled, "vm"]
-BACKENDS: tuple[Backend, ...] = (*COMPILED, "vm")
 
 Keep = Literal["peaks", "laws", "histories"]
-KEEPS: tuple[Keep, ...] = ("peaks", "laws", "histories")
 """Results of each design that a sweep can keep."""
 
 PeakSearch = Literal["exact", "sampled"]
-PEAK_SEARCHES: tuple[PeakSearch, ...] = ("exact", "sampled")
 """Peaks of designs: sought between the instants, or those at them, with an error."""
 
 Beyond = Literal["hold", "line"]
-BEYONDS: tuple[Beyond, ...] = ("hold", "line")
 """Ways of a table to go on beyond its ends: with the value there, or in a straight line."""
 
 Criterion = Literal["goodman", "gerber", "soderberg", "morrow", "findley"]
@@ -51,5 +45,4 @@ SIMPLE = "four_bar"
 """The case that another one begins as."""
 
 LoadFormat = Literal["json", "csv", "inp", "beam"]
-LOAD_FORMATS: tuple[LoadFormat, ...] = ("json", "csv", "inp", "beam")
 """Formats of load cases for finite elements."""

@@ -6,11 +6,11 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import astuple
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 from ..base.files import check_writable
 from ..base.table_writers import TableFile
-from ..base.vocabulary import LOAD_FORMATS, LoadFormat
+from ..base.vocabulary import LoadFormat
 from ..errors import DeclarationError
 from ..interop.load_cases import LoadCase, link_load_cases, write_load_cases, write_spectrum
 from ..interop.load_cases.beam_model import modelled
@@ -103,7 +103,7 @@ def loads(
 
 def _formats(cases: Sequence[LoadCase]) -> Sequence[LoadFormat]:
     """Return all formats that the links have; say why there is no model of a beam."""
-    others = [name for name in LOAD_FORMATS if name != "beam"]
+    others = [name for name in get_args(LoadFormat) if name != "beam"]
     if any(case.rod is None for case in cases):
         return others
     try:
@@ -112,4 +112,4 @@ def _formats(cases: Sequence[LoadCase]) -> Sequence[LoadFormat]:
     except DeclarationError as error:
         echo(f"format beam is left out: {error}")
         return others
-    return LOAD_FORMATS
+    return get_args(LoadFormat)

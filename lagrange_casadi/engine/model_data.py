@@ -8,6 +8,7 @@ import functools
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import get_args
 
 import casadi as ca
 import numpy as np
@@ -19,7 +20,7 @@ from ..base.scalars import column, graph
 from ..base.symbolic import Graphs, symbolic
 from ..base.tables import table_of
 from ..base.templates import Template
-from ..base.vocabulary import PRECISIONS, Precision
+from ..base.vocabulary import Precision
 from ..errors import check_known
 from ..model.beams.beam import Beam
 from ..model.corners import Corners
@@ -118,7 +119,7 @@ class ModelData(Graphs, Brief):
             extent=graph("extent", given, extent=extent(mechanism)),
             margins={
                 precision: scene.parameter_constraints(precision).margins()
-                for precision in PRECISIONS
+                for precision in get_args(Precision)
             },
             corners=Corners.of(scene),
             partial=tuple(

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import get_args
 
 import casadi as ca
 import numpy as np
@@ -17,7 +18,7 @@ from ..base import lookups
 from ..base.arguments import Row, array, fitting, public
 from ..base.arrays import Array, Expression
 from ..base.units import number
-from ..base.vocabulary import BEYONDS, Beyond
+from ..base.vocabulary import Beyond
 from ..errors import DeclarationError, NumberError, shown
 
 _SAME = 1e-12
@@ -94,7 +95,7 @@ def table(
         For abscissas that do not increase, and another word for ``beyond``.
     """
     at, to = rows("table", places, values, 2)
-    if beyond not in (None, *BEYONDS):
+    if beyond not in (None, *get_args(Beyond)):
         raise DeclarationError(f"table: beyond must be 'hold' or 'line', got {shown(beyond)}")
     try:
         given: ca.SX = ca.SX(x)

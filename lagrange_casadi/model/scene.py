@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache, partial
 from types import MappingProxyType
-from typing import Any, NoReturn
+from typing import Any, NoReturn, get_args
 
 from ..base.arguments import Outputs, fitting, public, texts
 from ..base.brief import listed
@@ -15,7 +15,7 @@ from ..base.drawn import Drawing
 from ..base.methods import method
 from ..base.symbolic import Graphs, symbolic, symbolic_property
 from ..base.units import Number, double, quantity
-from ..base.vocabulary import PRECISIONS, Precision
+from ..base.vocabulary import Precision
 from ..errors import (
     DeclarationError,
     ParameterError,
@@ -563,7 +563,7 @@ class Scene(Graphs):
         ParameterConstraints
             The conditions.
         """
-        check_known("precision", [precision], PRECISIONS)
+        check_known("precision", [precision], get_args(Precision))
         parts = demands(self.mechanism, precision)
         moved = [demand for law in self.laws.values() for demand in law.parameter_constraints]
         return ParameterConstraints(parts.symbols, (*parts.each, *moved)) if moved else parts

@@ -15,7 +15,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import partial
-from typing import TypeAlias, TypeVar
+from typing import TypeAlias, TypeVar, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -23,7 +23,7 @@ import numpy.typing as npt
 from ..base.arrays import Array, Json, spread
 from ..base.status import Status
 from ..base.tables import ANGLE, LENGTH
-from ..base.vocabulary import PEAK_SEARCHES, PRECISIONS, PeakSearch
+from ..base.vocabulary import PeakSearch, Precision
 from ..engine.codegen import find_compiler
 from ..engine.derive import compile_scene
 from ..engine.instants.backends import Evaluated, run
@@ -60,7 +60,7 @@ _ALIKE = 1.2
 METHODS = (
     *(
         EvaluationMethod(backend, precision)
-        for precision in PRECISIONS
+        for precision in get_args(Precision)
         for backend in ("lanes", "c")
     ),
     *(
@@ -70,7 +70,7 @@ METHODS = (
     EvaluationMethod("lanes", flags="-ffast-math"),
     *(
         EvaluationMethod(backend, precision, newton=1)
-        for precision in PRECISIONS
+        for precision in get_args(Precision)
         for backend in ("lanes", "c")
     ),
     *(EvaluationMethod(backend, newton=2) for backend in ("lanes", "c")),
@@ -261,7 +261,9 @@ def trade(
 
 def _peak_costs(scene: Scene, timing: Timing, p: Array) -> tuple[PeakCost, ...]:
     """Measure both kinds of peaks of one design many times; nothing where it has no result."""
-    engines = {peaks: DesignEngine.of(scene, timing=timing, peaks=peaks) for peaks in PEAK_SEARCHES}
+    engines = {
+        peaks: DesignEngine.of(scene, timing=timing, peaks=peaks) for peaks in get_args(PeakSearch)
+    }
     works = {
         peaks: (partial(_designs, engine, p), 1 + math.ceil(INSTANTS / timing.count))
         for peaks, engine in engines.items()
@@ -270,7 +272,7 @@ def _peak_costs(scene: Scene, timing: Timing, p: Array) -> tuple[PeakCost, ...]:
     if any(outcome.status[0] != Status.OK for outcome in found.values()):
         return ()
     seconds = {peaks: one / timing.count for peaks, one in _in_turns(works).items()}
-    exact, sampled = (np.abs(found[peaks].value[0]) for peaks in PEAK_SEARCHES)
+    exact, sampled = (np.abs(found[peaks].value[0]) for peaks in get_args(PeakSearch))
     units = np.array(engines["exact"].kept.units)
     largest = np.array([np.nanmax(exact[units == unit], initial=0.0) for unit in units])
     there = np.isfinite(exact) & (exact > _NIL * largest)

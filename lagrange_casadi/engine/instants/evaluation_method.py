@@ -7,11 +7,11 @@ from __future__ import annotations
 import shlex
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, get_args
 
 from ...base.arguments import public
 from ...base.brief import Brief
-from ...base.vocabulary import BACKENDS, PRECISIONS, Backend, Precision
+from ...base.vocabulary import Backend, Precision
 from ...errors import DeclarationError, check_kind, check_known
 
 if TYPE_CHECKING:
@@ -82,8 +82,8 @@ class EvaluationMethod:
 
     def __post_init__(self) -> None:
         for kind, name, valid in (
-            ("backend", self.backend, BACKENDS),
-            ("precision", self.precision, PRECISIONS),
+            ("backend", self.backend, get_args(Backend)),
+            ("precision", self.precision, get_args(Precision)),
         ):
             check_known(kind, [str(name)], valid)
         if self.newton is not None and (

@@ -7,13 +7,14 @@ import os
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 
 from ...base.arguments import public
 from ...base.folders import filling
 from ...base.table_writers import csv_text
-from ...base.vocabulary import LOAD_FORMATS
+from ...base.vocabulary import LoadFormat
 from ...errors import DeclarationError, check_known, shown
 from .beam_model import beam_model
 from .calculix import calculix
@@ -83,7 +84,7 @@ def write_load_cases(
     PathError
         If the folder cannot be written.
     """
-    check_known("format", formats, LOAD_FORMATS)
+    check_known("format", formats, get_args(LoadFormat))
     links = dict.fromkeys(case.link for case in cases)
     chosen = {name: str(node) for name, node in (nodes or {}).items()}
     loads = (node.name for case in cases for node in nodes_of(case, {}))

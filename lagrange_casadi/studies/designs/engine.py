@@ -13,6 +13,7 @@ import shlex
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -22,7 +23,7 @@ from ...base.quantities import Output
 from ...base.space import cores, require
 from ...base.status import Status
 from ...base.symbolic import symbolic_property
-from ...base.vocabulary import COMPILED, PEAK_SEARCHES, PeakSearch
+from ...base.vocabulary import Compiled, PeakSearch
 from ...engine import codegen
 from ...engine.codegen.peak_search import TOPS, Listed
 from ...engine.derive import compile_scene
@@ -104,8 +105,8 @@ class DesignEngine:
         peaks: PeakSearch = "exact",
     ) -> DesignEngine:
         """Compile a graph for designs at instants that are asked for."""
-        check_known("backend of designs", [method.backend], COMPILED)
-        check_known("choice of peaks", [str(peaks)], PEAK_SEARCHES)
+        check_known("backend of designs", [method.backend], get_args(Compiled))
+        check_known("choice of peaks", [str(peaks)], get_args(PeakSearch))
         sampled = peaks == "sampled"
         data = program.data
         times, p = DesignTimes(data.laws, data.values(data.defaults), timing), data.defaults
