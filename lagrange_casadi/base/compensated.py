@@ -239,16 +239,8 @@ class Pairs:
             error = self._plus(error, self._times(half, other))
         return product, error
 
-    def _split(self, a: ca.SX) -> tuple[ca.SX, ca.SX]:
-        """The halves of a number's digits.
-
-        A constant's are taken here: CasADi would fold them in doubles.
-        """
-        if a.is_constant():
-            kind = DTYPES[self.precision].type
-            number, splitter = kind(float(a)), kind(SPLITTER[self.precision])
-            half = splitter * number - (splitter * number - number)
-            return ca.SX(float(half)), ca.SX(float(number - half))
+    def _split(self, a: Expression) -> tuple[Expression, Expression]:
+        """The halves of a number's digits."""
         c = self._times(SPLITTER[self.precision], a)
         high = self._minus(c, self._minus(c, a))
         return high, self._minus(a, high)
