@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from lagrange_casadi import Mechanism, Scene, compile_scene, load_case
-from lagrange_casadi.base.quantities import FORCES
 from lagrange_casadi.base.space import cores
+from lagrange_casadi.base.tables import PLANE
 from lagrange_casadi.base.vocabulary import Backend
 from lagrange_casadi.engine import codegen
 from lagrange_casadi.engine.instants.backends import rows, run
@@ -98,7 +98,7 @@ def _fills(law: SectionLaw, t: Array, xi: Array, threads: int) -> Work:
     out = empty("the grids", (3, t.size, xi.size))
 
     def call() -> Array:
-        law.on_grids(FORCES, xi, out, threads or None)
+        law.on_grids(PLANE.forces, xi, out, threads or None)
         return out
 
     return call

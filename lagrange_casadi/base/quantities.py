@@ -10,16 +10,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeAlias, TypeVar
 
 from ..errors import check_kind
 from .tables import PLANE, SPACE, Quantity, Table
 
 Value = TypeVar("Value")
-
-FORCES = PLANE.forces
-"""The section forces of planar mechanisms."""
 
 
 def force_members(space: bool, *, moment: bool = True) -> tuple[str, ...]:
@@ -143,11 +140,7 @@ class Output:
     def components(self, table: Table) -> tuple[Output, ...]:
         """Outputs of which this is the resultant, or itself."""
         members = table.parts(self.group, self.member)
-        return (
-            (self,)
-            if members == (self.member,)
-            else tuple(Output(self.group, self.part, member) for member in members)
-        )
+        return tuple(replace(self, member=member) for member in members)
 
     @property
     def along(self) -> bool:

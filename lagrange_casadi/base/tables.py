@@ -49,7 +49,8 @@ class Quantity:
     slide (m), and ``{Q}`` where it depends on the effort that works on it (N m or N). A
     multiplier's unit is that of power over its own equation's: the file says ``1`` where the
     equation's unit is the user's affair. An output of the user's own has the unit that it was
-    declared with.
+    declared with. A resultant is the size ``of`` other members of the same part, of those that
+    its table has.
     """
 
     group: str
@@ -57,6 +58,7 @@ class Quantity:
     unit: str
     long_name: str
     sign: str = ""
+    of: tuple[str, ...] = ()
 
     @property
     def axes(self) -> tuple[str, ...]:
@@ -84,16 +86,14 @@ _ALONG = "positive along the joint's coordinate"
 _BY_HAND = f"{ON_INBOARD}, by the right hand about"
 _ABOUT = "moment of the joint about its point on the child"
 _COORDINATE_OF = "coordinate of the joint: child against parent"
-_RATES = (
+_MOTION = (
     Quantity("motion", "rate", "{q}/s", "rate of the joint's coordinate"),
     Quantity("motion", "acceleration", "{q}/s^2", "acceleration of the joint's coordinate"),
-)
-_PLACE = (
     Quantity("pose", "x", LENGTH, "place of the base, x"),
     Quantity("pose", "y", LENGTH, "place of the base, y"),
 )
-_EFFORT = Quantity("effort", "", "{Q}", "effort of the drive", _ALONG)
-_HOLDING = (
+_DRIVES_AND_REACTION = (
+    Quantity("effort", "", "{Q}", "effort of the drive", _ALONG),
     Quantity(
         "holding",
         "least",
@@ -102,27 +102,13 @@ _HOLDING = (
         _ALONG,
     ),
     Quantity("holding", "largest", "{Q}", "largest effort that holds it there", _ALONG),
-)
-_REACTION = (
     Quantity("reaction", "fx", FORCE, "reaction of the joint, x", _ON_CHILD),
     Quantity("reaction", "fy", FORCE, "reaction of the joint, y", _ON_CHILD),
 )
-_MULTIPLIER = Quantity("multiplier", "", "1", "multiplier of a constraint or a non-holonomic row")
-_LOAD = (
+_MULTIPLIER_AND_LOAD = (
+    Quantity("multiplier", "", "1", "multiplier of a constraint or a non-holonomic row"),
     Quantity("load", "fx", FORCE, "applied force, x", _ON_FIRST),
     Quantity("load", "fy", FORCE, "applied force, y", _ON_FIRST),
-)
-_FRICTION = (
-    Quantity(
-        "friction", "along", "{Q}", "friction along the joint's coordinate, on the child", _ALONG
-    ),
-    Quantity(
-        "friction",
-        "loss",
-        "W",
-        "power that friction takes from the mechanism",
-        "positive where it brakes",
-    ),
 )
 _RESIDUALS = {
     "balance": "Newton-Euler balance of all bodies, over the largest force of the cycle",
@@ -140,7 +126,16 @@ _RESIDUALS = {
 """Meanings of the residuals of a certificate."""
 
 _OTHERS = (
-    *_FRICTION,
+    Quantity(
+        "friction", "along", "{Q}", "friction along the joint's coordinate, on the child", _ALONG
+    ),
+    Quantity(
+        "friction",
+        "loss",
+        "W",
+        "power that friction takes from the mechanism",
+        "positive where it brakes",
+    ),
     Quantity("output", "", "1", "user-defined output"),
     Quantity(
         "stress",
@@ -170,13 +165,6 @@ _OTHERS = (
     ),
 )
 _LOAD_POINT_N = Quantity("station", "n", FORCE, "force on the link at a load point, along the axis")
-_LOAD_POINT = Quantity("station", "station", "1", "position of the load point, ratio xi/l")
-_DISTRIBUTED = (
-    Quantity(
-        "spread", "width", "1", "on how much of the link the load along it acts, as a ratio to l"
-    ),
-    Quantity("spread", "end", "1", "where the load along the link ends, ratio xi/l"),
-)
 
 
 def _spread(member: str, direction: str) -> Quantity:
@@ -184,9 +172,15 @@ def _spread(member: str, direction: str) -> Quantity:
     return Quantity("spread", member, "N/m", meaning)
 
 
-_DISTRIBUTED_N = _spread("qn", "in the direction of the axis")
+_LOAD_PLACE = (
+    Quantity("station", "station", "1", "position of the load point, ratio xi/l"),
+    Quantity(
+        "spread", "width", "1", "on how much of the link the load along it acts, as a ratio to l"
+    ),
+    Quantity("spread", "end", "1", "where the load along the link ends, ratio xi/l"),
+    _spread("qn", "in the direction of the axis"),
+)
 _COUPLE = "couple of the slices' rotary inertia, {}: coefficient of a power of (end - xi/l)/width"
-_COUPLES = tuple(Quantity("spread", f"c{x}", FORCE, _COUPLE.format(x)) for x in "xyz")
 
 
 def _law(prefix: str, force: str) -> tuple[Quantity, ...]:
@@ -203,16 +197,12 @@ _AXIAL_LAW = _law("n", "axial force")
 
 QUANTITIES = (
     Quantity("motion", "", "{q}", _COORDINATE_OF, "counter-clockwise, or along the axis"),
-    *_RATES,
-    *_PLACE,
+    *_MOTION,
     Quantity("pose", "angle", ANGLE, "direction of the axis, continuous in time",
         "counter-clockwise from x"),
-    _EFFORT,
-    *_HOLDING,
-    *_REACTION,
+    *_DRIVES_AND_REACTION,
     Quantity("reaction", "mz", MOMENT, _ABOUT, _ON_CHILD),
-    _MULTIPLIER,
-    *_LOAD,
+    *_MULTIPLIER_AND_LOAD,
     Quantity("load", "mz", MOMENT, "applied torque", _ON_FIRST),
     *_OTHERS,
     Quantity("section", "shear", FORCE, "shear force",
@@ -225,30 +215,24 @@ QUANTITIES = (
     Quantity("station", "f", FORCE,
         "force on the link at a load point, 90 deg counter-clockwise of the axis"),
     Quantity("station", "m", MOMENT, "moment on the link at a load point"),
-    _LOAD_POINT,
-    *_DISTRIBUTED,
-    _DISTRIBUTED_N,
+    *_LOAD_PLACE,
     _spread("qf", "90 deg counter-clockwise of the axis"),
 )  # fmt: skip
 
 SPATIAL_QUANTITIES = (
     Quantity("motion", "", "{q}", _COORDINATE_OF, "by the right hand about, or along, the axis"),
-    *_RATES,
-    *_PLACE,
+    *_MOTION,
     Quantity("pose", "z", LENGTH, "place of the base, z"),
     *(Quantity("pose", f"{axis}{of}", "1",
         f"direction of the body's axis {axis}, {of}") for axis in "xyz" for of in "xyz"),
-    _EFFORT,
-    *_HOLDING,
-    *_REACTION,
+    *_DRIVES_AND_REACTION,
     Quantity("reaction", "fz", FORCE, "reaction of the joint, z", _ON_CHILD),
     *(Quantity("reaction", f"m{x}", MOMENT, f"{_ABOUT}, {x}", _ON_CHILD) for x in "xyz"),
     *(Quantity("reaction", f"f{u}", FORCE, f"reaction along the joint's own axis {u}",
         _ON_CHILD) for u in "uvw"),
     *(Quantity("reaction", f"m{u}", MOMENT, f"{_ABOUT}, about its own axis {u}",
         _ON_CHILD) for u in "uvw"),
-    _MULTIPLIER,
-    *_LOAD,
+    *_MULTIPLIER_AND_LOAD,
     Quantity("load", "fz", FORCE, "applied force, z", _ON_FIRST),
     *(Quantity("load", f"m{x}", MOMENT, f"applied torque, {x}", _ON_FIRST) for x in "xyz"),
     *_OTHERS,
@@ -257,8 +241,10 @@ SPATIAL_QUANTITIES = (
     Quantity("section", "torsion", MOMENT, "torsional moment", f"{_BY_HAND} the axis"),
     Quantity("section", "bending_y", MOMENT, "bending moment, y", f"{_BY_HAND} its y"),
     Quantity("section", "bending_z", MOMENT, "bending moment, z", f"{_BY_HAND} its z"),
-    Quantity("section", "shear", FORCE, "resultant shear force", "never negative"),
-    Quantity("section", "bending", MOMENT, "resultant bending moment", "never negative"),
+    Quantity("section", "shear", FORCE, "resultant shear force", "never negative",
+        ("shear_y", "shear_z")),
+    Quantity("section", "bending", MOMENT, "resultant bending moment", "never negative",
+        ("bending_y", "bending_z")),
     *_AXIAL_LAW,
     *_law("fy", "shear force, y,"),
     Quantity("law", "mz0", MOMENT, "bending moment at the tip, z"),
@@ -271,22 +257,11 @@ SPATIAL_QUANTITIES = (
     Quantity("station", "mx", MOMENT, "moment on the link at a load point, about the axis"),
     Quantity("station", "my", MOMENT, "moment on the link at a load point, about the link's y"),
     Quantity("station", "mz", MOMENT, "moment on the link at a load point, about the link's z"),
-    _LOAD_POINT,
-    *_DISTRIBUTED,
-    _DISTRIBUTED_N,
+    *_LOAD_PLACE,
     _spread("qfy", "in the direction of the link's y"),
     _spread("qfz", "in the direction of the link's z"),
-    *_COUPLES,
+    *(Quantity("spread", f"c{x}", FORCE, _COUPLE.format(x)) for x in "xyz"),
 )  # fmt: skip
-
-RESULTANT = Quantity("reaction", "resultant", FORCE, "resultant of the joint's reaction")
-"""The size of a reaction's force: it follows from the reaction, and is no series of its own."""
-
-MOMENT_RESULTANT = Quantity("reaction", "moment", MOMENT, "resultant of the joint's moment")
-"""The size of a reaction's moment in space, likewise."""
-
-_LOAD_SIZE = Quantity("load", "resultant", FORCE, "size of the applied force", "never negative")
-_LOAD_MOMENT = Quantity("load", "moment", MOMENT, "size of the applied torque", "never negative")
 
 
 @dataclass(frozen=True)
@@ -312,14 +287,14 @@ class Terms:
 class Table(Brief):
     """All outputs of planar mechanisms, or of spatial ones.
 
-    ``rows`` are in the order in which a solution keeps them. ``sizes`` are resultants: their own
-    row, and the members whose size they are, of the same part. ``sections`` says what each section
-    force is made of, resultants left out.
+    ``rows`` are in the order in which a solution keeps them. ``sizes`` are resultants that follow
+    from these, and are no series of their own. ``sections`` says what each section force is made
+    of, resultants left out.
     """
 
     conventions: str
     rows: tuple[Quantity, ...]
-    sizes: tuple[tuple[Quantity, tuple[str, ...]], ...]
+    sizes: tuple[Quantity, ...]
     sections: Mapping[str, Terms]
 
     def __contains__(self, key: tuple[str, str]) -> bool:
@@ -332,7 +307,8 @@ class Table(Brief):
 
     def parts(self, group: str, member: str) -> tuple[str, ...]:
         """The members whose size a resultant is; of any other member itself."""
-        return self._sizes.get((group, member), (member,))
+        of = self.row(group, member).of
+        return tuple(part for part in of if (group, part) in self) or (member,)
 
     @cached_property
     def law(self) -> tuple[str, ...]:
@@ -365,10 +341,7 @@ class Table(Brief):
     @cached_property
     def place_first(self) -> tuple[str, ...]:
         """Members of ``station`` in the order of emitted C and of a law's loads."""
-        return (
-            _LOAD_POINT.member,
-            *(member for member in self.load_point if member != _LOAD_POINT.member),
-        )
+        return ("station", *(member for member in self.load_point if member != "station"))
 
     @cached_property
     def forces(self) -> tuple[str, ...]:
@@ -378,29 +351,28 @@ class Table(Brief):
     @cached_property
     def reactions(self) -> tuple[str, ...]:
         """The resultants of a reaction."""
-        return tuple(row.member for row, _ in self.sizes if row.group == RESULTANT.group)
+        return tuple(row.member for row in self.sizes if row.group == "reaction")
 
     @cached_property
     def _by_key(self) -> Mapping[tuple[str, str], Quantity]:
-        return {
-            (row.group, row.member): row for row in (*self.rows, *(row for row, _ in self.sizes))
-        }
-
-    @cached_property
-    def _sizes(self) -> Mapping[tuple[str, str], tuple[str, ...]]:
-        return {(row.group, row.member): members for row, members in self.sizes}
+        return {(row.group, row.member): row for row in (*self.rows, *self.sizes)}
 
     def _members(self, group: str) -> tuple[str, ...]:
         return tuple(row.member for row in self.rows if row.group == group)
 
 
 _N, _F, _FY, _FZ = ((f"{x}0", f"{x}1", f"{x}2") for x in ("n", "f", "fy", "fz"))
-_SPATIAL_SIZES = {"shear": ("shear_y", "shear_z"), "bending": ("bending_y", "bending_z")}
+_FORCE_SIZES = (
+    Quantity("reaction", "resultant", FORCE, "resultant of the joint's reaction",
+        of=("fx", "fy", "fz")),
+    Quantity("load", "resultant", FORCE, "size of the applied force", "never negative",
+        ("fx", "fy", "fz")),
+)  # fmt: skip
 
 PLANE = Table(
     CONVENTIONS,
     QUANTITIES,
-    ((RESULTANT, ("fx", "fy")), (_LOAD_SIZE, ("fx", "fy"))),
+    _FORCE_SIZES,
     {
         "axial": Terms(_N, "n", "qn"),
         "shear": Terms(_F, "f", "qf"),
@@ -411,15 +383,11 @@ SPACE = Table(
     SPATIAL_CONVENTIONS,
     SPATIAL_QUANTITIES,
     (
-        (RESULTANT, ("fx", "fy", "fz")),
-        (MOMENT_RESULTANT, ("mx", "my", "mz")),
-        (_LOAD_SIZE, ("fx", "fy", "fz")),
-        (_LOAD_MOMENT, ("mx", "my", "mz")),
-        *(
-            (row, _SPATIAL_SIZES[row.member])
-            for row in SPATIAL_QUANTITIES
-            if row.group == "section" and row.member in _SPATIAL_SIZES
-        ),
+        *_FORCE_SIZES,
+        Quantity("reaction", "moment", MOMENT, "resultant of the joint's moment",
+            of=("mx", "my", "mz")),
+        Quantity("load", "moment", MOMENT, "size of the applied torque", "never negative",
+            ("mx", "my", "mz")),
     ),
     {
         "axial": Terms(_N, "n", "qn"),
@@ -429,7 +397,7 @@ SPACE = Table(
         "bending_y": Terms(("my0", *_FZ), "my", "qfz", "shear_z", -1, "cy"),
         "bending_z": Terms(("mz0", *_FY), "mz", "qfy", "shear_y", 1, "cz"),
     },
-)
+)  # fmt: skip
 
 
 def table_of(space: bool) -> Table:
