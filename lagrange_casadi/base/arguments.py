@@ -13,6 +13,7 @@ import typing
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
 from itertools import chain, repeat
+from numbers import Integral
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple, ParamSpec, TypeAlias, TypeVar
 
@@ -21,7 +22,7 @@ import numpy as np
 
 from ..errors import DeclarationError, shown
 from .space import MOST_THREADS
-from .units import Within, double, in_si, in_words, is_whole, number, numbers_in, typed
+from .units import Within, double, in_si, in_words, number, numbers_in, typed
 
 Thing = TypeVar("Thing", bound=Callable[..., Any])
 _P = ParamSpec("_P")
@@ -306,7 +307,7 @@ def _line_of_texts(value: Any) -> Any:
 
 
 def _whole(value: object) -> Any:
-    return int(value) if is_whole(value) else None
+    return int(value) if isinstance(value, Integral) and not isinstance(value, bool) else None
 
 
 def _pair(value: object) -> Any:

@@ -186,8 +186,7 @@ class Pairs:
         """Return x less whole turns, between -pi and pi."""
         revolutions = ca.floor(self._plus(self._times(x.high, self._rounded(1.0 / math.tau)), 0.5))
         for part in _TURN[self.precision]:
-            product, error = self._product(revolutions, ca.SX(part))
-            x = self.add(x, Pair(self._negative(product), self._negative(error)))
+            x = self.subtract(x, Pair(*self._product(revolutions, ca.SX(part))))
         return x
 
     def sine(self, x: Pair) -> Pair:

@@ -165,17 +165,14 @@ class Velocities:
         """
         speed, acceleration = motion
         return ca.vertcat(
-            *(self._add(*entry) for entry in zip(speed, acceleration, force, strict=True))
+            *(self.number(*entry) for entry in zip(speed, acceleration, force, strict=True))
         )
 
     def number(self, rate: Expression, angular: Expression, couple: Expression = 0.0) -> Expression:
         """The symbol of a rate, with what works along it."""
-        return self._add(rate, angular, couple)
-
-    def _add(self, graph: Expression, rate: Expression, force: Expression) -> Expression:
-        if nil(graph) and nil(rate):
+        if nil(rate) and nil(angular):
             return ca.SX(0)
         self.symbols.append(ca.SX.sym(f"w{len(self.symbols)}"))
-        for column, entry in ((self.graphs, graph), (self.rates, rate), (self.forces, force)):
+        for column, entry in ((self.graphs, rate), (self.rates, angular), (self.forces, couple)):
             column.append(as_expression(entry))
         return self.symbols[-1]

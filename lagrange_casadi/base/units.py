@@ -13,8 +13,7 @@ from collections.abc import Iterable
 from contextlib import suppress
 from decimal import Context, Decimal
 from functools import lru_cache
-from numbers import Integral
-from typing import Any, NamedTuple, TypeAlias, TypeGuard
+from typing import Any, NamedTuple, TypeAlias
 
 import casadi as ca
 import numpy as np
@@ -404,11 +403,6 @@ class Within(NamedTuple):
             if self.low > -math.inf
             else ""
         )
-
-
-def is_whole(value: object) -> TypeGuard[int]:
-    """Return whether a value is a whole number of any size, and no truth value."""
-    return isinstance(value, Integral) and not isinstance(value, bool)
 
 
 def double(value: Any) -> float | None:

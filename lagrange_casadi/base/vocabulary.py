@@ -38,11 +38,5 @@ WIDTH, RATE, SECONDS = 640, 25.0, 4.0
 AZIMUTH, ELEVATION = -60.0, 25.0
 """The view that shows most of most mechanisms [deg]."""
 
-TIME_LIMIT = 60.0
-"""Seconds that reading a file of unknown origin may take."""
-
-SIMPLE = "four_bar"
-"""The case that another one begins as."""
-
 LoadFormat = Literal["json", "csv", "inp", "beam"]
 """Formats of load cases for finite elements."""

@@ -13,7 +13,6 @@ from pathlib import Path
 
 from ..base.folders import filling
 from ..base.shipped_cases import shipped_cases
-from ..base.vocabulary import SIMPLE
 from ..errors import PathError, check_known
 from .echo import echo
 from .options import refuse
@@ -122,7 +121,7 @@ def new(
         (contacts and not model, "--contacts needs --from FILE of a model"),
     )
     if source is None:
-        files, notes = _copied(SIMPLE if like is None else like, folder), list[str]()
+        files, notes = _copied("four_bar" if like is None else like, folder), list[str]()
     elif not model:
         from ..studies.script import case_of_script
 

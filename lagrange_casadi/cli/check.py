@@ -7,7 +7,6 @@ from collections.abc import Callable
 from pathlib import Path
 
 from ..base.apart import LostError, run_apart
-from ..base.vocabulary import TIME_LIMIT
 from ..errors import StoreError
 from ..results.store import runs as store
 from ..results.store.opening import IDENTIFICATION, SEARCH, SWEEP, check_identification, kind_of
@@ -50,7 +49,7 @@ def check(
     time_limit : SECONDS
         Limit the time of --untrusted [s]; default: 60.
     """
-    seconds = TIME_LIMIT if time_limit is None else time_limit
+    seconds = 60.0 if time_limit is None else time_limit
     refuse(
         (time_limit is not None and not untrusted, "--time-limit goes with --untrusted"),
         (
