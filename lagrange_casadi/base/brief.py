@@ -50,9 +50,8 @@ class Brief:
         entries = [entry.name for entry in fields(self) if entry.repr]  # type: ignore[arg-type]
         each = ", ".join(f"{name}={_brief(getattr(self, name, None))}" for name in entries)
         text = f"{type(self).__name__}({each})"
-        if len(text) > LONGEST:
-            text = f"{text[: LONGEST - 6].rpartition(', ')[0]}, ...)"
-        return text
+        short = f"{text[: LONGEST - 6].rpartition(', ')[0]}, ...)"
+        return text if len(text) <= LONGEST else short
 
 
 def listed(names: Iterable[str], empty: str = "none") -> str:

@@ -149,9 +149,9 @@ class Pairs:
 
     def negate(self, x: Pair) -> Pair:
         """-x."""
-        low = None if x.low is None else self._negative(x.low)
+        low = None if x.low is None else self._closed(-x.low)
         number = None if x.number is None else -x.number
-        return Pair(self._negative(x.high), low, number)
+        return Pair(self._closed(-x.high), low, number)
 
     def multiply(self, x: Pair, y: Pair) -> Pair:
         """Return x y; a power of two only scales."""
@@ -169,18 +169,16 @@ class Pairs:
 
     def divide(self, x: Pair, y: Pair) -> Pair:
         """Return x / y by what a first quotient leaves."""
-        first = self._over(x.high, y.high)
+        first = self._closed(x.high / y.high)
         remainder = self.subtract(x, self.multiply(Pair(first), y))
-        return self._normal(first, self._over(self._value(remainder), y.high))
+        return self._normal(first, self._closed(self._value(remainder) / y.high))
 
     def root(self, x: Pair) -> Pair:
         """The square root, by what a first root leaves; of zero, zero."""
         first = self._rounded(ca.sqrt(x.high))
         remainder = self.subtract(x, self.multiply(Pair(first), Pair(first)))
-        return self._normal(
-            first,
-            self._over(self._value(remainder), self._plus(self._times(2.0, first), first == 0.0)),
-        )
+        twice = self._plus(self._times(2.0, first), first == 0.0)
+        return self._normal(first, self._closed(self._value(remainder) / twice))
 
     def reduced(self, x: Pair) -> Pair:
         """Return x less whole turns, between -pi and pi."""
@@ -195,7 +193,7 @@ class Pairs:
 
     def cosine(self, x: Pair) -> Pair:
         """The cosine of a counted angle."""
-        return self._turning(x, ca.cos, lambda angle: self._negative(ca.sin(angle)))
+        return self._turning(x, ca.cos, lambda angle: self._closed(-ca.sin(angle)))
 
     def remainder(self, x: Pair, y: Pair) -> Pair:
         """C's fmod: x less y as often as it goes into x, towards zero."""
@@ -258,12 +256,6 @@ class Pairs:
 
     def _times(self, a: Expression, b: Expression) -> Expression:
         return self._closed(product(a, b))
-
-    def _over(self, a: ca.SX, b: ca.SX) -> Expression:
-        return self._closed(a / b)
-
-    def _negative(self, a: Expression) -> Expression:
-        return self._closed(-a)
 
     def _closed(self, x: Expression) -> Expression:
         return closed(self._rounded(x))

@@ -272,12 +272,10 @@ class Table:
         """
         found: list[list[float]] = []
         clock, before = Clock(_SI), ""
-
-        def column(place: int) -> object:
-            return self.head.cells[place] if self.names else place + 1
+        called = self.head.cells if self.names else range(1, len(self.units) + 1)
 
         if unit and (wrong := differs(unit, "s")):
-            raise DeclarationError(f"{self.path.name}: column '{column(time[0])}' is in {wrong}")
+            raise DeclarationError(f"{self.path.name}: column '{called[time[0]]}' is in {wrong}")
         for row in self.rows:
             cells = [row.pointed(row.cells[place]) for place in time]
             try:
@@ -285,13 +283,13 @@ class Table:
                 numbers = [clock.read(cells)]
             except (ArithmeticError, ValueError):
                 raise DeclarationError(
-                    f"{row.where}, column '{column(time[0])}': expected a finite number, or a time"
+                    f"{row.where}, column '{called[time[0]]}': expected a finite number, or a time"
                     f" as 2025-01-31T12:00:00Z, got '{', '.join(cells)}'"
                 ) from None
             for place in places:
                 cell = row.cells[place]
                 missing = gaps and cell.lower() in _MISSING
-                numbers.append(math.nan if missing else row.finite(column(place), cell))
+                numbers.append(math.nan if missing else row.finite(called[place], cell))
             if found and not numbers[0] > found[-1][0]:
                 raise DeclarationError(
                     f"{row.where}: times must increase, but {' and '.join(cells)} follows {before}"

@@ -218,10 +218,8 @@ def is_locked(path: str | os.PathLike[str]) -> bool:
     try:
         with open(path, "rb") as file:
             _lock(file, shared=True)
-    except BlockingIOError:
-        return True
-    except OSError:  # what cannot be read, or has no locks
-        return False
+    except OSError as error:  # also of what cannot be read, or has no locks
+        return isinstance(error, BlockingIOError)
     return False
 
 

@@ -74,11 +74,10 @@ class Arithmetic:
 def steps(function: ca.Function) -> tuple[Step, ...]:
     """The instructions of an SX function."""
     found: list[Step] = []
-    written: Any = None
+    # To list them takes long, and where nothing is called nobody needs them.
+    written = function.instructions_sx() if function.find_functions(0) else []
     for k in range(function.n_instructions()):
         operation = function.instruction_id(k)
-        if operation == ca.OP_CALL:
-            written = function.instructions_sx() if written is None else written
         called = written[k].which_function() if operation == ca.OP_CALL else None
         number = function.instruction_constant(k) if operation == ca.OP_CONST else 0.0
         places = (tuple(function.instruction_input(k)), tuple(function.instruction_output(k)))

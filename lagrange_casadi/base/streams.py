@@ -9,6 +9,7 @@ import os
 import stat
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO
 
@@ -88,9 +89,7 @@ def is_standard_output(path: Path) -> bool:
 def _standard(path: Path) -> int | None:
     """Return the one of standard output and error to which a path leads."""
     for number in (1, 2):
-        try:
+        with suppress(OSError):
             if os.path.samestat(os.stat(path), os.fstat(number)):
                 return number
-        except OSError:
-            continue
     return None
