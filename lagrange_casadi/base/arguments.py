@@ -71,36 +71,29 @@ class _Kind(NamedTuple):
     optional: bool = False
 
 
-_Known: TypeAlias = dict[str | None, tuple[_Kind | None, object]]
-"""Kinds and defaults of arguments by name; of None, of which a function has none."""
-
-
 def _looking(function: Callable[_P, _Result], kinds: bool = True) -> Callable[_P, _Result]:
     """A function that looks at the kinds of its arguments before it runs, and at whether they fit
     where Python finds that something does not.
     """
 
     @functools.cache
-    def asked() -> tuple[_Known, str | None, Sequence[str], str | None]:
+    def asked() -> tuple[dict[str, tuple[_Kind | None, object]], Sequence[str], str]:
         # A module's names are not all there when it is read.
         each = inspect.signature(function).parameters.values()
         scope = vars(sys.modules[function.__module__])
-        known: _Known = {
+        known = {
             one.name: (_said(one.annotation, scope) if kinds else None, one.default) for one in each
         }
-        stars = {one.kind: one.name for one in each}
         names = [one.name for one in each if one.kind <= inspect.Parameter.POSITIONAL_OR_KEYWORD]
-        others, rest = map(
-            stars.get, (inspect.Parameter.VAR_KEYWORD, inspect.Parameter.VAR_POSITIONAL)
-        )
-        return known | {None: (None, None)}, others, names, rest
+        rest = (one.name for one in each if one.kind is inspect.Parameter.VAR_POSITIONAL)
+        return known, names, next(rest, "")
 
     @functools.wraps(function)
     def called(*given: _P.args, **named: _P.kwargs) -> _Result:
-        known, others, names, rest = asked()
+        known, names, rest = asked()
 
-        def read(name: str | None, value: Any) -> Any:
-            kind, default = known.get(name) or known[others]
+        def read(name: str, value: Any) -> Any:
+            kind, default = known.get(name, (None, None))
             if kind is None or value is default or (value is None and kind.optional):
                 return value
             found, why = None, ""

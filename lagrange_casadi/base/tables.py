@@ -307,7 +307,7 @@ class Table(Brief):
 
     def parts(self, group: str, member: str) -> tuple[str, ...]:
         """The members whose size a resultant is; of any other member itself."""
-        of = self.row(group, member).of
+        of = self.row(group, member).of if (group, member) in self else ()
         return tuple(part for part in of if (group, part) in self) or (member,)
 
     @cached_property

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Literal, get_args
 
 Precision = Literal["double", "single"]
 
@@ -12,6 +12,7 @@ Compiled = Literal["auto", "lanes", "c"]
 Backend = Literal[Compiled, "vm"]
 
 Keep = Literal["peaks", "laws", "histories"]
+KEEPS: tuple[Keep, ...] = get_args(Keep)
 """Results of each design that a sweep can keep."""
 
 PeakSearch = Literal["exact", "sampled"]

@@ -2,7 +2,7 @@
 says how.
 """
 
-from ...base.vocabulary import Keep
+from ...base.vocabulary import KEEPS, Keep
 from .axes import Axis, Grid, Listed, Range, Values
 from .best import Condition, Design, best, chosen
 from .design_lists import read_designs
@@ -10,6 +10,7 @@ from .reading import Sweep, is_sweep
 from .sweeping import sweep
 
 __all__ = [
+    "KEEPS",
     "Axis",
     "Condition",
     "Design",

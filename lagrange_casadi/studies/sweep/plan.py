@@ -9,11 +9,11 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, TypedDict, get_args
+from typing import Any, TypedDict
 
 from ...base.arrays import Array, spread
 from ...base.space import in_words, require
-from ...base.vocabulary import Keep, PeakSearch, Precision
+from ...base.vocabulary import KEEPS, Keep, PeakSearch, Precision
 from ...engine.derive import compile_scene, derived
 from ...errors import (
     AssemblyError,
@@ -104,7 +104,7 @@ class Plan:
         Raises what :func:`.sweep` does.
         """
         fixed, method = request.parameters or {}, request.method
-        check_known("choice of what to keep", [str(keep)], get_args(Keep))
+        check_known("choice of what to keep", [str(keep)], KEEPS)
         check_designs(designs, scene.parameters, fixed)
         values, timing = scene.values(fixed), scene.timing(request.t, request.over)
         if designs.size > MOST:
