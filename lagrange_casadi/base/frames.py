@@ -82,10 +82,6 @@ class Frame:
         """The motion of the body in those axes at rest in which it is shortest."""
         return self.carried if self.carried is not None and self.rotations > 1 else self
 
-    def about_anchor(self) -> Frame:
-        """The body as it turns about its anchor, which rests."""
-        return replace(self, at=ZERO, speed=ZERO, acceleration=ZERO)
-
     def along_axis(self) -> Frame:
         """The body at its origin, seen in axes at rest that lie along its own at the instant."""
         seen = self.shortest

@@ -67,19 +67,18 @@ class TableFile:
             check_installed("openpyxl", "a workbook", "xlsx")
         check_writable(self.path)
 
-    def write(self, heads: Sequence[str], rows: Iterable[Sequence[Cell]]) -> int:
-        """Write rows, which are put into their place at the end; returns how many there are."""
-        with self.written(heads, rows) as count:
-            return count
+    def write(self, heads: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
+        """Write rows, which are put into their place at the end."""
+        with self.written(heads, rows):
+            pass
 
     @contextmanager
-    def written(self, heads: Sequence[str], rows: Iterable[Sequence[Cell]]) -> Iterator[int]:
-        """Write rows, which are put into their place at the end, unless something fails; yields how
-        many there are.
-        """
+    def written(self, heads: Sequence[str], rows: Iterable[Sequence[Cell]]) -> Iterator[None]:
+        """Write rows, which are put into their place at the end, unless something fails."""
         with writing(self.path) as file:
             write = self._write_workbook if self._is_workbook else self._write_csv
-            yield write(file, heads, rows)
+            write(file, heads, rows)
+            yield
 
     @property
     def _is_workbook(self) -> bool:
@@ -87,16 +86,15 @@ class TableFile:
 
     def _write_csv(
         self, file: BinaryIO, heads: Sequence[str], rows: Iterable[Sequence[Cell]]
-    ) -> int:
+    ) -> None:
         text = TextIOWrapper(file, encoding="utf-8", newline="")
-        count = write_csv(text, chain([heads], rows), self.decimal_comma)
+        write_csv(text, chain([heads], rows), self.decimal_comma)
         text.detach()
         file.flush()
-        return count - 1
 
     def _write_workbook(
         self, file: BinaryIO, heads: Sequence[str], rows: Iterable[Sequence[Cell]]
-    ) -> int:
+    ) -> None:
         if len(heads) > _COLUMNS:
             raise DeclarationError(
                 f"{self.path}: {len(heads)} columns, but a workbook has {_COLUMNS} at most; write"
@@ -112,12 +110,9 @@ class TableFile:
         for column, words in enumerate(heads, 1):
             sheet.column_dimensions[letter(column)].width = max(len(words) + 2, _WIDTH)
         made = partial(_cell, WriteOnlyCell, sheet)
-        count = 0
         try:
             with closing(sheet):
-                sheet.append(list(map(made, heads)))
-                for row in rows:
-                    count += 1
+                for count, row in enumerate(chain([heads], rows)):
                     if count == _ROWS:
                         raise DeclarationError(
                             f"{self.path}: a workbook has {_ROWS} rows at most; write CSV"
@@ -132,7 +127,6 @@ class TableFile:
                 f" {os.strerror(code)}"
             ) from None
         book.save(file)
-        return count
 
 
 def _cell(of: Callable[..., Any], sheet: object, value: Cell) -> Any:
@@ -146,17 +140,13 @@ def _cell(of: Callable[..., Any], sheet: object, value: Cell) -> Any:
     return found
 
 
-def write_csv(text: TextIO, rows: Iterable[Sequence[object]], comma: bool = False) -> int:
-    """Write rows with every digit of their numbers; returns how many there are.
+def write_csv(text: TextIO, rows: Iterable[Sequence[object]], comma: bool = False) -> None:
+    """Write rows with every digit of their numbers.
 
     Cells are parted by commas and numbers have points, or, if they have a ``comma``, semicolons.
     """
     writer = csv.writer(text, delimiter=";" if comma else ",", lineterminator="\n")
-    count = 0
-    for row in rows:
-        writer.writerow([_with_comma(cell) for cell in row] if comma else row)
-        count += 1
-    return count
+    writer.writerows([_with_comma(cell) for cell in row] if comma else row for row in rows)
 
 
 def _with_comma(cell: object) -> object:

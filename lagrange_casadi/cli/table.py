@@ -121,8 +121,9 @@ def table(
         raise NoDesignError(f"{file}: no {what} meets the conditions{missed(sweep, where, along)}")
     found = chain([first], found)
     if written:
-        count = written.write(_heads_of(sweep, names), (values for _, values in found))
-        echo(f"wrote {csv}: {counted(count, what)}", err=is_standard_output(written.path))
+        written.write(_heads_of(sweep, names), (values for _, values in found))
+        satisfied, _ = counts(sweep, where, along)
+        echo(f"wrote {csv}: {counted(satisfied, what)}", err=is_standard_output(written.path))
     elif _show(sweep, names, islice(found, min(rows, sys.maxsize))) == rows:
         satisfied, with_result = counts(sweep, where, along)
         if satisfied > rows:

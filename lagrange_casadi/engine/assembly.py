@@ -379,7 +379,8 @@ def _flat(
             ca.SX(0),
         )
         return energy + inertia * velocities.number(frame.rate[2], frame.angular[2]) ** 2 / 2
-    held, about = velocities.vector((frame.speed, frame.acceleration)), frame.about_anchor()
+    held = velocities.vector((frame.speed, frame.acceleration))
+    about = replace(frame, at=ZERO, speed=ZERO, acceleration=ZERO)  # the anchor rests
     energy = sum((mass for mass, _ in points), ca.SX(0)) * ca.sumsqr(held) / 2
     for mass, place in points:
         energy += mass * ca.dot(held, velocities.vector(about.motion_of(place)))

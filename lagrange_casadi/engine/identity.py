@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import functools
-import hashlib
 from pathlib import Path
 
 import casadi as ca
 
 from ..base.arrays import Json
+from ..base.files import digest
 from ..base.scalars import column
 from ..base.symbolic import symbolic
 from ..base.templates import dumps
@@ -26,9 +26,7 @@ def identity_of(scene: Scene, wanted: Wanted) -> str | None:
     declared = declaration(scene, wanted)
     if declared is None:
         return None
-    return hashlib.sha256(
-        "\0".join([sources(), ca.CasadiMeta.version(), declared]).encode()
-    ).hexdigest()[:32]
+    return digest("\0".join([sources(), ca.CasadiMeta.version(), declared]).encode())[:32]
 
 
 @symbolic
@@ -64,8 +62,6 @@ def declaration(scene: Scene, wanted: Wanted) -> str | None:
 @functools.cache
 def sources() -> str:
     """Return the hash of this package's own sources: another version may derive other graphs."""
-    digest = hashlib.sha256()
     root = Path(__file__).parents[1]
-    for path in sorted(root.rglob("*.py")):
-        digest.update(f"{path.relative_to(root)}\0".encode() + path.read_bytes())
-    return digest.hexdigest()
+    paths = sorted(root.rglob("*.py"))
+    return digest(*(f"{path.relative_to(root)}\0".encode() + path.read_bytes() for path in paths))
