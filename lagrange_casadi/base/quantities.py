@@ -151,14 +151,8 @@ class Output:
         """The unit in a mechanism of such kinds."""
         if self.group == "output":
             return kinds.outputs[self.part]
-        if self.group == "friction":
-            return self.quantity.unit_for(kinds.frictions[self.part])
-        found = (
-            kinds.coordinates.get(self.part)
-            if self.group in ("motion", "effort", "holding")
-            else None
-        )
-        return self.quantity.unit_for(found or "angle")
+        along = kinds.frictions if self.group == "friction" else kinds.coordinates
+        return self.quantity.unit_for(along.get(self.part, "angle"))
 
 
 @dataclass(frozen=True)
