@@ -240,10 +240,7 @@ def operation_name(operation: int) -> str:
 @functools.cache
 def numpy_arithmetic() -> Arithmetic:
     """NumPy's arithmetic on doubles and arrays of them."""
-    known = _ARITHMETIC | {ca.OP_CALL: lambda lookup, x: lookup.at(x)}
-    return Arithmetic(
-        np.float64, known | {code: _truth(function) for code, function in _TRUTHS.items()}
-    )
+    return Arithmetic(np.float64, _ARITHMETIC | {ca.OP_CALL: lambda lookup, x: lookup.at(x)})
 
 
 def _truth(function: Callable[..., Operand]) -> Callable[..., Array]:
@@ -292,18 +289,16 @@ _ARITHMETIC: dict[int, Callable[..., Any]] = {
     ca.OP_ACOSH: np.arccosh,
     ca.OP_ATANH: np.arctanh,
     ca.OP_ERF: np.vectorize(math.erf),
+    ca.OP_LT: _truth(np.less),
+    ca.OP_LE: _truth(np.less_equal),
+    ca.OP_EQ: _truth(np.equal),
+    ca.OP_NE: _truth(np.not_equal),
+    ca.OP_NOT: _truth(np.logical_not),
+    ca.OP_AND: _truth(np.logical_and),
+    ca.OP_OR: _truth(np.logical_or),
 }
 _ARITHMETIC |= {
     code: getattr(np, name)
     for code, name in codes("sin cos tan sinh cosh tanh exp log log1p expm1").items()
 }
-_TRUTHS: dict[int, Callable[..., Any]] = {
-    ca.OP_LT: np.less,
-    ca.OP_LE: np.less_equal,
-    ca.OP_EQ: np.equal,
-    ca.OP_NE: np.not_equal,
-    ca.OP_NOT: np.logical_not,
-    ca.OP_AND: np.logical_and,
-    ca.OP_OR: np.logical_or,
-}
-_KNOWN = {ca.OP_CONST, ca.OP_INPUT, ca.OP_OUTPUT, *_ARITHMETIC, *_TRUTHS}
+_KNOWN = {ca.OP_CONST, ca.OP_INPUT, ca.OP_OUTPUT, *_ARITHMETIC}

@@ -102,13 +102,13 @@ class TableFile:
             )
         import openpyxl
         from openpyxl.cell import WriteOnlyCell
+        from openpyxl.utils import get_column_letter
 
         book = openpyxl.Workbook(write_only=True)
         sheet = book.create_sheet("table")
         sheet.freeze_panes = "A2"
-        letter = openpyxl.utils.get_column_letter
         for column, words in enumerate(heads, 1):
-            sheet.column_dimensions[letter(column)].width = max(len(words) + 2, _WIDTH)
+            sheet.column_dimensions[get_column_letter(column)].width = max(len(words) + 2, _WIDTH)
         made = partial(_cell, WriteOnlyCell, sheet)
         try:
             with closing(sheet):
