@@ -17,7 +17,10 @@ import warnings
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from pickle import PicklingError
 
-_LONG = 300
+_FEW = 40
+"""Characters that a list of names takes at most, where there is little room."""
+
+_LONG = 293
 """Characters of names that a message takes at most."""
 
 _MOST = 2000
@@ -71,6 +74,15 @@ def shown(value: object) -> str:
     except Exception:  # of a class that is not ours, and of whole numbers with thousands of digits
         text = f"a {type(value).__name__}"
     return text if len(text) <= _SHOWN else f"{text[: _SHOWN - 3]}..."
+
+
+def listed(names: Iterable[str], empty: str = "none", room: int = _FEW) -> str:
+    """Names with commas between: as many as there is room for, and how many more there are."""
+    left = list(names)
+    begun = [left.pop(0)] if left else []
+    while left and len(", ".join([*begun, left[0]])) <= room:
+        begun.append(left.pop(0))
+    return (", ".join(begun) or empty) + (f" and {len(left)} more" if left else "")
 
 
 def warn(words: str, category: type[Warning] = UserWarning) -> None:
@@ -149,17 +161,14 @@ class UnknownNameError(DeclarationError, KeyError):
     ) -> None:
         several = isinstance(name, (list, tuple)) and all(isinstance(other, str) for other in name)
         names, unknown = list(valid), list(dict.fromkeys(name)) if several else [str(name)]
-        listed = f"valid: {', '.join(names) or 'none are declared'}"
-        many = len(listed) > _LONG
-        if many:
-            most = listed[:_LONG].count(", ")
-            listed = f"valid: {', '.join(names[:most])} and {len(names) - most} more"
-            if listed_by:
-                listed = f"{listed_by} lists the {len(names)} there are"
+        many = len(", ".join(names)) > _LONG
+        valid_names = f"valid: {listed(names, 'none are declared', _LONG)}"
+        if many and listed_by:
+            valid_names = f"{listed_by} lists the {len(names)} there are"
         unknown_names = ", ".join(f"'{other}'{_hint(other, names, many)}" for other in unknown)
         super().__init__(
             f"{f'{place}: ' if place else ''}unknown {kind}{'s' if len(unknown) > 1 else ''}"
-            f" {unknown_names}; {listed}"
+            f" {unknown_names}; {valid_names}"
         )
 
 

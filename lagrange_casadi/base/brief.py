@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import fields
 from typing import TYPE_CHECKING, NoReturn
 
@@ -16,9 +16,6 @@ LONGEST = 200
 
 _FEW = 4
 """Numbers of an array, and entries of a collection, that are written out."""
-
-_NAMES = 40
-"""Characters that a list of names takes at most."""
 
 _VALUE = 60
 """Characters that a field takes at most."""
@@ -52,15 +49,6 @@ class Brief:
         text = f"{type(self).__name__}({each})"
         short = f"{text[: LONGEST - 6].rpartition(', ')[0]}, ...)"
         return text if len(text) <= LONGEST else short
-
-
-def listed(names: Iterable[str], empty: str = "none") -> str:
-    """Names with commas between: as many as take little room, and how many more there are."""
-    left = list(names)
-    begun = [left.pop(0)] if left else []
-    while left and len(", ".join([*begun, left[0]])) <= _NAMES:
-        begun.append(left.pop(0))
-    return (", ".join(begun) or empty) + (f" and {len(left)} more" if left else "")
 
 
 def _brief(value: object) -> str:

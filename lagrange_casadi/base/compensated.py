@@ -110,8 +110,8 @@ class Pairs:
             ca.OP_CEIL: lambda x: x if x.whole else self.negate(self._floor(self.negate(x))),
             ca.OP_FMOD: self.remainder,
             ca.OP_REMAINDER: self.nearest_remainder,
-            ca.OP_FMIN: lambda x, y: self._either(self._below(x, y), x, y),
-            ca.OP_FMAX: lambda x, y: self._either(self._below(x, y), y, x),
+            ca.OP_FMIN: lambda x, y: self._either(x, y, x, y),
+            ca.OP_FMAX: lambda x, y: self._either(x, y, y, x),
             ca.OP_IF_ELSE_ZERO: lambda where, x: _choose(where.value, x),
             ca.OP_ASSIGN: lambda x: x,
             ca.OP_CALL: self._looked_up,
@@ -216,11 +216,10 @@ class Pairs:
         high, low = lookup.parts(DTYPES[self.precision])
         return Pair(high(x.value), None if low is None else low(x.value), whole=True)
 
-    def _below(self, x: Pair, y: Pair) -> Operand:
-        return self._value(self.subtract(x, y)) < 0.0
-
-    def _either(self, where: Operand, x: Pair, y: Pair) -> Pair:
-        return self.add(_choose(where, x), _choose(ca.logic_not(where), y))
+    def _either(self, x: Pair, y: Pair, one: Pair, other: Pair) -> Pair:
+        """``one`` where x is below y, and elsewhere the ``other``."""
+        below = self._value(self.subtract(x, y)) < 0.0
+        return self.add(_choose(below, one), _choose(ca.logic_not(below), other))
 
     def _turning(self, x: Pair, function: Callable[[Operand], Operand], slope: Operand) -> Pair:
         angle = self.reduced(x)

@@ -296,8 +296,7 @@ class Table:
                 )
             found.append(numbers)
             before = " and ".join(cells)
-        columns: Array = np.array(found, float).reshape(-1, 1 + len(places)).T
-        return columns, clock
+        return np.array(found, float).reshape(-1, 1 + len(places)).T, clock
 
 
 def read_rows(

@@ -178,8 +178,7 @@ def loads(text: str, kinds: tuple[type[Any], ...]) -> Any:
 def _plain(tree: Any, leaf: Callable[[object], Json]) -> Json:
     kind = type(tree)
     if tree is None or kind in (bool, int) or isinstance(tree, str | float):
-        plain: Json = tree
-        return plain
+        return cast(Json, tree)
     if isinstance(tree, int):
         return {kind.__name__: [int(tree)]}
     if isinstance(tree, tuple | list):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from datetime import datetime
+from datetime import datetime, timezone
 from decimal import Decimal
 from typing import NamedTuple
 
@@ -16,9 +16,9 @@ from .numerals import plain
 from .units import EXACT, Unit
 
 _ISO = re.compile(
-    r"(\d{4}-\d\d-\d\d)[T ](\d\d:\d\d:\d\d)(\.\d+)?\s*(?:Z|([+-])(\d\d):?(\d\d))?", re.ASCII
+    r"(\d{4}-\d\d-\d\d)[T ](\d\d:\d\d:\d\d)(\.\d+)?\s*(?:Z|([+-]\d\d):?(\d\d))?", re.ASCII
 )
-_EPOCH = datetime(1970, 1, 1)
+_EPOCH = datetime(1970, 1, 1, tzinfo=timezone.utc)
 _UNIX = Decimal(10**8), Decimal(10**10)
 """Seconds since 1970 that are those of a log, of the years 1973 to 2286; what is less is a time."""
 
@@ -32,10 +32,10 @@ def stamp(cells: Sequence[str]) -> Decimal:
     Raises ``ValueError`` or ``ArithmeticError`` for what is no finite time.
     """
     if found := _ISO.fullmatch(cells[0]):
-        day, time, part, sign, hours, minutes = found.groups()
-        since = datetime.fromisoformat(f"{day} {time}") - _EPOCH
-        ahead = (int(hours) * 60 + int(minutes)) * 60 if sign else 0
-        whole = since.days * 86400 + since.seconds - (ahead if sign == "+" else -ahead)
+        day, time, part, hours, minutes = found.groups()
+        zone = f"{hours}:{minutes}" if hours else "+00:00"
+        since = datetime.fromisoformat(f"{day} {time}{zone}") - _EPOCH
+        whole = since.days * 86400 + since.seconds
         return EXACT.add(Decimal(whole), Decimal(f"0{part or ''}"))
     total = Decimal(0)
     for power, cell in zip((0, -9), cells, strict=False):

@@ -11,13 +11,12 @@ import casadi as ca
 import numpy as np
 
 from ..base.arrays import Array, Expression
-from ..base.brief import listed
 from ..base.quantities import Check, Column, Output
 from ..base.scalars import graph, inputs_of
 from ..base.symbolic import Graphs, symbolic, symbolic_property
 from ..base.templates import Leaf, Template, dumps, loads
 from ..base.vocabulary import Precision
-from ..errors import PickleError
+from ..errors import PickleError, listed
 from ..model.corners import Corners
 from ..model.declared_parts import Parameter
 from ..model.description import DESCRIBED, Description

@@ -17,14 +17,13 @@ from typing import TypeVar
 import casadi as ca
 
 from ..base.arguments import public
-from ..base.brief import listed
 from ..base.drawn import Drawing
 from ..base.methods import method
 from ..base.symbolic import symbolic
 from ..base.tables import FORCE, MOMENT
 from ..base.units import Number, quantity, typed
 from ..base.vectors import dot, minus, norm, times
-from ..errors import DeclarationError
+from ..errors import DeclarationError, listed
 from .beams.beam import Beam
 from .constraints import Constraint, Row
 from .declaration import Declaration

@@ -10,7 +10,6 @@ from types import MappingProxyType
 from typing import Any, NoReturn, get_args
 
 from ..base.arguments import Outputs, fitting, public, texts
-from ..base.brief import listed
 from ..base.drawn import Drawing
 from ..base.methods import method
 from ..base.symbolic import Graphs, symbolic, symbolic_property
@@ -23,6 +22,7 @@ from ..errors import (
     UnknownNameError,
     check_kind,
     check_known,
+    listed,
     shown,
 )
 from .declared_parts import Expression, Parameter

@@ -12,13 +12,12 @@ import numpy as np
 
 from ..base.arguments import public
 from ..base.arrays import Array
-from ..base.brief import listed
 from ..base.quantities import Output
 from ..base.vocabulary import Backend
 from ..engine.codegen.peak_search import Listed
 from ..engine.instants.evaluation_method import EvaluationMethod
 from ..engine.sharpness import Sharpness
-from ..errors import DeclarationError, check_known
+from ..errors import DeclarationError, check_known, listed
 from ..model.scene import Scene
 from ..results.sensitivity.ends import Ends
 from ..results.sensitivity.peak_derivatives import (

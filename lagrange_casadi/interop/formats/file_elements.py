@@ -14,8 +14,7 @@ from xml.parsers import expat
 import numpy as np
 
 from ...base.arrays import Array
-from ...base.brief import listed
-from ...errors import ModelFileError, shown
+from ...errors import ModelFileError, listed, shown
 from .record import Model
 
 if TYPE_CHECKING:

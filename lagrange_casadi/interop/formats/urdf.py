@@ -13,8 +13,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from ...base.brief import listed
-from ...errors import shown
+from ...errors import listed, shown
 from .file_elements import Element, note_unread, parsed, six_moments
 from .file_frames import Frame
 from .posture import outward

@@ -15,14 +15,13 @@ import numpy.typing as npt
 
 from ...base.arguments import LATER, Numeric, Outputs, ThreadCount, public
 from ...base.arrays import Array
-from ...base.brief import listed
 from ...base.status import Status
 from ...base.symbolic import symbolic_property
 from ...base.units import Number
 from ...base.vocabulary import Compiled, PeakSearch, Precision
 from ...engine.instants.evaluation_method import EvaluationMethod
 from ...engine.model_data import template
-from ...errors import AssemblyError, DeclarationError, UnknownNameError, check_known, shown
+from ...errors import AssemblyError, DeclarationError, UnknownNameError, check_known, listed, shown
 from ...model.scene import Scene
 from ...model.times import Over, Times
 from ...model.wanted_names import without_fitted, without_life

@@ -18,7 +18,6 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.arguments import LATER, Outputs, public, texts
-from ...base.brief import listed
 from ...base.methods import method
 from ...errors import (
     DeclarationError,
@@ -28,6 +27,7 @@ from ...errors import (
     UnknownNameError,
     check_kind,
     check_known,
+    listed,
     one_line,
     shown,
 )
