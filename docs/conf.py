@@ -14,7 +14,7 @@ from sphinx import addnodes
 from sphinx.util.nodes import make_refnode
 
 import lagrange_casadi
-from lagrange_casadi.base.tables import QUANTITIES, SPATIAL_QUANTITIES
+from lagrange_casadi.base.tables import PLANE, SPACE
 
 HERE = Path(__file__).parent
 CASES = HERE.parent / "cases"
@@ -221,8 +221,8 @@ def quantities(_app):
         "| /t | t | s | time | |",
         "| /xi | xi | 1 | position along a link, ratio xi/l | |",
     ]
-    others = [quantity for quantity in SPATIAL_QUANTITIES if quantity not in QUANTITIES]
-    write_table(folder / "quantities.txt", [*axes, *map(row, QUANTITIES)])
+    others = [quantity for quantity in SPACE.rows if quantity not in PLANE.rows]
+    write_table(folder / "quantities.txt", [*axes, *map(row, PLANE.rows)])
     write_table(folder / "quantities_in_space.txt", map(row, others))
 
 
