@@ -44,9 +44,12 @@ class Brief:
         __getattr__ = no_attribute
 
     def __repr__(self) -> str:
-        entries = [entry.name for entry in fields(self) if entry.repr]  # type: ignore[arg-type]
-        each = ", ".join(f"{name}={_brief(getattr(self, name, None))}" for name in entries)
-        text = f"{type(self).__name__}({each})"
+        each = [
+            f"{entry.name}={_brief(getattr(self, entry.name, None))}"
+            for entry in fields(self)  # type: ignore[arg-type]
+            if entry.repr
+        ]
+        text = f"{type(self).__name__}({', '.join(each)})"
         short = f"{text[: LONGEST - 6].rpartition(', ')[0]}, ...)"
         return text if len(text) <= LONGEST else short
 

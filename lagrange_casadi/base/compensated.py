@@ -120,11 +120,9 @@ class Pairs:
 
     def constant(self, value: float) -> Pair:
         """A double, in as many parts as it takes."""
-        kind = DTYPES[self.precision].type
-        with np.errstate(over="ignore"):
-            high = float(kind(value))
-        low = float(kind(value - high)) if np.isfinite(high) else 0.0
-        return Pair(ca.SX(high), ca.SX(low) if low else None, value)
+        high = self._rounded(value)
+        low = self._rounded(value - float(high)) if np.isfinite(float(high)) else ca.SX(0)
+        return Pair(high, None if low.is_zero() else low, value)
 
     @property
     def turn(self) -> Pair:

@@ -139,8 +139,7 @@ class Output:
 
     def components(self, table: Table) -> tuple[Output, ...]:
         """Outputs of which this is the resultant, or itself."""
-        members = table.parts(self.group, self.member)
-        return tuple(replace(self, member=member) for member in members)
+        return tuple(replace(self, member=part) for part in table.parts(self.group, self.member))
 
     @property
     def along(self) -> bool:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from datetime import datetime, timezone
+from datetime import datetime, timedelta, timezone
 from decimal import Decimal
 from typing import NamedTuple
 
@@ -35,8 +35,7 @@ def stamp(cells: Sequence[str]) -> Decimal:
         day, time, part, hours, minutes = found.groups()
         zone = f"{hours}:{minutes}" if hours else "+00:00"
         since = datetime.fromisoformat(f"{day} {time}{zone}") - _EPOCH
-        whole = since.days * 86400 + since.seconds
-        return EXACT.add(Decimal(whole), Decimal(f"0{part or ''}"))
+        return EXACT.add(Decimal(since // timedelta(seconds=1)), Decimal(f"0{part or ''}"))
     total = Decimal(0)
     for power, cell in zip((0, -9), cells, strict=False):
         total = EXACT.add(total, EXACT.create_decimal(plain(cell)).scaleb(power, EXACT))

@@ -145,8 +145,7 @@ class Unit(NamedTuple):
 
         Raises ``ArithmeticError`` for digits of a number that is far beyond doubles.
         """
-        decimal = EXACT.create_decimal(digits)
-        return float(EXACT.multiply(decimal, self.size)) * math.pi**self.turns
+        return float(EXACT.multiply(EXACT.create_decimal(digits), self.size)) * math.pi**self.turns
 
     @property
     def factor(self) -> float:
