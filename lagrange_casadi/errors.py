@@ -162,7 +162,8 @@ class UnknownNameError(DeclarationError, KeyError):
         several = isinstance(name, (list, tuple)) and all(isinstance(other, str) for other in name)
         names, unknown = list(valid), list(dict.fromkeys(name)) if several else [str(name)]
         many = len(", ".join(names)) > _LONG
-        valid_names = f"valid: {listed(names, 'none are declared', _LONG)}"
+        room = _LONG - len(", ") if many else _LONG
+        valid_names = f"valid: {listed(names, 'none are declared', room)}"
         if many and listed_by:
             valid_names = f"{listed_by} lists the {len(names)} there are"
         unknown_names = ", ".join(f"'{other}'{_hint(other, names, many)}" for other in unknown)
