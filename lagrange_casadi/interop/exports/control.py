@@ -21,7 +21,6 @@ def control(source: Source) -> dict[str, str]:
     efforts = [(k, m) for k, m in enumerate(c.outputs) if m.source.startswith("effort:")]
     if not efforts:
         raise DeclarationError(f"a header for controllers needs efforts; '{c.name}' exports none")
-    settings = bool(c.settings)
     loads = source.exported.program.data.content.loads
     friction = any(load.friction for load in loads.values())
     columns = [k for k, _ in efforts]
@@ -33,9 +32,14 @@ def control(source: Source) -> dict[str, str]:
         "time": ", double time" if c.timed else "",
         "time_given": ", time" if c.timed else "",
         "time_pair": ", ".join(c.split("time")),
-        "parameters": f"const {c.prefix}_parameters* parameters = nullptr" if settings else "",
-        "prepare": "&model_, parameters" if settings else "&model_",
-        **_between(source),
+        "parameters": f"const {c.prefix}_parameters* parameters = nullptr" if c.settings else "",
+        "prepare": "&model_, parameters" if c.settings else "&model_",
+        "or_between": ", or at a dead centre" if source.closing else "",
+        "from_before": (
+            " A dead centre on the straight way from the last call fails too."
+            if source.closing
+            else ""
+        ),
         "from_inputs": "\n".join(_from_inputs(source)),
         "to_inputs": "\n".join(_to_inputs(source)),
         "to_efforts": "\n".join(
@@ -54,37 +58,6 @@ def control(source: Source) -> dict[str, str]:
     return {
         f"{c.prefix}_control.hpp": template("control.hpp", **words),
         f"{c.prefix}_control_test.cpp": template("control_test.cpp", **words),
-    }
-
-
-def _between(source: Source) -> dict[str, str]:
-    """Members and statements that look for a dead centre between two calls."""
-    p, P = source.contract.prefix, source.contract.words["P"]
-    time = ", time" if source.contract.timed else ""
-    if not source.closing:
-        names = ("or_between", "anew", "from_before", "members")
-        call = f"    return at(model_, given(q, dq, ddq{time}), tau);"
-        return {**dict.fromkeys(names, ""), "call": call}
-    call = f"""\
-    const {p}_inputs inputs = given(q, dq, ddq{time});
-    const {p}_model before = model_;
-    Efforts found;
-    {p}_status status = at(model_, inputs, found);
-    if (status == {P}_OK && begun_) status = {p}_between(&model_, &last_, &inputs, 0);
-    if (status != {P}_OK) {{
-      model_ = before;
-      return status;
-    }}
-    last_ = inputs;
-    begun_ = true;
-    tau = found;
-    return status;"""
-    return {
-        "or_between": ", or at a dead centre",
-        "anew": "\n    begun_ = false;",
-        "from_before": " A dead centre on the straight way from the last call fails too.",
-        "members": f"  {p}_inputs last_ = {{}};\n  bool begun_ = false;\n",
-        "call": call,
     }
 
 

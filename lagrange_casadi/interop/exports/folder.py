@@ -178,7 +178,7 @@ def _manifest(source: Source) -> dict[str, Json]:
         "parameters": [m.described(m.meaning) | {"default": m.default} for m in agreed.settings],
         "inputs": [m.described(m.meaning) for m in agreed.inputs],
         "outputs": [m.described(m.meaning) for m in agreed.outputs],
-        **({"sensitivities": [m.name for m in source.slopes.by]} if source.slopes else {}),
+        **({"sensitivities": [m.name for m in source.slopes.by]} if source.slopes.by else {}),
         "links": [{"name": link.name, "constant": link.constant} for link in agreed.links],
         "model": [
             {"name": name, "type": kind, "count": count} for name, kind, count in source.model

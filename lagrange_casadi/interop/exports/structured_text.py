@@ -117,7 +117,11 @@ class _Block:
     def declared(self) -> Iterator[str]:
         """Yield declarations of variables."""
         for name, size in self.arrays.items():
-            start = f" := [{', '.join(map(_number, self.source.guess))}]" if name == "z" else ""
+            start = (
+                f" := [{', '.join(map(_number, self.source.exported.guess))}]"
+                if name == "z"
+                else ""
+            )
             yield f"{name} : ARRAY[0..{size - 1}] OF LREAL{start};"
         if "z" in self.arrays:
             yield "k : DINT;\nsize : LREAL;\nbefore : LREAL;"

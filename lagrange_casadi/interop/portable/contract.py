@@ -26,9 +26,6 @@ from .naming import constants, members, prefix
 REST = "rest:"
 """First part of the full name of a rest."""
 
-CORNERS = "Corners of motions, constraints and lifts were checked with the default parameters only."
-"""Note for whoever changes parameters."""
-
 FAINT = 1e-9
 """Relative size below which a value is written as zero, for its digits are rounding."""
 

@@ -48,7 +48,7 @@ def check_size(exported: ExportedProgram, limit: int) -> None:
         ("what curves and motions by samples look up", curves),
         ("the table of the cycle", cycle),
     ):
-        size = numbers * (4 if exported.precision == "single" else 8)
+        size = numbers * (4 if exported.contract.rests else 8)
         if size > limit:
             raise SizeError(
                 f"{what} takes {size} bytes of constants, and the limit is {limit}: take fewer"
@@ -64,7 +64,7 @@ def table_text(exported: ExportedProgram) -> str:
     text = written("interpolate.c")
     for pattern, words in _ALONE.items():
         text = re.sub(pattern, words, text, flags=re.MULTILINE)
-    text = text.replace("floor(", f"{function_name('floor', exported.precision)}(")
+    text = text.replace("floor(", f"{function_name('floor', exported.contract.precision)}(")
     reals = {"cell": cycle.cell, "slopes": cycle.slopes, "coefficients": cycle.coefficients}
     for name, values in reals.items():
         text += _array("casadi_real", name, map(exported.number, values.ravel().tolist()))

@@ -28,13 +28,14 @@ from ...engine.instants.tabulate import still
 from ...engine.program import Program
 from ...engine.section_function import SectionInputs, section
 from ...model.limits import END
+from .contract import Contract
 from .exported_calls import CALLS
 from .statuses import ANSWERS
 
 
 @dataclass(frozen=True, eq=False)
 class ExportedProgram:
-    """Source of an exported program.
+    """Source of an exported program: the functions of a ``program`` that a ``contract`` offers.
 
     ``columns`` are those of a table or of ``functions``, in order. ``cycle`` is a table to be read
     instead of an instant, and ``still`` are stations that are given beside it, for they do not
@@ -44,7 +45,7 @@ class ExportedProgram:
     """
 
     program: Program
-    precision: Precision
+    contract: Contract
     functions: Mapping[str, ca.Function]
     columns: tuple[Column, ...]
     newton: int | None
@@ -69,11 +70,22 @@ class ExportedProgram:
     @property
     def number(self) -> Format:
         """Literal of C for a number of the precision."""
-        return literal(self.precision)
+        return literal(self.contract.precision)
 
     def column(self, output: str) -> str:
-        """The column of an output, by its full name, as C and other languages write it."""
-        return f"y[{self.columns.index(Output.of(output))}]"
+        """The column of an output, by its full name, as C and other languages write it; of what
+        stands still its number.
+        """
+        named = Output.of(output)
+        if named in self.still:
+            return self.number(self.still[named])
+        return f"y[{self.columns.index(named)}]"
+
+    @property
+    def guess(self) -> Sequence[float]:
+        """The unknowns of iterated loops at which these begin."""
+        newton = self.program.newton
+        return newton.guess if newton is not None and "loops" in self.functions else ()
 
     def answers(self) -> Iterator[str]:
         """Answer for each rule that may be broken, by its number."""
@@ -85,7 +97,7 @@ class ExportedProgram:
     def zeros(self) -> list[float]:
         """Limits below which the squares of ``closing`` are zero within rounding."""
         program = self.program
-        most = program.limits(self.precision, self.newton, 0.0)
+        most = program.limits(self.contract.precision, self.newton, 0.0)
         return [
             float(limit) ** 2 if bound.beside == "BRANCH" else float(limit)
             for bound, limit in zip(program.bounds, most, strict=True)
@@ -96,7 +108,7 @@ class ExportedProgram:
 @symbolic
 def exported(
     program: Program,
-    precision: Precision,
+    contract: Contract,
     newton: int | None,
     p: Array,
     cycle: CycleTable | None,
@@ -104,7 +116,7 @@ def exported(
     """The program of a graph; ``cycle`` is a table to be read for parameters ``p``, by the graph of
     the drive alone.
     """
-    fixed = cycle is not None
+    precision, fixed = contract.precision, cycle is not None
     evaluated = drive_of(program) if fixed else program
     stages = controlled(evaluated, precision, tuple(p.tolist()) if fixed else None)
     hidden = {*evaluated.checks("turns").values(), *evaluated.checks("multiplier").values()}
@@ -137,7 +149,7 @@ def exported(
     filled = {name: f for name, f in functions.items() if f is not None and f.size1_out(0)}
     return ExportedProgram(
         program,
-        precision,
+        contract,
         filled,
         columns,
         newton,

@@ -21,7 +21,7 @@ from ...results.sensitivity.jacobian import total
 from ...results.sensitivity.series import at_instants
 from .contract import Contract, Member
 from .exported_calls import call
-from .text import comment, indented, member, number_rows, numbers, template
+from .text import comment, indented, member, template
 
 FUNCTION = "slopes_of"
 """Name of CasADi's function in C."""
@@ -34,16 +34,17 @@ derivative of its unit by the same parameter.
 
 @dataclass(frozen=True, eq=False)
 class ExportedSlopes:
-    """The derivatives of all outputs of a contract ``by`` some of its parameters.
+    """The derivatives of all outputs of a contract ``by`` some of its parameters, or by none.
 
-    ``function`` is :func:`.total`; ``expected`` (instants, outputs, parameters) are what it must
-    give at the instants of the self-test, each within ``off`` (outputs, parameters).
+    ``function`` is :func:`.total`; ``expected`` (instants, derivatives) are what it must give at
+    the instants of the self-test, each within ``off`` (derivatives): of each output those by all
+    parameters.
     """
 
-    by: tuple[Member, ...]
-    function: Any
-    expected: Array
-    off: Array
+    by: tuple[Member, ...] = ()
+    function: Any = None
+    expected: Sequence[Array] = ()
+    off: Sequence[float] = ()
 
 
 def exported_slopes(
@@ -64,7 +65,8 @@ def exported_slopes(
         same = [k for k, member in enumerate(contract.outputs) if member.unit == unit]
         off[same] += _FAINT * (largest[same].max(axis=0) + values[same].max() * over)
     settings = tuple(setting for setting in contract.settings if setting.source in by)
-    return ExportedSlopes(settings, function, found[np.searchsorted(t, chosen)], off)
+    expected = [at.ravel() for at in found[np.searchsorted(t, chosen)]]
+    return ExportedSlopes(settings, function, expected, off.ravel().tolist())
 
 
 def check_method(method: EvaluationMethod) -> None:
@@ -76,19 +78,17 @@ def check_method(method: EvaluationMethod) -> None:
         )
 
 
-def types(c: Contract, slopes: ExportedSlopes) -> str:
-    """The structs, for the header."""
-    rows = (
-        member(c.prefix, s.name, f"by {s.meaning}, for a unit of it [{s.unit}]") for s in slopes.by
-    )
-    units = ("; ".join(quotient(m.unit, s.unit) for s in slopes.by) for m in c.outputs)
-    members = (
-        f"  {c.prefix}_changes {m.name}; /* [{comment(unit)}] */"
-        for m, unit in zip(c.outputs, units, strict=True)
-    )
-    return template(
-        "sensitivity_types.h", **c.words, rows="\n".join(rows), members="\n".join(members)
-    )
+def changes(c: Contract, slopes: ExportedSlopes) -> Iterator[str]:
+    """Yield the members of the struct that has the derivatives of an output."""
+    for s in slopes.by:
+        yield member(c.prefix, s.name, f"by {s.meaning}, for a unit of it [{s.unit}]")
+
+
+def sensitivities(c: Contract, slopes: ExportedSlopes) -> Iterator[str]:
+    """Yield the members of the struct that has such a struct for each output."""
+    for m in c.outputs:
+        units = "; ".join(quotient(m.unit, s.unit) for s in slopes.by)
+        yield f"  {c.prefix}_changes {m.name}; /* [{comment(units)}] */"
 
 
 def code(c: Contract, slopes: ExportedSlopes) -> str:
@@ -111,39 +111,10 @@ def _given(c: Contract, slopes: ExportedSlopes) -> Iterator[str]:
     yield from call({FUNCTION: slopes.function}, FUNCTION)
 
 
-def selftest_numbers(slopes: ExportedSlopes) -> str:
-    """Expected values of the self-test."""
-    many = slopes.off.size
-    rows = number_rows(slopes.expected.reshape(-1, many))
-    return (
-        "\n/* How the outputs change with each parameter. */\n"
-        f"static const double slopes_at[INSTANTS][{many}] = {{\n{rows}\n}};\n"
-        f"static const double slopes_off[{many}] = {{{numbers(slopes.off.ravel())}}};\n"
-    )
-
-
-def selftest_function(c: Contract, slopes: ExportedSlopes) -> str:
-    """Comparison in the self-test."""
-    pairs = itertools.product(c.outputs, slopes.by)
-    compared = (
-        f'compare("{m.name} by {s.name}", slopes_at[k][{i}], (double) found.{m.name}.{s.name},'
-        f" slopes_off[{i}], 0);"
-        for i, (m, s) in enumerate(pairs)
-    )
-    first, by = c.outputs[0].name, slopes.by[0].name
-    return template(
-        "selftest_sensitivity.c",
-        **c.words,
-        compared=indented(compared),
-        first=f"{first}.{by}",
-    )
-
-
-def in_readme(c: Contract, slopes: ExportedSlopes) -> str:
-    """Part of the folder's README on derivatives."""
-    by = ", ".join(f"`{s.name}`" for s in slopes.by)
-    return (
-        f"\n## Sensitivities\n\n`{c.prefix}_sensitivity` gives the outputs of an instant and their"
-        f" exact derivatives by {by}:\n`sensitivities.{c.outputs[0].name}.{slopes.by[0].name}`, in"
-        " the output's unit over the parameter's.\n"
-    )
+def compared(c: Contract, slopes: ExportedSlopes) -> Iterator[str]:
+    """Yield the comparisons of the self-test."""
+    for i, (m, s) in enumerate(itertools.product(c.outputs, slopes.by)):
+        yield (
+            f'compare("{m.name} by {s.name}", slopes_at[k][{i}], (double) found.{m.name}.{s.name},'
+            f" slopes_off[{i}], 0);"
+        )

@@ -8,7 +8,8 @@ import functools
 import itertools
 import re
 from collections.abc import Callable, Mapping, Sequence
-from importlib import resources
+
+from .text import template
 
 _LONGEST = 200
 """Letters of a prefix: names of files, which are longer by up to 17, may have 255."""
@@ -17,8 +18,7 @@ _LONGEST = 200
 @functools.cache
 def taken_words(kind: str) -> frozenset[str]:
     """Return the words of a kind that are taken, a section of ``reserved.txt``."""
-    text = (resources.files(__package__) / "templates" / "reserved.txt").read_text()
-    section = text.partition(f"[{kind}]\n")[2].partition("\n[")[0]
+    section = template("reserved.txt").partition(f"[{kind}]\n")[2].partition("\n[")[0]
     return frozenset(
         word for line in section.splitlines() if not line.startswith("#") for word in line.split()
     )

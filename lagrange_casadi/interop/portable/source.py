@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -10,16 +11,17 @@ import casadi as ca
 import numpy as np
 
 from ...base.arrays import Array
-from ...engine.codegen.printer import print_functions
+from ...engine.codegen.printer import function_name, print_functions
 from ...version import __version__
 from .contract import Contract
+from .data import table_text
 from .exported_calls import MODEL
 from .exported_program import ExportedProgram
 from .exported_slopes import ExportedSlopes
 from .exported_slopes import code as sensitivity
 from .golden import Golden
 from .sections import functions
-from .statements import Statements
+from .statements import between, closing_loops, instant, motion, prepare, put
 from .statuses import STATUSES
 from .text import comment, indented, quoted, template
 
@@ -28,60 +30,84 @@ from .text import comment, indented, quoted, template
 class Source:
     """Data from which header and source are written.
 
-    ``identity`` is the hash of the scene, ``guess`` where iterated loops begin, ``method`` the
-    options by which it is evaluated, ``values`` are the parameters, of which a table leaves none
-    open, and ``golden`` what it must compute, ``slopes`` the derivatives of its outputs, where they
-    are wanted.
+    ``identity`` is the hash of the scene, ``method`` the options by which it is evaluated,
+    ``values`` are the parameters, of which a table leaves none open, ``golden`` is what it must
+    compute, and ``slopes`` are the derivatives of its outputs that are wanted.
     """
 
-    contract: Contract
     exported: ExportedProgram
     identity: str
-    guess: Sequence[float]
     method: str
     values: Mapping[str, float]
     golden: Golden
-    slopes: ExportedSlopes | None = None
+    slopes: ExportedSlopes
+
+    @property
+    def contract(self) -> Contract:
+        """The interface."""
+        return self.exported.contract
 
     @cached_property
     def code(self) -> str:
         """The source: ``<prefix>.c``."""
-        written = Statements(self.contract, self.exported, self.guess)
-        sections = functions(self.contract, self.exported) if self.contract.links else ""
-        if self.slopes is not None:
-            sections += sensitivity(self.contract, self.slopes)
+        c, exported, P = self.contract, self.exported, self.contract.words["P"]
+        number = exported.number
+        sections = functions(exported) if c.links else ""
         return template(
             "mechanism.c",
             **self.words,
-            includes="\n#include <string.h>" if self.exported.cycle is not None else "",
-            graph=print_functions(self.exported.functions, self.contract.precision, prefix="graph"),
+            includes="\n#include <string.h>" if exported.cycle is not None else "",
+            graph=print_functions(exported.functions, c.precision, prefix="graph"),
             seal=f"0x{self.identity[:8]}u",
-            helpers=written.helpers(),
-            put=indented(written.put()),
-            defaults=written.defaults(),
-            prepare=indented(written.prepare()),
-            motion=indented(written.motion()),
-            instant=indented(written.instant()),
-            between=written.between(),
-            rows=len(self.exported.columns),
-            sections=sections,
+            turning=bool(exported.program.loop_angles),
+            turn=number(math.tau),
+            half=number(0.5),
+            ceil=function_name("ceil", c.precision),
+            loops=closing_loops(exported) if self.iterated else "",
+            rules=bool(exported.program.rules),
+            broken=", ".join(f"{P}_{name}" for name in exported.answers()),
+            tables=table_text(exported),
+            put=indented(put(exported)),
+            defaults=",\n".join(f"  {number(m.default)} /* {m.name} */" for m in c.settings),
+            prepare=indented(prepare(exported)),
+            motion=indented(motion(exported)),
+            instant=indented(instant(exported)),
+            between=between(exported) if self.closing else "",
+            rows=len(exported.columns),
+            sections=sections + (sensitivity(c, self.slopes) if self.slopes.by else ""),
             messages="\n".join(
-                f'  case {self.words["P"]}_{key}:\n    return "{text}";'
-                for key, text in STATUSES.items()
+                f'  case {P}_{key}:\n    return "{text}";' for key, text in STATUSES.items()
             ),
         )
 
     @property
-    def words(self) -> dict[str, str]:
-        """Values of every template."""
-        c = self.contract
-        return c.words | {
+    def words(self) -> dict[str, object]:
+        """Values of every template.
+
+        Of parameters, links and derivatives ``setting``, ``link`` and ``by`` name the first, and
+        are empty where there is none.
+        """
+        c, (coordinate, output) = self.contract, self.contract.shown
+        return {
+            **c.words,
+            "setting": c.settings[0].name if c.settings else "",
+            "link": c.links[0].name if c.links else "",
+            "constant": c.links[0].constant if c.links else "",
+            "by": self.slopes.by[0].name if self.slopes.by else "",
+            "coordinate": coordinate.name,
+            "output": output.name,
+            "first_output": c.outputs[0].name,
+            "iterated": self.iterated,
+            "closing": self.closing,
             "name": comment(c.name),
             "called": quoted(c.name).replace("%", "%%"),  # in a format of printf's
             "space": " " * (2 * len(c.prefix) + 9),
             "and_parameters": f", const {c.prefix}_parameters* parameters" if c.settings else "",
             "and_defaults": ", 0" if c.settings else "",
             "and_rest": f", {c.prefix}_real time_rest" if c.rests else "",
+            "and_zero": ", 0" if c.rests else "",
+            "corners": "Corners of motions, constraints and lifts were checked with the default"
+            " parameters only.",
             "version": __version__,
             "casadi": ca.CasadiMeta.version(),
             "scene": self.identity,
@@ -101,18 +127,12 @@ class Source:
     def story(self) -> str:
         """Description of the evaluation, its accuracy, and its fixed numbers."""
         error, output = self.golden.worst
-        text = f"In {self.contract.precision} precision; options of the export: {self.method}. "
-        text += (
-            f"Its outputs are off by about {error:.0e} of their largest values over the scene's"
-            f" motion at most ({output})."
+        fixed = ", ".join(f"{name} = {value:.6g}" for name, value in self.fixed.items())
+        return (
+            f"In {self.contract.precision} precision; options of the export: {self.method}. Its"
+            f" outputs are off by about {error:.0e} of their largest values over the scene's motion"
+            f" at most ({output}).{f' Fixed here: {fixed}.' if fixed else ''}"
         )
-        if self.fixed:
-            text += (
-                " Fixed here: "
-                + ", ".join(f"{name} = {value:.6g}" for name, value in self.fixed.items())
-                + "."
-            )
-        return text
 
     @property
     def iterated(self) -> bool:
@@ -136,8 +156,3 @@ class Source:
             *closed,
             *((name, "real", sizes[name]) for name in MODEL if sizes[name]),
         ]
-
-    @property
-    def span(self) -> tuple[float, float]:
-        """The times [s] that all motions cover."""
-        return self.exported.program.laws.span

@@ -26,7 +26,7 @@ from ...studies.evaluate import evaluate
 from .contract import contract
 from .data import check_size
 from .exported_program import exported
-from .exported_slopes import FUNCTION, check_method, exported_slopes
+from .exported_slopes import FUNCTION, ExportedSlopes, check_method, exported_slopes
 from .golden import golden
 from .source import Source
 
@@ -89,12 +89,11 @@ def sourced(
         )
     cycle = None if table is None else table_of(compiled, solution.t, p, method)
     agreed = contract(compiled, name, precision, solution, indeterminate, fixed=table is not None)
-    emitted = exported(compiled, precision, newton, p, cycle)
+    emitted = exported(compiled, agreed, newton, p, cycle)
     check_size(emitted, largest)
-    guess = compiled.newton.guess if compiled.newton is not None and cycle is None else ()
-    vectors = golden(whole, agreed, solution, exact, p)
-    slopes = exported_slopes(compiled, agreed, by, p, exact.t, vectors.times) if by else None
-    if slopes is not None:
+    vectors, slopes = golden(whole, agreed, solution, exact, p), ExportedSlopes()
+    if by:
+        slopes = exported_slopes(compiled, agreed, by, p, exact.t, vectors.times)
         emitted = replace(emitted, functions={**emitted.functions, FUNCTION: slopes.function})
     declared_hash = hashlib.sha256(f"{declared}\0{json.dumps(values)}".encode()).hexdigest()[:32]
-    return Source(agreed, emitted, declared_hash, guess, method.options, values, vectors, slopes)
+    return Source(emitted, declared_hash, method.options, values, vectors, slopes)

@@ -11,11 +11,22 @@ from string import Template
 from ...engine.codegen.printer import literal
 
 WIDTH = 128
+double = literal("double")
+
+_PART = re.compile(r"^\$if (not )?(\w+)\n(.*?)^\$end \2\n", re.DOTALL | re.MULTILINE)
 
 
 def template(file: str, /, **words: object) -> str:
-    """A template of this package, filled in."""
-    text = (resources.files(__package__) / "templates" / file).read_text()
+    """A template of this package, filled in.
+
+    Its lines between ``$if WORD`` and ``$end WORD`` are left out where that word is empty or false,
+    those after ``$if not WORD`` where it is not.
+    """
+
+    def kept(part: re.Match[str]) -> str:
+        return _PART.sub(kept, part[3]) if bool(words[part[2]]) is not bool(part[1]) else ""
+
+    text = _PART.sub(kept, (resources.files(__package__) / "templates" / file).read_text())
     return Template(text).substitute({key: str(word) for key, word in words.items()})
 
 
@@ -60,7 +71,7 @@ def member(p: str, name: str, about: str) -> str:
 
 def numbers(values: Iterable[float]) -> str:
     """Doubles of C with commas between."""
-    return ", ".join(literal("double")(float(value)) for value in values)
+    return ", ".join(double(float(value)) for value in values)
 
 
 def number_rows(table: Iterable[Iterable[float]]) -> str:

@@ -10,7 +10,6 @@ import re
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from importlib import resources
 
 import numpy as np
 
@@ -88,11 +87,6 @@ def _size_check(source: Source) -> str:
     )
 
 
-def engine() -> str:
-    """The JavaScript by which a module is called."""
-    return (resources.files(__package__) / "templates" / "engine.js").read_text()
-
-
 def layout(source: Source) -> dict[str, int | str]:
     """Layout of the C's structs for the wrapper: the number of numbers in each, and the bytes of a
     model.
@@ -128,7 +122,7 @@ def wasm(source: Source) -> dict[str, bytes]:
     c, content = source.contract, _build(source, {}, _ALONE)()
     texts = {
         f"{c.prefix}.js": template(
-            "wasm.js", **_words(source), contract=_contract(source), engine=engine()
+            "wasm.js", **_words(source), contract=_contract(source), engine=template("engine.js")
         ),
         f"{c.prefix}.d.ts": _types(source),
         "README.wasm.md": _page(source, len(content)),
@@ -136,7 +130,7 @@ def wasm(source: Source) -> dict[str, bytes]:
     return {f"{c.prefix}.wasm": content} | {file: text.encode() for file, text in texts.items()}
 
 
-def _words(source: Source) -> dict[str, str]:
+def _words(source: Source) -> dict[str, object]:
     """Words of a comment's line."""
     return source.words | {"name": " ".join(comment(source.contract.name).split())}
 
@@ -192,31 +186,13 @@ def _types(source: Source) -> str:
 
 
 def _page(source: Source, size: int) -> str:
-    c, t = source.contract, source.golden.times
-    setting, link = next(iter(c.settings), None), next(iter(c.links), None)
-    first = f"mechanism.evaluate(mechanism.motion({t[0]:.6g}))"
-    followed = (
-        "\n- Iterated loops are followed from the instant before: times must be near each other,"
-        " and begin where the scene's\n  motion does."
-        if source.iterated
-        else ""
-    )
+    c, times = source.contract, source.golden.times
     return template(
         "wasm.md",
-        **_words(source) | {"name": markdown(c.name)},
+        **source.words | {"name": markdown(c.name)},
         size=size,
-        prepare=(
-            f"mechanism.prepare({{ {setting.name}: {setting.default:.6g} }});"
-            if setting
-            else "mechanism.prepare();"
-        ),
-        times=", ".join(f"{time:.6g}" for time in t[:3]),
-        output=c.shown[1].name,
-        section=(
-            f"console.log(mechanism.section({first}, {json.dumps(link.name)}, 0.5));\n"
-            if link
-            else ""
-        ),
-        followed=followed,
+        default="".join(f"{m.default:.6g}" for m in c.settings[:1]),
+        first=f"{times[0]:.6g}",
+        times=", ".join(f"{time:.6g}" for time in times[:3]),
         story=source.story,
     )

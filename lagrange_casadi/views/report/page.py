@@ -21,7 +21,7 @@ from string import Template
 from ...base.arrays import Json
 from ...base.files import writing
 from ...errors import DeclarationError
-from ...interop.portable.wasm import engine
+from ...interop.portable.text import template
 from ...model.scene import Scene
 from ...results.solution import Solution
 from ...studies.evaluate import evaluate
@@ -176,7 +176,7 @@ def policy(
 
 def viewer(live: bool) -> list[str]:
     """The sources of the viewer, with the engine where it is ``live``."""
-    alive = [engine(), *map(script, LIVE_SCRIPTS)] if live else []
+    alive = [template("engine.js"), *map(script, LIVE_SCRIPTS)] if live else []
     return [*alive, *map(script, SCRIPTS)]
 
 

@@ -31,13 +31,33 @@ using Inertia = std::array<std::array<double, coordinates_count>, drives_count>;
 class Control {
  public:
   /* Makes the model ready; to be called once before all else, and again after a failure of iterated loops$or_between. */
-  ${p}_status configure($parameters) {$anew
+  ${p}_status configure($parameters) {
+$if closing
+    begun_ = false;
+$end closing
     return ${p}_prepare($prepare);
   }
 
   /* Efforts that make the motion, with all loads of the scene.$from_before */
   ${p}_status efforts(const Motion& q, const Motion& dq, const Motion& ddq, Efforts& tau$time) {
-$call
+$if closing
+    const ${p}_inputs inputs = given(q, dq, ddq$time_given);
+    const ${p}_model before = model_;
+    Efforts found;
+    ${p}_status status = at(model_, inputs, found);
+    if (status == ${P}_OK && begun_) status = ${p}_between(&model_, &last_, &inputs, 0);
+    if (status != ${P}_OK) {
+      model_ = before;
+      return status;
+    }
+    last_ = inputs;
+    begun_ = true;
+    tau = found;
+    return status;
+$end closing
+$if not closing
+    return at(model_, given(q, dq, ddq$time_given), tau);
+$end closing
   }
 
   /* How efforts grow with accelerations, d tau/d ddq: the inertia that each drive sees. Exact, for efforts are linear in
@@ -71,7 +91,11 @@ $from_inputs
 
  private:
   ${p}_model model_ = {};
-$members
+$if closing
+  ${p}_inputs last_ = {};
+  bool begun_ = false;
+$end closing
+
   static ${p}_inputs given(const Motion& q, const Motion& dq, const Motion& ddq$time) {
     ${p}_inputs inputs = {};
 $to_inputs

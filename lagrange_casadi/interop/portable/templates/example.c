@@ -12,7 +12,10 @@ int main(void) {
   ${p}_model model;
   ${p}_inputs inputs;
   ${p}_outputs outputs;
-$declared  ${p}_status status;
+$if link
+  ${p}_forces forces;
+$end link
+  ${p}_status status;
   int k;
   status = ${p}_prepare(&model$and_defaults);
   if (status != ${P}_OK) return failed(status);
@@ -22,8 +25,16 @@ $declared  ${p}_status status;
     status = ${p}_motion(&model, time$rest, &inputs);
     if (status == ${P}_OK) status = ${p}_evaluate(&model, &inputs, &outputs);
     if (status != ${P}_OK) return failed(status);
-$skip    printf("%13.6g  %13.6g  %13.6g", (double) time, (double) inputs.$coordinate, (double) outputs.$output);
-$section    printf("\n");
+$if skip
+    if (k%$steps != 0) continue; /* the loops are followed in small steps */
+$end skip
+    printf("%13.6g  %13.6g  %13.6g", (double) time, (double) inputs.$coordinate, (double) outputs.$output);
+$if link
+    status = ${p}_section(&model, &outputs, $constant, $half, &forces);
+    if (status != ${P}_OK) return failed(status);
+    printf("   %13.6g", (double) forces.bending);
+$end link
+    printf("\n");
   }
   return 0;
 }

@@ -34,7 +34,11 @@
 
 typedef struct {
   ${p}_model model;
-$last  double values[VALUES];
+$if closing
+  ${p}_inputs last; /* those of the last instant that has outputs */
+  double last_time;
+$end closing
+  double values[VALUES];
   double outputs[OUTPUTS]; /* of the last instant that has some */
   double time, reached;
   unsigned mode;
@@ -103,20 +107,85 @@ static void set_time(State* state, double time) {
   state->time = time;
 }
 
-$limits/* A model of the present parameters; loops stay where they are. */
+$if setting
+static const struct {
+  const char* name;
+  double low, high;
+} limits[PARAMETERS] = {
+$limits
+};
+
+static int refused(const Unit* unit, unsigned k, double value) {
+  char which[128];
+  if (value - value == 0 && value >= limits[k].low && value <= limits[k].high) return 0;
+  snprintf(which, sizeof which, "%.64s = %.9g: ", limits[k].name, value);
+  report(unit, fmi2Error, which, ${p}_message(${P}_BAD_PARAMETER));
+  return 1;
+}
+
+$end setting
+/* A model of the present parameters; loops stay where they are. */
 static fmi2Status prepare(Unit* unit) {
   State* state = &unit->state;
   ${p}_model model;
   ${p}_status status;
-$given  if (state->prepared && state->begun) return fmi2OK;
-$set  status = ${p}_prepare($prepared);
+$if setting
+  ${p}_parameters parameters;
+$end setting
+  if (state->prepared && state->begun) return fmi2OK;
+$if setting
+$set
+  status = ${p}_prepare(&model, &parameters);
+$end setting
+$if not setting
+  status = ${p}_prepare(&model);
+$end setting
   if (status != ${P}_OK) return judged(unit, status);
 $carried  state->model = model;
   state->prepared = 1;
   return fmi2OK;
 }
 
-$reached
+$if inside
+
+/* The scene's motion at a time. */
+static ${p}_status motion(const ${p}_model* model, double time, ${p}_inputs* inputs) {
+  return ${p}_motion(model, $time, inputs);
+}
+$end inside
+$if place
+
+static ${p}_status ahead(const ${p}_model* model, double time, double place, ${p}_inputs* inputs, double* gap) {
+  const ${p}_status status = motion(model, time, inputs);
+  *gap = $sign($value - place);
+  return status;
+}
+
+/* The scene's motion where ${sought} is at a place. It always goes one way: from the scene's times the search widens until the
+   place is between two times, and halves them as long as doubles are between. */
+static ${p}_status reach(const ${p}_model* model, double place, ${p}_inputs* inputs) {
+  double low = $low, high = $high, width = high - low, middle, gap, beyond;
+  ${p}_status status;
+  for (;; width *= 2) {
+    status = ahead(model, low, place, inputs, &gap);
+    if (status == ${P}_OK) status = ahead(model, high, place, inputs, &beyond);
+    if (status != ${P}_OK) return status;
+    if (!(gap > 0 || beyond < 0)) break;
+    if (gap > 0 ? low <= $least : high >= $most) return ${P}_BAD_TIME;
+    if (gap > 0) low = low - width > $least ? low - width : $least;
+    else high = high + width < $most ? high + width : $most;
+  }
+  for (middle = low + (high - low)/2; low < middle && middle < high; middle = low + (high - low)/2) {
+    status = ahead(model, middle, place, inputs, &gap);
+    if (status != ${P}_OK) return status;
+    if (gap < 0) low = middle; else high = middle;
+  }
+  status = motion(model, high, inputs);
+$put
+  return status;
+}
+$end place
+
 static ${p}_status give(const State* state, ${p}_inputs* inputs) {
 $give
 }
@@ -140,12 +209,21 @@ static fmi2Status update(Unit* unit) {
   before = state->model;
   status = give(state, &inputs);
   if (status == ${P}_OK) status = ${p}_evaluate(&state->model, &inputs, &outputs);
-$between  state->status = judged(unit, status);
+$if closing
+  if (status == ${P}_OK && state->begun) {
+    status = ${p}_between(&state->model, &state->last, &inputs, (${p}_real) (state->time - state->last_time));
+  }
+$end closing
+  state->status = judged(unit, status);
   if (status != ${P}_OK) {
     state->model = before;
     return state->status;
   }
-$kept  take(&outputs, found);
+$if closing
+  state->last = inputs;
+  state->last_time = state->time;
+$end closing
+  take(&outputs, found);
   for (k = 0; k < OUTPUTS; ++k) {
     if (turning[k] && state->begun) found[k] += TURN*floor((state->outputs[k] - found[k])/TURN + 0.5);
     state->outputs[k] = found[k];

@@ -113,7 +113,13 @@ fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nv
   for (i = 0; i < nvr; ++i) {
     if (vr[i] >= VALUES) return report(unit, fmi2Error, "fmi2SetReal: no such input or parameter", "");
     if (state->values[vr[i]] == value[i]) continue;
-$check    state->values[vr[i]] = value[i];
+$if setting
+    if (vr[i] < PARAMETERS) {
+      if (refused(unit, vr[i], value[i])) return fmi2Error;
+      state->prepared = 0;
+    }
+$end setting
+    state->values[vr[i]] = value[i];
     state->current = 0;
   }
   return fmi2OK;

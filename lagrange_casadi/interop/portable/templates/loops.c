@@ -1,4 +1,3 @@
-
 /* Newton's method, from where the loops stood; there they are left where it fails. */
 static ${p}_status close_loops(${p}_model* model, const casadi_real* counted, int most, casadi_real done, casadi_real lost) {
   static const int turning[$nz] = {$turning};

@@ -39,7 +39,23 @@ static int all_finite(const casadi_real* x, int many) {
   for (k = most; k < many; ++k) a = a + x[k];
   return is_finite((a + b) + (c + d));
 }
-$helpers
+$if turning
+
+/* An angle without its whole turns, in (-pi, pi]. */
+static casadi_real direction(casadi_real angle) {
+  return angle - $turn*$ceil(angle/$turn - $half);
+}
+$end turning
+$if iterated
+
+$loops
+$end iterated
+$if rules
+
+/* What a broken rule says, by its number. */
+static const ${p}_status broken[] = {$broken};
+$end rules
+$tables
 /* Within another function its values are read ahead of all that is written, and kept on the stack. */
 #ifdef __GNUC__
 __attribute__((noinline))
@@ -47,7 +63,13 @@ __attribute__((noinline))
 static void put(const casadi_real* y, ${p}_outputs* outputs) {
 $put
 }
+$if setting
+
+const ${p}_parameters ${p}_defaults = {
 $defaults
+};
+$end setting
+
 ${p}_status ${p}_prepare(${p}_model* model$and_parameters) {
 $prepare
   model->seal = SEAL;

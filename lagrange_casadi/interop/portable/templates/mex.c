@@ -11,7 +11,14 @@
    inputs and outputs are structs of vectors, all with a number for each instant; outputs.status is 0 where all is well, and where
    it is not the other members are NaN. forces has matrices $matrices: a row for each instant, a column for each
    ratio; it wants the parameters that the outputs were evaluated with. parameters is a struct of numbers: what it does not name has
-   its default.$rests */
+$if rests
+   its default.
+   Numbers are doubles here: what single precision would round off a coordinate or a time is kept,
+   without a member of its own. */
+$end rests
+$if not rests
+   its default. */
+$end rests
 #include "${p}.h"
 
 #include "mex.h"
@@ -115,7 +122,25 @@ static void* added(mxArray* to, const char* name, size_t rows, size_t columns, m
 
 static void prepare(${p}_model* model, const mxArray* given) {
   ${p}_status status;
-$prepare
+$if setting
+  ${p}_parameters parameters = ${p}_defaults;
+  int k;
+  if (given) check_struct(given, "parameters", members_of_parameters, "");
+  for (k = 0; given && members_of_parameters[k].name; ++k) {
+    const mxArray* value = mxGetField(given, 0, members_of_parameters[k].name);
+    if (!value) continue;
+    if (!is_numbers(value) || mxGetNumberOfElements(value) != 1) {
+      mexErrMsgIdAndTxt("${p}:type", "parameter '%s' must be one real number.",
+                        members_of_parameters[k].name);
+    }
+    put(&parameters, members_of_parameters + k, number(value, 0));
+  }
+  status = ${p}_prepare(model, &parameters);
+$end setting
+$if not setting
+  if (given) check_struct(given, "parameters", members_of_parameters, "");
+  status = ${p}_prepare(model);
+$end setting
   if (status != ${P}_OK) mexErrMsgIdAndTxt("${p}:parameters", "%s.", ${p}_message(status));
 }
 
@@ -165,7 +190,49 @@ static mxArray* motion(const mxArray* times, const mxArray* parameters) {
   return found;
 }
 
-$section
+$if link
+static const char* const names_of_links[] = {$links, 0};
+
+static mxArray* section(const mxArray* given, const mxArray* link, const mxArray* ratios, const mxArray* parameters) {
+  const mxArray* vectors[sizeof members_of_outputs/sizeof(member)];
+  mxArray* found = mxCreateStructMatrix(1, 1, 0, 0);
+  double $pointers;
+  ${p}_model model;
+  const char* name;
+  size_t i, j, many, width;
+  int k, number_of_link = 0;
+  check_struct(given, "outputs", members_of_outputs, "status");
+  vectors_of(given, "outputs", members_of_outputs, vectors);
+  if (!mxIsChar(link)) mexErrMsgIdAndTxt("${p}:type", "a link must be given by its name, a row of characters.");
+  name = mxArrayToString(link);
+  while (names_of_links[number_of_link] && strcmp(names_of_links[number_of_link], name) != 0) ++number_of_link;
+  if (!names_of_links[number_of_link]) {
+    char list[LISTED] = "";
+    for (k = 0; names_of_links[k]; ++k) add_name(list, names_of_links[k]);
+    mexErrMsgIdAndTxt("${p}:name", "there is no link '%s' with sections; valid: %s.", name, list);
+  }
+  if (!is_vector(ratios)) mexErrMsgIdAndTxt("${p}:type", "ratios xi must be a vector of real numbers.");
+  prepare(&model, parameters);
+  many = mxGetNumberOfElements(vectors[0]);
+  width = mxGetNumberOfElements(ratios);
+$added
+  for (j = 0; j < width; ++j) {
+    const double xi = number(ratios, j);
+    if (!(xi >= 0 && xi <= 1)) {
+      mexErrMsgIdAndTxt("${p}:ratio", "xi(%lu) = %g: a ratio must be from 0 to 1.", (unsigned long) j + 1, xi);
+    }
+    for (i = 0; i < many; ++i) {
+      ${p}_outputs outputs;
+      ${p}_forces forces;
+      for (k = 0; members_of_outputs[k].name; ++k) put(&outputs, members_of_outputs + k, number(vectors[k], i));
+      ${p}_section(&model, &outputs, (${p}_link) number_of_link, (${p}_real) xi, &forces);
+$filled
+    }
+  }
+  return found;
+}
+$end link
+
 static mxArray* message(const mxArray* status) {
   if (!(mxIsInt32(status) || is_numbers(status)) || mxGetNumberOfElements(status) != 1) {
     mexErrMsgIdAndTxt("${p}:type", "a status must be one number.");
@@ -183,7 +250,12 @@ void mexFunction(int nlhs, mxArray* plhs[], int nrhs, const mxArray* prhs[]) {
   } else if (strcmp(word, "motion") == 0 && (nrhs == 2 || nrhs == 3)) {
     plhs[0] = motion(prhs[1], nrhs > 2 ? prhs[2] : 0);
   } else if (strcmp(word, "section") == 0 && (nrhs == 4 || nrhs == 5)) {
-    $sections;
+$if link
+    plhs[0] = section(prhs[1], prhs[2], prhs[3], nrhs > 4 ? prhs[4] : 0);
+$end link
+$if not link
+    mexErrMsgIdAndTxt("${p}:name", "there is no link with sections.");
+$end link
   } else if (strcmp(word, "message") == 0 && nrhs == 2) {
     plhs[0] = message(prhs[1]);
   } else {

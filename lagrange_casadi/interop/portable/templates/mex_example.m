@@ -11,4 +11,18 @@ if ~isempty(bad)
 end
 fprintf('%13s  %13s  %13s\n', 'time [s]', '$coordinate [$coordinate_unit]', '$output [$output_unit]');
 fprintf('%13.6g  %13.6g  %13.6g\n', [t; inputs$coordinate_field; outputs$output_field]);
-$more
+$if link
+forces = ${p}_mex('section', outputs, '$link', linspace(0, 1, 5));
+fprintf('largest bending moment of $link: %g N m\n', max(abs(forces.bending(:))));
+$end link
+$if setting
+parameters = struct('$setting', 1.01*$default);
+other = ${p}_mex(${p}_mex('motion', t, parameters), parameters);
+fprintf('$output changes by at most %g $unit_in_format where $setting is 1 %% larger\n', ...
+        max(abs(other$output_field - outputs$output_field)));
+$end setting
+$if not link
+$if not setting
+
+$end setting
+$end link
