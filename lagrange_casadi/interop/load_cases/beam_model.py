@@ -19,6 +19,7 @@ from ...model.beams.beam import Beam
 from ...model.beams.shape import Shape, between
 from ...model.description import BodyNumbers
 from ...results.verification.instant_vectors import constant
+from ..portable.text import template
 from .load_case import LoadCase, listed, nodes_of, on_own_axes, refused, title, unlike
 
 _ELEMENTS = 16
@@ -26,28 +27,6 @@ _ELEMENTS = 16
 
 _SAME = 1e-9
 """Distance of two nodes, as a share of the length, below which they are one."""
-
-_HEAD = """\
-*HEADING
-{title}
-** SI units, on the axes of the link: x leads from its base to its tip.
-*NODE, NSET={every}"""
-_STEP = """\
-*MATERIAL, NAME=MATERIAL
-** {material}
-*ELASTIC
-{moduli}
-*DENSITY
-{density}
-** The supports carry no load: the loads are in equilibrium.
-*BOUNDARY
-{base}, 1, 3
-{tip}, 2, 3
-{within}, 4
-*STEP
-*STATIC
-** Loads of joints, with inertia and weight as forces of nodes
-*CLOAD"""
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(6)
 _FORCES = np.array([_POINTS * (_POINTS - 1) / 2, 1 - _POINTS**2, _POINTS * (_POINTS + 1) / 2])
@@ -73,8 +52,8 @@ def modelled(case: LoadCase) -> tuple[BodyNumbers, Beam, float, float]:
     return case.rod, beam, young, poisson
 
 
-def beam_model(case: LoadCase, _number: int, nodes: Mapping[str, str]) -> Iterator[str]:
-    """Yield the lines of an input file; ``nodes`` are names of node sets, by those of the loads."""
+def beam_model(case: LoadCase, _number: int, nodes: Mapping[str, str]) -> str:
+    """Return an input file; ``nodes`` are names of node sets, by those of the loads."""
     (rod, beam, young, poisson), bearing = modelled(case), nodes_of(case, nodes)
     x = _mesh(rod, beam, [node.at[0] for node in bearing])
     loads, sets = _inertia(case, rod, x), dict[str, int]()
@@ -85,22 +64,28 @@ def beam_model(case: LoadCase, _number: int, nodes: Mapping[str, str]) -> Iterat
     every, base, tip, within = (unlike(name, sets) for name in ("NODES", "BASE", "TIP", "WITHIN"))
     # CalculiX holds no node against twisting that bears a moment: one within an element bears none.
     sets |= {base: 0, tip: x.size - 1, within: x.size // 4 * 2 + 1}
-    yield _HEAD.format(title=title(case), every=every)
-    yield from (f"{k}, {listed([at, 0.0, 0.0])}" for k, at in enumerate(x, 1))
-    yield from _elements(case.link, beam, x / rod.length_and_density[0])
-    named = [(name, k + 1) for name, k in sets.items() if not name.isdecimal()]
-    yield from (f"*NSET, NSET={name}\n{number}" for name, number in named)
-    yield _STEP.format(
+    return template(
+        "beam.inp",
+        title=title(case),
+        every=every,
+        nodes="\n".join(f"{k}, {listed([at, 0.0, 0.0])}" for k, at in enumerate(x, 1)),
+        elements="\n".join(_elements(case.link, beam, x / rod.length_and_density[0])),
+        sets="\n".join(
+            f"*NSET, NSET={name}\n{k + 1}" for name, k in sets.items() if not name.isdecimal()
+        ),
         material=beam.material.name,
         moduli=listed([young, poisson]),
         density=listed([beam.material.density]),
         base=base,
         tip=tip,
         within=within,
+        loads="\n".join(
+            f"{number}, {k}, {value:.12g}"
+            for number, row in enumerate(loads.tolist(), 1)
+            for k, value in enumerate(row, 1)
+            if value
+        ),
     )
-    for number, row in enumerate(loads.tolist(), 1):
-        yield from (f"{number}, {k}, {value:.12g}" for k, value in enumerate(row, 1) if value)
-    yield from ("*NODE FILE", "U", "*EL FILE", "S", "*END STEP")
 
 
 def _mesh(rod: BodyNumbers, beam: Beam, places: Iterable[float]) -> Array:

@@ -3,53 +3,36 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 
+from ..portable.text import template
 from .load_case import LoadCase, listed, nodes_of, title
 
-_HEAD = """\
-** {title}
-** SI units, on the axes of the link, from its origin. Within a step: *INCLUDE, INPUT={file}
-** Element set {elements}: mass {mass:.9g} kg, centre {centre} m
-** Node sets, each of the one node that takes a joint's load:
-{sets}
-** Moments are on degrees of freedom 4 to 6 of that node. Of a *RIGID BODY of CalculiX
-** they are on 1 to 3 of its ROT NODE.
-*CLOAD"""
-_GRAVITY = """\
-** gravity less the acceleration of the origin
-{elements}, GRAV, {size:.12g}, {direction}"""
-_SPIN = """\
-** square of the angular velocity, a point of its axis, its direction
-{elements}, CENTRIF, {square:.12g}, 0., 0., 0., {axis}"""
-_ANGULAR = """\
-** Angular acceleration [rad/s^2]: {alpha}
-** CalculiX has no load for it: add the force -m (alpha x r) on the mass m of each
-** node at r. Without it the loads are not in equilibrium."""
 
-
-def calculix(case: LoadCase, number: int, nodes: Mapping[str, str]) -> Iterator[str]:
-    """Yield the lines of a file for a step of CalculiX or Abaqus."""
-    found, elements = nodes_of(case, nodes), nodes.get(case.link, case.link)
-    yield _HEAD.format(
-        title=title(case),
-        file=f"{case.link}_{number}.inp",
-        elements=elements,
-        mass=case.mass,
-        centre=listed(case.centre),
-        sets="\n".join(f"**   {node.set} at {listed(node.at)} m" for node in found),
-    )
-    for node in found:
-        yield from (f"{node.set}, {k}, {x:.12g}" for k, x in enumerate(node.wrench, 1) if x)
+def calculix(case: LoadCase, number: int, nodes: Mapping[str, str]) -> str:
+    """Return a file for a step of CalculiX or Abaqus."""
+    found = nodes_of(case, nodes)
     weight = [g - a for g, a in zip(case.gravity, case.acceleration, strict=True)]
     size, spin = math.hypot(*weight), math.hypot(*case.omega)
-    if size or spin:
-        yield "*DLOAD"
-    if size:
-        direction = listed([x / size for x in weight])
-        yield _GRAVITY.format(elements=elements, size=size, direction=direction)
-    if spin:
-        axis = listed([x / spin for x in case.omega])
-        yield _SPIN.format(elements=elements, square=spin**2, axis=axis)
-    if any(case.alpha):
-        yield _ANGULAR.format(alpha=listed(case.alpha))
+    return template(
+        "calculix.inp",
+        title=title(case),
+        file=f"{case.link}_{number}.inp",
+        elements=nodes.get(case.link, case.link),
+        mass=f"{case.mass:.9g}",
+        centre=listed(case.centre),
+        sets="\n".join(f"**   {node.set} at {listed(node.at)} m" for node in found),
+        forces="\n".join(
+            f"{node.set}, {k}, {x:.12g}"
+            for node in found
+            for k, x in enumerate(node.wrench, 1)
+            if x
+        ),
+        moved=size or spin,
+        size=f"{size:.12g}" if size else "",
+        direction=listed([x / (size or 1.0) for x in weight]),
+        square=f"{spin**2:.12g}" if spin else "",
+        axis=listed([x / (spin or 1.0) for x in case.omega]),
+        turned=any(case.alpha),
+        alpha=listed(case.alpha),
+    )

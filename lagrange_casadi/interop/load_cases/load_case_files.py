@@ -24,7 +24,7 @@ _NAME = re.compile(r"[^\s,*][^\r\n,]*")
 """Names of nodes in input files: no comma, and no beginning of a keyword or a comment."""
 
 _SOLVERS = {"inp": ("inp", calculix), "beam": ("beam.inp", beam_model)}
-"""Endings of files of one load case, and their lines, by format."""
+"""Endings of files of one load case, and their texts, by format."""
 
 _FIELDS = {
     "t": ("s", "t"),
@@ -118,9 +118,9 @@ def _texts(
         governs = _csv(cases, "governs", _INERTIA, lambda case: [(" ".join(case.governs), case)])
         yield ".inertia.csv", governs
     else:
-        ending, lines = _SOLVERS[name]
+        ending, text = _SOLVERS[name]
         for number, case in enumerate(cases, 1):
-            yield f"_{number}.{ending}", "\n".join([*lines(case, number, nodes), ""])
+            yield f"_{number}.{ending}", text(case, number, nodes)
 
 
 def _csv(

@@ -4,6 +4,7 @@ is written.
 
 from __future__ import annotations
 
+import itertools
 import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -134,11 +135,10 @@ class Contract(Brief):
                 short = _short(m.source, kind)
                 if m.name != re.sub(r"\W", "_", short):
                     found[f"{kind} {short}, a rest" if m.rest_of else f"{kind} {short}"] = m.name
-        usual = {link.name: f"{self.prefix}_link_{link.name}".upper() for link in self.links}
         return found | {
             f"link {link.name}": link.constant
             for link in self.links
-            if link.constant != usual[link.name]
+            if link.constant != f"{self.prefix}_link_{link.name}".upper()
         }
 
     def parts_of(self, name: str) -> list[str]:
@@ -275,27 +275,17 @@ def _setting(key: str, parameter: ParameterNumbers) -> Member:
 
 
 def _inputs(program: Program, precision: Precision, timed: bool) -> Iterator[Member]:
-    rests = precision == "single"
-    if timed:
-        yield _input("time", "s", "time, which loads of this mechanism depend on")
-        if rests:
-            yield _rest("time", "s", "the time")
-    for joint in program.driven:
-        for output in motions_of(joint):
-            key, unit = str(output), output.unit(program.data.kinds)
-            meaning = f"{_where(output)}: {_brief(output.quantity.long_name)}"
-            yield _input(key, unit, meaning, _sign(program, output))
-            if rests and not output.member:
-                yield _rest(key, unit, "it")
-
-
-def _input(key: str, unit: str, meaning: str, sign: str = "") -> Member:
-    return Member("", key, unit, meaning, sign, "any finite number")
-
-
-def _rest(key: str, unit: str, of: str) -> Member:
-    meaning = f"remainder of {of} that single precision does not hold, 0 if unknown"
-    return _input(f"{REST}{key}", unit, meaning)
+    time = ("time", "s", "time, which loads of this mechanism depend on", "", "the time")
+    rows = [time] if timed else []
+    for output in itertools.chain(*map(motions_of, program.driven)):
+        meaning = f"{_where(output)}: {_brief(output.quantity.long_name)}"
+        unit, sign = output.unit(program.data.kinds), _sign(program, output)
+        rows.append((str(output), unit, meaning, sign, "" if output.member else "it"))
+    for key, unit, meaning, sign, rounded in rows:
+        yield Member("", key, unit, meaning, sign, "any finite number")
+        if rounded and precision == "single":
+            rest = f"remainder of {rounded} that single precision does not hold, 0 if unknown"
+            yield Member("", f"{REST}{key}", unit, rest, range="any finite number")
 
 
 def _sign(program: Program, output: Output) -> str:
