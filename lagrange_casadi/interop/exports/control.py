@@ -21,8 +21,7 @@ def control(source: Source) -> dict[str, str]:
     efforts = [(k, m) for k, m in enumerate(c.outputs) if m.source.startswith("effort:")]
     if not efforts:
         raise DeclarationError(f"a header for controllers needs efforts; '{c.name}' exports none")
-    loads = source.exported.program.data.content.loads
-    friction = any(load.friction for load in loads.values())
+    loads = source.exported.program.data.content.loads.values()
     columns = [k for k, _ in efforts]
     words = source.words | {
         "n_coordinates": len(c.drives),
@@ -52,7 +51,7 @@ def control(source: Source) -> dict[str, str]:
         "steps": golden.steps,
         "t": ", t" if c.timed else "",
         "t_before": ", before" if c.timed else "",
-        "linear": "false" if friction else "true",
+        "linear": "false" if any(load.friction for load in loads) else "true",
         "rounding": "1e-4" if c.rests else "1e-12",
     }
     return {

@@ -21,7 +21,7 @@ from ...base.quantities import Output, motion_names
 from ...base.units import known
 from ...engine.program import Program
 from ...version import __version__
-from ..portable.contract import Contract, Member
+from ..portable.contract import Member
 from ..portable.golden import motions_at
 from ..portable.source import Source
 from ..portable.text import template
@@ -55,14 +55,9 @@ class Description:
     by: str = ""
 
     @property
-    def contract(self) -> Contract:
-        """Inputs and outputs of the program."""
-        return self.source.contract
-
-    @property
     def timed(self) -> bool:
         """True if anything depends on the importer's time."""
-        return self.by == "time" or (self.contract.timed and not self.by)
+        return self.by == "time" or (self.source.contract.timed and not self.by)
 
     @property
     def place(self) -> str:
@@ -82,7 +77,7 @@ class Description:
 
         The time is the importer's, and what single precision leaves is computed.
         """
-        c, start = self.contract, self.start
+        c, start = self.source.contract, self.start
         found = [Variable(m, "parameter", f"parameter:{m.source}", m.default) for m in c.settings]
         found += [
             Variable(m, "input", m.source, start[m.source])
@@ -118,7 +113,7 @@ class Description:
 
     def text(self, guid: str) -> str:
         """Return the text of the file, with an identifier."""
-        c, data = self.contract, self.source.exported.program.data
+        c, data = self.source.contract, self.source.exported.program.data
         (start, stop), count = data.span, data.timing.count
         span = {"startTime": start}
         if stop > start:
@@ -168,23 +163,24 @@ def reached(program: Program) -> dict[str, frozenset[str]]:
     """Dependencies of each column of a graph, by its structure: ``time``, ``motion:...`` and
     ``parameter:NAME``.
     """
-    named = [
-        ["time"],
-        *motion_names(program.driven),
-        [f"parameter:{name}" for name in program.data.parameters],
-    ]
-    _, coordinate, rate, acceleration, z, p = range(6)
+    time, *motion, parameters = (
+        [{name} for name in names]
+        for names in (
+            ["time"],
+            *motion_names(program.driven),
+            [f"parameter:{name}" for name in program.data.parameters],
+        )
+    )
     loops: set[str] = set()
     if program.newton is not None:
         # What closes the loops closes all of them.
-        for place, names in ((1, named[0]), (2, named[1]), (3, named[4])):
-            loops |= {names[column] for _, column in _entries(program.newton.step, place)}
+        for place, names in ((1, time), (2, motion[0]), (3, parameters)):
+            loops.update(*(names[column] for _, column in _entries(program.newton.step, place)))
+    iterated = [loops] * program.instant.size1_in("z")
     found: list[set[str]] = [set() for _ in program.columns]
-    for place, names in zip((0, coordinate, rate, acceleration, p), named, strict=True):
+    for place, names in enumerate((time, *motion, iterated, parameters)):
         for row, column in _entries(program.instant, place):
-            found[row].add(names[column])
-    for row, _ in _entries(program.instant, z):
-        found[row] |= loops
+            found[row] |= names[column]
     return {name: frozenset(names) for name, names in zip(program.names, found, strict=True)}
 
 
@@ -201,8 +197,8 @@ def page(description: Description) -> str:
     kinds = ("parameter", "input", "output")
     return template(
         "fmu.html",
-        title=escape(description.contract.name),
-        conventions=escape(description.contract.table.conventions),
+        title=escape(description.source.contract.name),
+        conventions=escape(description.source.contract.table.conventions),
         tables="".join(_table(f"{kind.title()}s", description.members(kind)) for kind in kinds),
         version=__version__,
         scene=description.source.identity,

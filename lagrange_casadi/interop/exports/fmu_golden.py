@@ -27,7 +27,7 @@ def golden_vectors(description: Description) -> str:
     instants = np.interp(places, np.arange(last + 1), golden.times)
     moved = motions_at(program, instants, source.p)
     given = [moved[m.source].tolist() for m in inputs]
-    heads = [m.path for m in (*inputs, *description.contract.outputs)]
+    heads = [m.path for m in (*inputs, *description.source.contract.outputs)]
     rows: list[list[object]] = [["time", *heads]]
     rows.append(["within", *("" for _ in inputs), *golden.outputs_off.tolist()])
     for k, t in enumerate(instants.tolist()):
@@ -39,5 +39,5 @@ def golden_vectors(description: Description) -> str:
 
 def golden_script(description: Description) -> str:
     """Return the text of the script ``<prefix>_fmu_test.py``."""
-    turning = [m.path for m in description.contract.outputs if m.wrapped]
+    turning = [m.path for m in description.source.contract.outputs if m.wrapped]
     return template("fmu_test.py.in", **description.source.words, file=FILE, turning=turning)

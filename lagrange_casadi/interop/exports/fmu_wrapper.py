@@ -12,7 +12,7 @@ from .fmu_description import Description
 
 def wrapper(description: Description) -> str:
     """The C that makes a unit of the exported functions."""
-    source, c = description.source, description.contract
+    source, c = description.source, description.source.contract
     words = source.words | (_reach(description) if description.place else {})
     values = [(v.member.path, v.start) for v in description.variables if v.start is not None]
     return template(
@@ -53,7 +53,7 @@ def _given(description: Description) -> Iterator[str]:
     """Statements that make inputs of a state; in single precision a number's rest is that of the
     double.
     """
-    c = description.contract
+    c = description.source.contract
     if description.place:
         yield f"return reach(&state->model, state->values[{len(c.settings)}], inputs);"
     elif description.by:
@@ -69,7 +69,7 @@ def _given(description: Description) -> Iterator[str]:
 
 def _reach(description: Description) -> dict[str, object]:
     """Words of the function that finds the place of a coordinate in the scene's motion."""
-    c, program = description.contract, description.source.exported.program
+    c, program = description.source.contract, description.source.exported.program
     (name,), (rate,), _ = motion_names([description.by])
     least, most = (x if math.isfinite(x) else math.copysign(1e300, x) for x in program.laws.span)
     start, stop = program.data.span

@@ -187,8 +187,7 @@ class _Block:
         for name, size in (("part", 1), ("square", 1), ("rate", 1), ("slope", 1 + drives)):
             self.arrays[name] = POINTS * size
         own = self.vectors
-        self.vectors = own | {"moment": place, "rate": gone[1:]}
-        self.vectors |= {"acceleration": ["0.0"] * drives, "parameters": own["parameters"]}
+        self.vectors = own | {"moment": place, "rate": gone[1:], "acceleration": ["0.0"] * drives}
         count = self.call("count") if "count" in exported.functions else ()
         words = {
             "gone": "\n".join(map("{0} := {1} - {2};".format, gone, moment, stood)),

@@ -119,7 +119,7 @@ def link_load_cases(
             centre=body.whole.centre,
             inertia=body.whole.inertia,
             residual=(float(residual[0, i]), float(residual[1, i])),
-            rod=described[link] if described[link].beam else None,
+            rod=body if body.beam else None,
         )
         if not all(one <= solution.tolerance for one in case.residual):
             raise CertificateError(

@@ -13,12 +13,6 @@ from .stack import deepest
 from .statuses import STATUSES
 from .text import filled, member, template
 
-_ZERO = (
-    "A joint's angle is the direction of the child's axis less that of the parent's, which of the"
-    " ground is x; a slide is how far the child's point is from the parent's, along the joint's"
-    " axis."
-)
-
 
 def header(source: Source) -> str:
     """The header, ``<prefix>.h``."""
@@ -34,11 +28,14 @@ def header(source: Source) -> str:
         single="f" if c.rests else "",
         story=filled(source.story),
         conventions=filled(
-            f"Conventions: {c.table.conventions}. {_ZERO} Gravity is ({gravity}) m/s^2."
+            f"Conventions: {c.table.conventions}. A joint's angle is the direction of the child's"
+            " axis less that of the parent's, which of the ground is x; a slide is how far the"
+            " child's point is from the parent's, along the joint's axis. Gravity is"
+            f" ({gravity}) m/s^2."
         ),
         law=law_in_words(c) if c.links else "",
         notes="".join(
-            filled(f"{begin}: {', '.join(names)}.", "\n\n")
+            "\n\n   " + filled(f"{begin}: {', '.join(names)}.")
             for begin, names in (
                 ("Called otherwise here", [f"{k} is {v}" for k, v in c.mapped.items()]),
                 ("Not determined by equilibrium, and left out", c.undetermined),

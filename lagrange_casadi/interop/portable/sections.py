@@ -67,9 +67,8 @@ def about(table: Table, force: str) -> str:
 
 def comparisons(table: Table) -> str:
     """Comparisons of each force in the self-test."""
-    many = len(table.forces)
     return "\n".join(
         f'      compare("{table.row("section", force).long_name}", row[{k}], (double)'
-        f" forces.{force}, forces_off[{many}*i + {k}], 0);"
+        f" forces.{force}, forces_off[{len(table.forces)}*i + {k}], 0);"
         for k, force in enumerate(table.forces)
     )

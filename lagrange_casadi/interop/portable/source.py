@@ -15,7 +15,7 @@ from ...engine.codegen.printer import function_name, print_functions
 from ...version import __version__
 from .contract import Contract
 from .data import table_text
-from .exported_calls import MODEL
+from .exported_calls import MODEL, PREPARE
 from .exported_program import ExportedProgram
 from .exported_slopes import ExportedSlopes
 from .exported_slopes import code as sensitivity
@@ -51,7 +51,7 @@ class Source:
     def code(self) -> str:
         """The source: ``<prefix>.c``."""
         c, exported, P = self.contract, self.exported, self.contract.words["P"]
-        number = exported.number
+        number, sizes, at = exported.number, exported.sizes, 2 if c.rests else 1
         sections = functions(exported) if c.links else ""
         return template(
             "mechanism.c",
@@ -69,8 +69,17 @@ class Source:
             tables=table_text(exported),
             put=indented(put(exported)),
             defaults=",\n".join(f"  {number(m.default)} /* {m.name} */" for m in c.settings),
+            sound=sizes["sound_of"],
+            prepared=exported.called(PREPARE),
             prepare=indented(prepare(exported)),
+            at=at,
+            d=at * len(c.drives),
+            drives=len(c.drives),
+            far=sizes["far"],
             motion=indented(motion(exported)),
+            moment=sizes["moment"],
+            counted=sizes["counted"],
+            drive=0 if exported.cycle is None else sizes["evaluated"],
             instant=indented(instant(exported)),
             between=between(exported) if self.closing else "",
             rows=len(exported.columns),

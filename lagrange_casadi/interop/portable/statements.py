@@ -108,34 +108,26 @@ def _limits(exported: ExportedProgram, newton: int | None) -> str:
 
 def prepare(exported: ExportedProgram) -> Iterator[str]:
     """Yield what checks parameters, and computes what they alone set."""
-    c, many, called = exported.contract, exported.sizes["sound_of"], exported.called(PREPARE)
-    if c.settings:
-        values = f"parameters ? parameters : &{c.prefix}_defaults"
-        yield f"const {c.prefix}_parameters* values = {values};"
-    if many:
-        yield f"casadi_real sound_of[{many}];\nint k;"
-    if called:
-        yield "const casadi_real* arg[1];\ncasadi_real* res[1];"
-    yield "model->seal = 0;"
+    c = exported.contract
     for k, m in enumerate(c.settings):
         value = f"values->{m.name}"
         ends = _ends(exported, value, (">=", m.low), ("<=", m.high))
         within = " && ".join([f"is_finite({value})", *ends])
         yield f"if (!({within})) return {c.words['P']}_BAD_PARAMETER;"
         yield f"model->parameters[{k}] = {value};"
-    for name in called:
+    for name in exported.called(PREPARE):
         yield from call(exported.functions, name)
         if name == "sound":
-            yield from _refused_parts(exported, many)
+            yield from _refused_parts(exported)
     if exported.newton is not None:
         yield "model->closed = 0;"
     for k, start in enumerate(exported.guess):
         yield f"model->loops[{k}] = {exported.number(start)};"
 
 
-def _refused_parts(exported: ExportedProgram, many: int) -> Iterator[str]:
+def _refused_parts(exported: ExportedProgram) -> Iterator[str]:
     """Refuse parameters for which a margin is not positive, or a later one negative."""
-    ends = (0, exported.positive, many)
+    ends = (0, exported.positive, exported.sizes["sound_of"])
     for (start, stop), test in zip(itertools.pairwise(ends), (">", ">="), strict=True):
         if stop > start:
             words = exported.contract.words
@@ -146,21 +138,17 @@ def motion(exported: ExportedProgram) -> Iterator[str]:
     """Yield what fills the inputs with the motion of the drives at a time."""
     c, functions, drives = exported.contract, exported.functions, len(exported.contract.drives)
     at = ["time", "time_rest"] if c.rests else ["time"]
-    vectors = f"at[{len(at)}], d[{len(at) * drives}], rate[{drives}], acceleration[{drives}]"
-    yield f"casadi_real {vectors};\nconst casadi_real* arg[2];\ncasadi_real* res[3];"
-    many = exported.sizes["far"]
-    if many:
-        yield f"casadi_real far[{many}];"
     yield _refused(c, "model->seal != SEAL", "NOT_PREPARED")
     time, (low, high) = " + ".join(at), exported.program.laws.span
     untimely = [f"!is_finite({time})", *_ends(exported, time, ("<", low), (">", high))]
     yield _refused(c, " || ".join(untimely), "BAD_TIME")
     yield from (f"at[{k}] = {one};" for k, one in enumerate(at))
     yield from call(functions, "law")
-    if many:
+    if "beyond" in functions:
         yield from call(functions, "beyond")
         limit = exported.number(BEYOND[c.precision])
-        yield _refused(c, " || ".join(f"!(far[{k}] <= {limit})" for k in range(many)), "BAD_TIME")
+        far = (f"!(far[{k}] <= {limit})" for k in range(exported.sizes["far"]))
+        yield _refused(c, " || ".join(far), "BAD_TIME")
     values = [
         value
         for i, one in enumerate(at)
@@ -170,7 +158,6 @@ def motion(exported: ExportedProgram) -> Iterator[str]:
     _, rates, accelerations = c.motion
     known = dict(zip([*c.moment, *rates, *accelerations], values, strict=True))
     yield from (f"inputs->{m.name} = {known[m.name]};" for m in c.inputs)
-    yield f"return {c.words['P']}_OK;"
 
 
 def _refused(c: Contract, condition: str, status: str) -> str:
@@ -188,25 +175,13 @@ def _ends(exported: ExportedProgram, value: str, *ends: tuple[str, float]) -> It
 
 def instant(exported: ExportedProgram) -> Iterator[str]:
     """Yield what computes the columns of an instant, and refuses those that break a rule."""
-    c, sizes, table = exported.contract, exported.sizes, exported.cycle
-    P, drives, called = c.words["P"], len(c.drives), exported.called(INSTANT)
-    if "count" in called:
-        yield f"casadi_real moment[{sizes['moment']}], counted[{sizes['counted']}];"
-    yield f"casadi_real rate[{drives}], acceleration[{drives}];"
-    if table is not None:
-        yield f"casadi_real drive[{sizes['evaluated']}];"
-    yield "const casadi_real* arg[5];\ncasadi_real* res[1];"
-    if "status" in called:
-        yield "casadi_real iterated = 0, rule;"
-    if "loops" in called:
-        yield f"{c.prefix}_status closed;"
-    yield f"if (model->seal != SEAL) return {P}_NOT_PREPARED;"
+    c, table, called = exported.contract, exported.cycle, exported.called(INSTANT)
     for k, member in enumerate(c.moment if "count" in called else ()):
         yield f"moment[{k}] = {f'inputs->{member}' if member else '0'};"
     for k, (_, rate, acceleration) in enumerate(zip(*c.motion, strict=True)):
         yield f"rate[{k}] = inputs->{rate};\nacceleration[{k}] = inputs->{acceleration};"
     total = " + ".join(f"inputs->{m.name}" for m in c.inputs)
-    yield f"if (!is_finite({total})) return {P}_BAD_INPUT;"
+    yield f"if (!is_finite({total})) return {c.words['P']}_BAD_INPUT;"
     evaluated = "drive" if table is not None else "y"
     for name in called:
         if name == "loops":
@@ -217,7 +192,6 @@ def instant(exported: ExportedProgram) -> Iterator[str]:
             yield from table_call(table, exported.number)
         if name == "status":
             yield "if (rule > 0) return broken[(int) rule];"
-    yield f"if (!all_finite(y, {len(exported.columns)})) return {P}_NOT_FINITE;"
 
 
 def _close(exported: ExportedProgram) -> Iterator[str]:

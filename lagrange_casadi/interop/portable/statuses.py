@@ -34,10 +34,12 @@ _MEANINGS: dict[str, str | tuple[Status, ...]] = {
 }
 """Meanings of all answers, or the statuses in whose words they are, in the order of C."""
 
-SHARED = {name: known for name, known in _MEANINGS.items() if isinstance(known, tuple)}
-"""Answers in the words of :class:`.Status`."""
-
-ANSWERS = {status: name for name, statuses in SHARED.items() for status in statuses}
+ANSWERS = {
+    status: name
+    for name, known in _MEANINGS.items()
+    if isinstance(known, tuple)
+    for status in known
+}
 """Answer for a status of an instant."""
 
 STATUSES = {

@@ -84,8 +84,7 @@ def indented(lines: Iterable[str]) -> str:
     return textwrap.indent("\n".join(lines), "  ")
 
 
-def filled(text: str, before: str = "") -> str:
+def filled(text: str) -> str:
     """Text within a comment."""
     lines = textwrap.wrap(comment(text), WIDTH - 3, break_long_words=False, break_on_hyphens=False)
-    indented = "\n   ".join(lines)
-    return f"{before}   {indented}" if before else indented
+    return "\n   ".join(lines)

@@ -63,28 +63,21 @@ def _build(
     """
     c = source.contract
     exported = [f"{c.prefix}_{call}" for call in (*_CALLS, *(["section"] if c.links else []))]
-    stack = -(-(deepest(source.code) + _STACK) // 16) * 16
+    size, stack = places(source)["end"], -(-(deepest(source.code) + _STACK) // 16) * 16
     linked = [f"-Wl,--export={name}" for name in (*exported, *calls, "__heap_base")]
     linked += ["-Wl,--no-entry", "-Wl,--strip-all", f"-Wl,-z,stack-size={stack}"]
     files = {
         f"{c.prefix}.h": header(source),
         f"{c.prefix}.c": source.code,
-        "layout.c": _size_check(source),
+        # It compiles only where a model takes as many bytes as the wrapper declares.
+        "layout.c": f'#include "{c.prefix}.h"\n'
+        f"typedef char as_known[sizeof({c.prefix}_model) == {size} ? 1 : -1];\n",
         **more,
     }
     code = [file for file in files if file.endswith(".c")]
     compiler = Compiler("c", (sys.executable, "-m", "ziglang", "cc"), "")
     command = [*compiler.command, *_FLAGS, *target, *linked, *code, "-o", "module.wasm"]
     return partial(built, compiler, command, files, "module.wasm")
-
-
-def _size_check(source: Source) -> str:
-    """C that compiles only where a model takes as many bytes as the wrapper declares."""
-    p = source.contract.prefix
-    return (
-        f'#include "{p}.h"\ntypedef char as_known[sizeof({p}_model) == {places(source)["end"]}'
-        " ? 1 : -1];\n"
-    )
 
 
 def layout(source: Source) -> dict[str, int | str]:
@@ -141,26 +134,30 @@ def _forces(c: Contract) -> tuple[str, ...]:
 
 def _contract(source: Source) -> str:
     c = source.contract
-
-    def end(value: float) -> float | None:
-        return value if math.isfinite(value) else None
-
-    rows = {name: c.table.row("section", name) for name in _forces(c)}
     content = {
         "name": c.name,
         "prefix": c.prefix,
         "precision": c.precision,
         "model": places(source)["end"],
         "parameters": [
-            m.described(m.comment) | {"default": m.default, "low": end(m.low), "high": end(m.high)}
+            m.described(m.comment)
+            | {
+                "default": m.default,
+                "low": m.low if math.isfinite(m.low) else None,
+                "high": m.high if math.isfinite(m.high) else None,
+            }
             for m in c.settings
         ],
         "inputs": [m.described(m.comment) for m in c.inputs],
         "outputs": [m.described(m.comment) for m in c.outputs],
         "links": [link.name for link in c.links],
         "forces": [
-            {"name": name, "unit": row.unit, "meaning": about(c.table, name)}
-            for name, row in rows.items()
+            {
+                "name": name,
+                "unit": c.table.row("section", name).unit,
+                "meaning": about(c.table, name),
+            }
+            for name in _forces(c)
         ],
     }
     return json.dumps(content, indent=1)

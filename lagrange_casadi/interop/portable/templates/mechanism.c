@@ -71,18 +71,56 @@ $defaults
 $end setting
 
 ${p}_status ${p}_prepare(${p}_model* model$and_parameters) {
+$if setting
+  const ${p}_parameters* values = parameters ? parameters : &${p}_defaults;
+$end setting
+$if sound
+  casadi_real sound_of[$sound];
+  int k;
+$end sound
+$if prepared
+  const casadi_real* arg[1];
+  casadi_real* res[1];
+$end prepared
+  model->seal = 0;
+$if prepare
 $prepare
+$end prepare
   model->seal = SEAL;
   return ${P}_OK;
 }
 
 ${p}_status ${p}_motion(const ${p}_model* model, ${p}_real time$and_rest, ${p}_inputs* inputs) {
+  casadi_real at[$at], d[$d], rate[$drives], acceleration[$drives];
+  const casadi_real* arg[2];
+  casadi_real* res[3];
+$if far
+  casadi_real far[$far];
+$end far
 $motion
+  return ${P}_OK;
 }
 
 /* The columns of an instant, all of them finite unless what is returned is not ${P}_OK. */
 static ${p}_status columns_of(${p}_model* model, const ${p}_inputs* inputs, casadi_real* y) {
+$if moment
+  casadi_real moment[$moment], counted[$counted];
+$end moment
+  casadi_real rate[$drives], acceleration[$drives];
+$if drive
+  casadi_real drive[$drive];
+$end drive
+  const casadi_real* arg[5];
+  casadi_real* res[1];
+$if rules
+  casadi_real iterated = 0, rule;
+$end rules
+$if iterated
+  ${p}_status closed;
+$end iterated
+  if (model->seal != SEAL) return ${P}_NOT_PREPARED;
 $instant
+  if (!all_finite(y, $rows)) return ${P}_NOT_FINITE;
   return ${P}_OK;
 }
 
