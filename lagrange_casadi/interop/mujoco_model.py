@@ -107,11 +107,10 @@ def _values(mujoco: ModuleType, model: MjModel) -> dict[str, Value]:
         for name, bit in bits.__members__.items():
             if int(bit).bit_count() == 1 and not name.startswith("mjN"):
                 values[f"{word} {name.partition('_')[2].lower()}"] = bool(flags & int(bit))
-    kinds = (bool, int, float, np.ndarray)
     return {
         name: value
         for name, value in values.items()
-        if not name.startswith("_") and isinstance(value, kinds)
+        if not name.startswith("_") and isinstance(value, bool | int | float | np.ndarray)
     }
 
 

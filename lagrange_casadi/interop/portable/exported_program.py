@@ -138,14 +138,18 @@ def exported(
     if fixed:  # the parameters are numbers, which were checked when they were fixed
         given = {name: f if f is None else _fixed(f, p) for name, f in given.items()}
     of_sections, sections = _sections(program, symbols, precision)
-    functions = given | of_sections
-    if not fixed:
-        functions["sound"] = sound
-    functions["instant"] = instant
-    if program.rules:
-        values = p if fixed else None
-        functions["status"] = _status(program, columns, precision, newton, gapped, values)
-    functions |= {"loops": stages.loops, "closing": stages.closing}
+    values = p if fixed else None
+    functions = {
+        **given,
+        **of_sections,
+        "sound": None if fixed else sound,
+        "instant": instant,
+        "status": (
+            _status(program, columns, precision, newton, gapped, values) if program.rules else None
+        ),
+        "loops": stages.loops,
+        "closing": stages.closing,
+    }
     filled = {name: f for name, f in functions.items() if f is not None and f.size1_out(0)}
     return ExportedProgram(
         program,
