@@ -11,6 +11,7 @@ import os
 import re
 import subprocess
 import tempfile
+from collections.abc import Sequence
 from itertools import product
 from pathlib import Path
 from types import SimpleNamespace
@@ -19,7 +20,6 @@ from typing import Any
 import numpy as np
 
 from ...base.apart import LostError, run_apart
-from ...base.arrays import Array
 from ...errors import PathError, shown
 from ..mujoco_model import compiled
 from .file_elements import Element, parsed
@@ -41,8 +41,18 @@ a path have together.
 
 _FOLDERS = ("assetdir", "meshdir", "texturedir")
 _BLANK = b"\xef\xbb\xbf \t\r\n"
-_UPRIGHT = np.array([1.0, 0.0, 0.0, 0.0])
+_UPRIGHT = (1.0, 0.0, 0.0, 0.0)
 _SWITCHES = ("gravity", "equality", "constraint", "spring", "damper", "passive", "frictionloss")
+_SWITCHED = {
+    "opt.gravity": ("gravity",),
+    "eq_active0": ("equality", "constraint"),
+    "jnt_stiffness": ("spring", "passive"),
+    "dof_damping": ("damper", "passive"),
+    "dof_frictionloss": ("frictionloss", "constraint"),
+    "body_gravcomp": ("passive", "spring damper"),
+}
+"""Fields that are zero where something is switched off, or two things are."""
+
 _READ = (
     *("body_parentid", "body_mass", "body_inertia", "body_ipos", "body_iquat", "body_jntadr"),
     *("body_jntnum", "body_gravcomp", "jnt_type", "jnt_pos", "jnt_axis", "jnt_qposadr"),
@@ -191,11 +201,12 @@ class _Reader:
         self.model, self.names, self.kinds = model, found["names"], found["kinds"]
         self.others, self.stated = found["others"], found["name"]
         fields = found["fields"]
-        named = {name.replace(".", "_"): np.array(values) for name, values in fields.items()}
+        off = {name for name in _SWITCHES if fields.get(f"disable {name}")}
+        for name, switches in _SWITCHED.items():
+            if any(off.issuperset(one.split()) for one in switches):
+                fields[name] = np.zeros_like(fields[name]).tolist()
+        named = {name.replace(".", "_"): values for name, values in fields.items()}
         self.m = SimpleNamespace(**named)
-        self.off = {name for name in _SWITCHES if fields.get(f"disable {name}")}
-        if self.off >= {"spring", "damper"}:
-            self.off.add("passive")
         self.bodies: dict[int, str] = {0: GROUND}
         self.joints: dict[int, str] = {}
 
@@ -203,19 +214,15 @@ class _Reader:
         """Read the model."""
         model, m = self.model, self.m
         model.name = model.name_of("mechanism", self.stated or model.name, "")
-        if "gravity" in self.off:
-            model.gravity = np.zeros(3)
-        else:
-            model.gravity = model.numbers("option", m.opt_gravity.tolist(), "gravity")
+        model.gravity = model.numbers("option", m.opt_gravity, "gravity")
         for k in range(1, len(m.body_mass)):
             self.body(k)
-        if not self.off & {"equality", "constraint"}:
-            for k in np.flatnonzero(m.eq_active0).tolist():
-                self.equality(k)
+        for k in np.flatnonzero(m.eq_active0).tolist():
+            self.equality(k)
         for kind, (j, *_) in zip(self.kinds["actuator_trntype"], m.actuator_trnid, strict=True):
-            if kind in ("JOINT", "JOINTINPARENT") and int(j) in self.joints:
-                model.preferred.append(self.joints[int(j)])
-        for k, body in enumerate(m.site_bodyid.tolist()):
+            if kind in ("JOINT", "JOINTINPARENT") and j in self.joints:
+                model.preferred.append(self.joints[j])
+        for k, body in enumerate(m.site_bodyid):
             if stated := self.names["site"][k]:
                 frame = self.frame(f"site {shown(stated)}", m.site_pos[k], m.site_quat[k])
                 model.spots[stated] = self.bodies[body], frame
@@ -232,26 +239,16 @@ class _Reader:
         """Declare a body, and the joints that it hangs on."""
         model, m, stated = self.model, self.m, self.called("body", k)
         where = f"body {shown(stated)}"
-        mass = model.number(where, float(m.body_mass[k]), "mass")
-        frame = Frame(
-            model.numbers(where, m.xpos[k].tolist(), "place"),
-            model.rotation(where, m.xmat[k].reshape(3, 3)),
-        )
+        mass = model.number(where, m.body_mass[k], "mass")
+        place = model.numbers(where, m.xpos[k], "place")
+        frame = Frame(place, model.rotation(where, np.reshape(m.xmat[k], (3, 3))))
         own = self.frame(where, m.body_ipos[k], m.body_iquat[k])
-        moments = model.numbers(where, m.body_inertia[k].tolist(), "inertia")
-        weight = 1.0 if "passive" in self.off else 1.0 - float(m.body_gravcomp[k])
-        name = model.add(
-            Body,
-            stated,
-            where,
-            mass,
-            own.place,
-            own.tensor(np.diag(moments)),
-            frame,
-            weight=model.number(where, weight, "gravcomp"),
-        )
-        self.bodies[k], above = name, self.bodies[int(m.body_parentid[k])]
-        first, count = int(m.body_jntadr[k]), int(m.body_jntnum[k])
+        inertia = own.tensor(np.diag(model.numbers(where, m.body_inertia[k], "inertia")))
+        weight = model.number(where, 1.0 - m.body_gravcomp[k], "gravcomp")
+        given = (mass, own.place, inertia, frame)
+        name = model.add(Body, stated, where, *given, weight=weight)
+        self.bodies[k], above = name, self.bodies[m.body_parentid[k]]
+        first, count = m.body_jntadr[k], m.body_jntnum[k]
         if not count and above == GROUND:
             model.base(name, where)
         elif not count:
@@ -266,52 +263,44 @@ class _Reader:
     def joint(self, j: int, above: str, below: str, frame: Frame) -> None:
         """Declare a joint, with its spring; in the reference posture its coordinate is zero."""
         model, m, stated = self.model, self.m, self.called("joint", j)
-        kind = ("free", "spherical", "prismatic", "revolute")[int(m.jnt_type[j])]
+        kind = ("free", "spherical", "prismatic", "revolute")[m.jnt_type[j]]
         where = f"joint {shown(stated)}"
         far = Frame() if kind == "free" else self.frame(where, m.jnt_pos[j])
         if kind in ("prismatic", "revolute"):
-            axis = model.numbers(where, m.jnt_axis[j].tolist(), "axis")
+            axis = model.numbers(where, m.jnt_axis[j], "axis")
             far = far.then(Frame.about(model.direction(where, axis)))
         near = model.frame_of(above).relative(frame.then(far))
         name = self.joints[j] = model.add(Joint, stated, where, kind, above, below, near, far)
-        stiffness = 0.0 if "spring" in self.off else m.jnt_stiffness[j]
-        at, v = m.jnt_qposadr[j], m.jnt_dofadr[j]
-        damping = 0.0 if "damper" in self.off else m.dof_damping[v]
-        friction = 0.0 if self.off & {"frictionloss", "constraint"} else m.dof_frictionloss[v]
         low, high = m.jnt_actfrcrange[j] if m.jnt_actfrclimited[j] else (0.0, 0.0)
         # A drive has one limit for both ways.
         largest = max(min(-low, high), 0.0)
         if low + high != 0.0:
             read = f"read as {largest:g} both ways" if largest else "not read"
             model.notes.append(f"Effort limits of {where}, {low:g} to {high:g}: {read}.")
-        numbers = damping, stiffness, m.qpos_spring[at] - m.qpos0[at], friction
-        spring = model.numbers(where, [float(one) for one in numbers], "spring and damper", 4)
-        motor = model.numbers(where, [float(m.dof_armature[v]), float(largest)], "armature", 2)
-        if kind not in ("prismatic", "revolute"):
-            for words, given in (
-                ("Spring and damper", spring[:2]),
-                ("Friction", spring[3]),
-                ("Armature", motor),
-            ):
-                if np.any(given):
-                    model.notes.append(f"{words} of {where}, which has no axis: not read.")
+        at, v = m.jnt_qposadr[j], m.jnt_dofadr[j]
+        law = m.dof_damping[v], m.jnt_stiffness[j], m.qpos_spring[at] - m.qpos0[at]
+        spring = model.numbers(where, [*law, m.dof_frictionloss[v]], "spring and damper", 4)
+        motor = model.numbers(where, [m.dof_armature[v], largest], "armature", 2)
+        if kind in ("prismatic", "revolute"):
+            if np.any(spring[[0, 1, 3]]):
+                model.springs.append(Spring(name, *spring.tolist()))
+            model.motor(name, armature=motor[0], effort=motor[1])
             return
-        if np.any(spring[[0, 1, 3]]):
-            model.springs.append(Spring(name, *spring.tolist()))
-        armature, effort = motor.tolist()
-        model.motor(name, armature=armature, effort=effort)
+        unread = {"Spring and damper": spring[:2], "Friction": spring[3], "Armature": motor}
+        for words in (words for words, given in unread.items() if np.any(given)):
+            model.notes.append(f"{words} of {where}, which has no axis: not read.")
 
     def equality(self, k: int) -> None:
         """Declare an equality: connect and weld close loops, joint couples two of them."""
         model, m, stated = self.model, self.m, self.called("equality", k)
         where, data, kind = f"equality {shown(stated)}", m.eq_data[k], self.kinds["eq_type"][k]
-        one, other = int(m.eq_obj1id[k]), int(m.eq_obj2id[k])
+        one, other = m.eq_obj1id[k], m.eq_obj2id[k]
         if kind == "JOINT":
             if np.any(data[2:5]) or other < 0:
                 raise model.refuse(
                     where, "is not supported: it does not couple two joints linearly"
                 )
-            offset, ratio = model.numbers(where, data[:2].tolist(), "polycoef", 2).tolist()
+            offset, ratio = model.numbers(where, data[:2], "polycoef", 2).tolist()
             joints = self.joints[other], self.joints[one]
             model.add(Coupling, stated, where, *joints, ratio, offset)
             return
@@ -319,7 +308,7 @@ class _Reader:
             raise model.refuse(where, "is not supported; valid: connect, weld, joint")
         if self.kinds["eq_objtype"][k] == "SITE":
             near, far = (self.frame(where, m.site_pos[i], m.site_quat[i]) for i in (one, other))
-            one, other = int(m.site_bodyid[one]), int(m.site_bodyid[other])
+            one, other = m.site_bodyid[one], m.site_bodyid[other]
         elif kind == "CONNECT":
             near, far = self.frame(where, data[:3]), self.frame(where, data[3:6])
         else:  # the anchor is given on both bodies
@@ -329,10 +318,12 @@ class _Reader:
         ends = self.bodies[one], self.bodies[other]
         model.add(Joint, stated, where, shape, *ends, near, far)
 
-    def frame(self, where: str, place: Array, quaternion: Array = _UPRIGHT) -> Frame:
+    def frame(
+        self, where: str, place: Sequence[float], quaternion: Sequence[float] = _UPRIGHT
+    ) -> Frame:
         """Return the frame of a place and a quaternion, which MuJoCo takes even as no numbers."""
-        found = self.model.numbers(where, place.tolist(), "place")
-        w, *axis = self.model.numbers(where, quaternion.tolist(), "quaternion", 4).tolist()
+        found = self.model.numbers(where, place, "place")
+        w, *axis = self.model.numbers(where, quaternion, "quaternion", 4).tolist()
         v = np.array(axis)
         turned = (w * w - v @ v) * np.eye(3) + 2.0 * (np.outer(v, v) - w * np.cross(v, np.eye(3)))
         return Frame(found, self.model.rotation(where, turned))
