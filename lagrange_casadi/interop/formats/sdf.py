@@ -53,14 +53,14 @@ def read(model: Model, text: str) -> None:
     named = line.by_name("link", "frame", "joint")
     for one in line.all("frame"):
         one.seen = False  # until something lies on it
-    joints = Joints(model, named, {"world": (GROUND, Frame())}, _pose(line.first("pose")), on_model)
+    own = _pose(line.optional("pose"))
+    joints = Joints(model, named, {"world": GROUND}, {"world": Frame()}, own, on_model)
     for name, link in ((name, one) for name, one in named.items() if one.name == "link"):
-        joints.on[name] = _body(model, link, joints.frame(name, ()))
+        joints.on[name] = _body(model, link, joints.frame(name))
     joints.read()
     for name, one in named.items():
         if one.name == "frame" and (body := joints.body_of(name)):
-            frame = joints.frame(name, ())
-            model.spots[name] = body, model.frame_of(body).relative(frame)
+            model.spots[name] = body, model.frame_of(body).relative(joints.frame(name))
     hung = {name for one in model.joints.values() for name in one.ends}
     if GROUND not in hung and model.bodies:
         first = next(iter(model.bodies.values()))
@@ -76,16 +76,16 @@ def read(model: Model, text: str) -> None:
 class Joints:
     """Joints of a model under way, which are ``named`` with what else has a place.
 
-    ``on`` are the links with their bodies and places, ``own`` is the frame of the model, on which
-    axes are if they are ``on_model``, and ``placed`` are the frames that are known.
+    ``on`` are the links with their bodies, ``placed`` are the frames that are known, and ``own`` is
+    that of the model, on which axes are if they are ``on_model``.
     """
 
     model: Model
     named: dict[str, Element]
-    on: dict[str, tuple[str, Frame]]
+    on: dict[str, str]
+    placed: dict[str, Frame]
     own: Frame = field(default_factory=Frame)
     on_model: bool = False
-    placed: dict[str, Frame] = field(default_factory=dict)
 
     def read(self) -> None:
         """Read the joints."""
@@ -101,7 +101,7 @@ class Joints:
         """Declare a joint, whose frames coincide as the model stands."""
         model, data, lead = self.model, line.attribute("name"), 0.0
         parent, child = self.end(line, "parent"), self.end(line, "child")
-        near = far = frame = self.frame(data, ())
+        near = far = frame = self.frame(data)
         if kind in ("revolute", "prismatic", "screw", "universal"):
             first = self.axis(line, "axis", frame)
             near = far = Frame.about(first, frame.place)
@@ -114,12 +114,8 @@ class Joints:
             lead = line.inner("screw_thread_pitch", 1.0)
         near, far = model.frame_of(parent).relative(near), model.frame_of(child).relative(far)
         name = model.add(Joint, data, line.where, kind, parent, child, near, far, lead)
-        for key in ("axis", "axis2"):
-            if (axis := line.first(key)) is not None:
-                losses = axis.optional("dynamics")
-                resist(model, name, losses, losses.inner, first=key == "axis")
-                bounds = axis.optional("limit")
-                limit(model, name, bounds, bounds.inner)
+        resist(model, name, line.optional("axis"), Element.inner)
+        resist(model, name, line.optional("axis2"), Element.inner, first=False)
 
     def couplings(self, line: Element, on: dict[str, list[str]]) -> None:
         """Declare what ties a joint to another one, a mimic or a gearbox, by the joints on each
@@ -138,7 +134,7 @@ class Joints:
         ends = []
         for side in ("parent", "child"):
             body = self.end(line, side)
-            bodies = {body, self.on[line.known("link", carrier, self.on)][0]}
+            bodies = {body, self.on[line.known("link", carrier, self.on)]}
             mine = (model.joints[name] for name in on[body])
             found = [one.name for one in mine if {*one.ends} == bodies]
             if len(found) != 1:
@@ -156,7 +152,7 @@ class Joints:
         else:
             line.usual(key, "0 0 1")
         if expressed := str(xyz.stated("expressed_in", "")):
-            on = self.known(xyz, expressed, ())
+            on = self.known(xyz, expressed)
         elif data.switch("use_parent_model_frame", self.on_model):
             on = self.own
         given = self.model.direction(data.where, given)
@@ -173,17 +169,15 @@ class Joints:
         """Return the body that a link or frame is on; empty where there is none."""
         for _ in range(len(self.named) + 1):
             if name in self.on:
-                return self.on[name][0]
+                return self.on[name]
             frame = self.named.get(name)
             if frame is None or frame.name != "frame":
                 break
             frame.seen, name = True, str(frame.stated("attached_to", ""))
         return ""
 
-    def frame(self, name: str, above: tuple[str, ...]) -> Frame:
+    def frame(self, name: str, above: tuple[str, ...] = ()) -> Frame:
         """Return where a link, frame or joint is; poses may be given relative to each other."""
-        if name in self.on:
-            return self.on[name][1]
         if name in self.placed:
             return self.placed[name]
         line = self.named[name]
@@ -191,9 +185,8 @@ class Joints:
         if name in above or len(above) > _DEEPEST:
             what = "itself" if name in above else "too many others"
             raise line.refuse(f"its pose is relative to {what}")
-        pose, on = line.first("pose"), ""
-        if pose is not None:
-            on = str(pose.stated("relative_to", "") or pose.stated("frame", ""))
+        pose = line.optional("pose")
+        on = str(pose.stated("relative_to", "") or pose.stated("frame", ""))
         if not on and line.name == "joint":
             on = line.needed("child").text
         elif not on and line.name == "frame":
@@ -201,55 +194,58 @@ class Joints:
         self.placed[name] = self.known(line, on, (*above, name)).then(_pose(pose))
         return self.placed[name]
 
-    def known(self, line: Element, name: str, above: tuple[str, ...]) -> Frame:
+    def known(self, line: Element, name: str, above: tuple[str, ...] = ()) -> Frame:
         """Return the frame of a name."""
         if name in ("", "__model__"):
             return self.own
         return self.frame(line.known("frame", name, {**self.on, **self.named}), above)
 
 
-def _body(model: Model, link: Element, frame: Frame) -> tuple[str, Frame]:
-    """Declare a link as a body; return its name here, and where it is."""
+def _body(model: Model, link: Element, frame: Frame) -> str:
+    """Declare a link as a body; return its name here."""
     inertial = link.optional("inertial")
     if inertial.switch("auto", False):
         raise inertial.refuse("auto: is not supported; give mass and inertia")
-    mass, centre = inertial.inner("mass", 1.0), _pose(inertial.first("pose"))
+    mass, centre = inertial.inner("mass", 1.0), _pose(inertial.optional("pose"))
     inertia = centre.tensor(six_moments(inertial.optional("inertia").inner, 1.0))
     given, weight = (mass, centre.place, inertia, frame), float(link.switch("gravity", True))
-    return model.add(Body, link.attribute("name"), link.where, *given, weight=weight), frame
+    return model.add(Body, link.attribute("name"), link.where, *given, weight=weight)
 
 
 def resist(
-    model: Model, joint: str, line: Element, number: Callable[[str, float], float], *, first: bool
+    model: Model,
+    joint: str,
+    line: Element,
+    number: Callable[[Element, str, float], float],
+    *,
+    first: bool = True,
 ) -> None:
-    """Read what resists a joint's motion about its first axis or second one, as far as its kind can
-    have this; what else has a number there is left.
+    """Read what resists a joint's motion about its first axis or second one, and the largest effort
+    and speed of its drive, as far as its kind can have this; what else has a number there is left.
     """
     single = first and model.joints[joint].kind in ("revolute", "prismatic")
+    losses, bounds = line.optional("dynamics"), line.optional("limit")
     found = [0.0] * len(_DYNAMICS)
     for k, key in enumerate(_DYNAMICS):
-        value = number(key, 0.0)
+        value = number(losses, key, 0.0)
         if single and (value >= 0.0 or key not in ("damping", "friction")):
             found[k] = value
         elif value:
-            line.leave(key)
+            losses.leave(key)
     if found[2] and not found[1]:
-        line.leave("spring_reference")
+        losses.leave("spring_reference")
     if found[0] or found[1] or found[3]:
         model.springs.append(Spring(joint, *found))
-
-
-def limit(model: Model, joint: str, line: Element, number: Callable[[str, float], float]) -> None:
-    """Read the largest effort and speed of a joint; a number that is not positive is none."""
-    effort, speed = (max(number(name, 0.0), 0.0) for name in ("effort", "velocity"))
+    # A number that is not positive is none.
+    effort, speed = (max(number(bounds, name, 0.0), 0.0) for name in ("effort", "velocity"))
     if not model.motor(joint, effort=effort, speed=speed):
-        for name in ("effort", "velocity"):
-            line.leave(name)
+        bounds.leave("effort")
+        bounds.leave("velocity")
 
 
-def _pose(line: Element | None) -> Frame:
+def _pose(line: Element) -> Frame:
     """Return the frame of a pose: a place, and roll, pitch and yaw."""
-    if line is None or not line.text:
+    if not line.text:
         return Frame()
     if line.stated("rotation_format", "euler_rpy") != "euler_rpy":
         raise line.refuse("rotation_format: expected euler_rpy")

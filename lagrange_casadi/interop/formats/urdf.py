@@ -18,7 +18,7 @@ from .file_elements import Element, note_unread, parsed, six_moments
 from .file_frames import Frame
 from .posture import outward
 from .record import GROUND, Body, Coupling, Joint, Model
-from .sdf import Joints, limit, resist
+from .sdf import Joints, resist
 
 KINDS: dict[str, str] = {
     "revolute": "revolute",
@@ -111,10 +111,7 @@ class _Robot:
             self.on[child] = (self.body(child, self.placed(parent).then(origin)), Frame())
         axes = self.axes(line, kind)
         name = self.add(line, kind, (parent, origin.then(axes)), (child, axes))
-        if (losses := line.first("dynamics")) is not None:
-            resist(self.model, name, losses, losses.amount, first=True)
-        if (bounds := line.first("limit")) is not None:
-            limit(self.model, name, bounds, bounds.amount)
+        resist(self.model, name, line, Element.amount)
 
     def placed(self, link: str) -> Frame:
         """Return where a link is in the zero posture."""
@@ -175,8 +172,9 @@ class _Robot:
             elif body := model.bodies.get(model.named.get(("body", stated), "")):
                 off = line.switch("turnGravityOff", False) or not line.switch("gravity", True)
                 model.bodies[body.name] = replace(body, weight=float(not off))
-        on = {link: (self.on[link][0], self.placed(link)) for link in self.links}
-        Joints(model, more.by_name("joint"), {"world": (GROUND, Frame()), **on}).read()
+        on = {"world": GROUND} | {link: self.on[link][0] for link in self.links}
+        placed = {"world": Frame()} | {link: self.placed(link) for link in self.links}
+        Joints(model, more.by_name("joint"), on, placed).read()
 
     def actuators(self) -> None:
         """Read which joints have a drive, its ratio, and the inertia of its rotor."""
@@ -209,13 +207,12 @@ class _Robot:
 
     def body(self, stated: str, frame: Frame) -> str:
         """Declare a link as a body."""
-        link, mass, centre = self.links[stated], 0.0, Frame()
-        inertial, inertia = link.first("inertial"), np.zeros((3, 3))
-        if inertial is not None:
+        link, mass = self.links[stated], 0.0
+        inertial = link.optional("inertial")
+        if inertial.seen:
             mass = inertial.needed("mass").amount("value", what="mass")
-            centre, moments = self.origin(inertial.optional("origin")), inertial.first("inertia")
-            if moments is not None:
-                inertia = centre.tensor(six_moments(moments.amount))
+        centre, moments = self.origin(inertial.optional("origin")), inertial.optional("inertia")
+        inertia = centre.tensor(six_moments(moments.amount))
         return self.model.add(Body, stated, link.where, mass, centre.place, inertia, frame)
 
     def axes(self, line: Element, kind: str, *names: str) -> Frame:
