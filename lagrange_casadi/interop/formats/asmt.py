@@ -130,7 +130,7 @@ def _tree(model: Model, text: str) -> _Line:
 
 
 class _Reader:
-    """A file under way: the model, and where its markers are."""
+    """A file under way: the model, where its markers are, and which joints are ``named``."""
 
     def __init__(self, model: Model, root: _Line) -> None:
         self.model, self.root, self.path = model, root, f"/{root.attribute('Name')}"
@@ -205,6 +205,7 @@ class _Reader:
             )
             far = far.then(Frame(axes=_half_turn(KINDS[kind], one.relative(other).axes)))
             name = model.add(Joint, stated, where, KINDS[kind], *bodies, near, far)
+            self.named[f"{self.path}/{line.attribute('Name')}"] = name
         else:
             key, rows = TIES[kind]
             value = line.amount(key, None if kind == "GearJoint" else 0.0) if key else 0.0
@@ -215,8 +216,7 @@ class _Reader:
                 value = model.number(where, value / radius, "ratio of radii")
             if kind == "AngleJoint" and abs(math.sin(value)) < 1e-9:
                 _, rows = TIES["ParallelAxesJoint"]  # the slope of the angle's cosine is zero
-            name = model.add(Joint, stated, where, "", *bodies, near, far, rows=rows(value))
-        self.named[f"{self.path}/{line.attribute('Name')}"] = name
+            model.add(Joint, stated, where, "", *bodies, near, far, rows=rows(value))
 
     def motion(self, line: _Line) -> None:
         """Read the motion of a joint, or of one marker against another one."""
@@ -233,10 +233,8 @@ class _Reader:
             words = f"is not supported; valid: {', '.join([*_MOTIONS, 'GeneralMotion'])}"
             raise model.refuse(where, words)
         key, direction, single = _MOTIONS[line.name]
-        if (name := self.named.get(path := line.attribute("MotionJoint"), "")) not in model.joints:
-            valid = [path for path, name in self.named.items() if name in model.joints]
-            model.known(where, "joint", path, valid)
-        joint = model.joints[name]
+        path = model.known(where, "joint", line.attribute("MotionJoint"), self.named)
+        joint = model.joints[self.named[path]]
         coordinate = joint.name if joint.kind == single else f"{joint.name}:{direction}"
         model.motions[coordinate] = Law(_law(line.attribute(key)), where=where)
 

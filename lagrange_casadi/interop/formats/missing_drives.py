@@ -86,9 +86,7 @@ def _rows(model: Model, twists: dict[str, Rows], size: float) -> list[Rows]:
                 above[one] = (above[other][0] + 1, other, joint.name, sign)
                 break
         else:
-            rows = _between(above, twists, joint.child, joint.parent)
-            for name, twist in twists[joint.name].items():
-                rows[name] = rows.get(name, 0.0) + twist
+            rows = _between(above, twists, joint.child, joint.parent) | twists[joint.name]
             found.append(rows)
             check_size(model, factors := factors + 6 * len(rows))
     for coupling in model.couplings.values():
@@ -112,8 +110,7 @@ def _between(
     while one != other:
         deeper, direction = (other, 1.0) if above[other][0] >= above[one][0] else (one, -1.0)
         _, next_one, joint, sign = above[deeper]
-        for name, twist in twists[joint].items():
-            found[name] = found.get(name, 0.0) + direction * sign * twist
+        found |= {name: direction * sign * twist for name, twist in twists[joint].items()}
         one, other = (one, next_one) if deeper == other else (next_one, other)
     return found
 

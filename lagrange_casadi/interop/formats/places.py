@@ -51,13 +51,11 @@ class Places:
             near, far = self.model.frames(joint)
             own = self.place((near if joint.parent == body.name else far).place)
             origins.append(self.at.get(joint.name, own))
-        centre, base = self.place(body.frame.at(body.centre)), origins[0]
-        tip = max(origins, key=lambda one: math.dist(base, one))
-        if math.dist(base, tip) < 1e-6 * self.size:
-            tip = centre
-        if math.dist(base, tip) < 1e-6 * self.size:
-            tip = self.place(np.array(base) + body.frame.axes[:, 0] * self.size / 10.0)
-        return base, tip
+        base, centre = origins[0], self.place(body.frame.at(body.centre))
+        farthest = max(origins, key=lambda one: math.dist(base, one))
+        aside = self.place(np.array(base) + body.frame.axes[:, 0] * self.size / 10.0)
+        tips = (one for one in (farthest, centre) if math.dist(base, one) >= 1e-6 * self.size)
+        return base, next(tips, aside)
 
     def parameters(self) -> Iterator[str]:
         """Yield lines that declare masses that several bodies have, and those of payloads."""

@@ -7,7 +7,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
-from heapq import heapify, heappop, heappush
+from heapq import heappop, heappush
 from types import SimpleNamespace
 from typing import Any, TypeVar
 
@@ -62,14 +62,12 @@ def outward(
     for k, one in enumerate(closures):
         for body in (one.parent,) if down else (one.parent, one.child):
             on.setdefault(body, []).append(k)
-    waiting = [k for body in sorted(reached) for k in on.pop(body, ())]
-    heapify(waiting)
-    done = set()
+    left = dict(enumerate(closures))
+    waiting = sorted(k for body in reached for k in on.pop(body, ()))
     while waiting:
-        if (k := heappop(waiting)) in done:
+        if (k := heappop(waiting)) not in left:
             continue
-        done.add(k)
-        yield (one := closures[k])
+        yield (one := left.pop(k))
         for body in (one.parent, one.child):
             reached.add(body)
             for other in on.pop(body, ()):
@@ -161,9 +159,7 @@ def _closest(model: Model, joint: Joint) -> Frame:
         case 2:  # of a universal joint: the child's z is across the parent's
             across = np.array([known.axes[0, 2], known.axes[1, 2], 0.0])
             return Frame.about(across if np.any(across) else np.eye(3)[0], place)
-        case 0:
-            return Frame(place)
-    angle = about_z(known)
+    angle = about_z(known) if _turns(joint.kind) else 0.0
     if joint.kind == "screw":
         place[2] = joint.lead * angle / math.tau
     return Frame(place, turned([0.0, 0.0, angle]))
