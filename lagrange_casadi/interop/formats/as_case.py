@@ -69,9 +69,8 @@ class CaseText:
         self.places = Places(model, self.open, NAMES)
         self.variables = self.places.variables
         self.lines: list[str] = []
-        turned = [*self.open, *(one.joint for one in model.springs if one.stiffness)]
-        ends = (model.joints.get(name) or model.ties[name] for name in turned)
-        self.turned = {name for one in ends for name in one.ends}
+        turned = {*self.open, *(one.joint for one in model.springs if one.stiffness)}
+        self.turned = {end for one in model.closures if one.name in turned for end in one.ends}
         self.used = {end for one in model.couplings.values() for end in (one.first, one.second)}
         self.used |= {*model.motors, *(one.joint for one in model.springs)}
         self.stated = {
@@ -108,6 +107,10 @@ class CaseText:
     def call(self, function: str, *arguments: object) -> None:
         """Write a call."""
         self.lines += Call(function, arguments).lines()
+
+    def own(self, wanted: str) -> str:
+        """Return a name for a load of the case, as text."""
+        return json.dumps(self.places.own(wanted))
 
     def called(self, name: str) -> None:
         """Write what a part is called in the file, where that is no name here."""
@@ -146,8 +149,7 @@ class CaseText:
         own = Frame(np.array(base), self.places.link_axes(body.name))
         arguments: list[object] = [json.dumps(body.name)]
         if body.name in self.places.held:
-            ends = [self.places.written(base), self.places.written(tip)]
-            arguments.append(Call("between=", ends))
+            arguments.append(Call("between=", [*map(self.places.written, (base, tip))]))
             if body.name in self.turned:
                 arguments.append(direction(own.axes[:, 1], "beside"))
         else:  # no joint gives its posture: it is on its own axes
@@ -238,14 +240,12 @@ class CaseText:
             losses += [f"coulomb={text_of(one.friction)}", _SMOOTH] if one.friction else []
             if losses:
                 word = "friction" if one.friction else "damping"
-                name = json.dumps(self.places.own(f"{one.joint}_{word}"))
-                self.call("m.friction", name, joint, *losses)
+                self.call("m.friction", self.own(f"{one.joint}_{word}"), joint, *losses)
             if one.stiffness and self.model.joints[one.joint].kind == "prismatic":
                 self.pull(one, f"m.coordinate({joint}){signed(rest - one.rest)}")
             elif one.stiffness:
                 law = f"stiffness={text_of(one.stiffness)}", f"angle={of_pi(one.rest - rest)}"
-                name = json.dumps(self.places.own(f"{one.joint}_spring"))
-                self.call("m.torsion_spring", name, joint, *law)
+                self.call("m.torsion_spring", self.own(f"{one.joint}_spring"), joint, *law)
         for body in self.model.bodies.values():
             lift = (body.weight - 1.0) * self.model.gravity
             if body.mass and np.any(lift):
@@ -256,12 +256,11 @@ class CaseText:
         """Declare what is known of drives, and name frames without mass."""
         for joint, numbers in self.model.motors.items():
             given = [f"{word}={text_of(number)}" for word, number in numbers.items()]
-            name = json.dumps(self.places.own(f"{joint}_drive"))
-            self.call("m.drive", name, self.variables[f"joint {joint}"], *given)
+            driven = self.variables[f"joint {joint}"]
+            self.call("m.drive", self.own(f"{joint}_drive"), driven, *given)
         for stated, (body, frame) in self.model.spots.items():
             point = self.places.point(body, self.model.frame_of(body).then(frame).place)
-            name = self.places.variable(stated)
-            self.lines.append(f"{name} = {point}")
+            self.lines.append(f"{self.places.variable(stated)} = {point}")
 
     def pull(self, one: Spring, stretched: str) -> None:
         """Declare the spring of a joint that slides, as a force on its child along the axis, and
@@ -280,13 +279,13 @@ class CaseText:
         """Declare a force at a point, along a vector times a size."""
         parts = zip("xyz", along.tolist(), strict=True)
         given = [f"{axis}={text_of(part)} * {size}" for axis, part in parts if part]
-        self.call("m.force", json.dumps(self.places.own(name)), point, *given, *more)
+        self.call("m.force", self.own(name), point, *given, *more)
 
     def end(self) -> None:
         """End with the motion of each drive."""
-        model, order = self.model, [joint.coordinates for joint in self.model.joints.values()]
+        model = self.model
         self.lines.append("laws = {")
-        for name in (name for names in order for name in names if name in model.motions):
+        for name in (name for name in model.coordinates if name in model.motions):
             law = self.motions.law(name, model.motions[name])
             entry = replace(law, function=f"{json.dumps(name)}: {law.function}")
             self.lines += [f"    {line}" for line in entry.lines(",")]
@@ -294,9 +293,9 @@ class CaseText:
         start, stop, count = model.span
         end = [f"t=({text_of(start)}, {text_of(stop)}, {count})"]
         if model.posture:
-            shifted = [(name, x - self.motions.offset(name)) for name, x in model.posture.items()]
-            rough = ", ".join(f'"{name}": {text_of(round(x, 6))}' for name, x in shifted)
-            end.append(f"posture={{{rough}}}")
+            offset = self.motions.offset
+            rough = {name: round(x - offset(name), 6) + 0.0 for name, x in model.posture.items()}
+            end.append(f"posture={json.dumps(rough)}")
         if model.drives is not None:
             end.append(f"drives={json.dumps(model.drives)}")
         self.call("return Scene", "m", "laws", *end)
@@ -344,7 +343,7 @@ def _turns_about(places: Places, tie: Joint, body: str, sign: float) -> str:
     """
     model = places.model
     along = model.frames(tie)[0].axes[:, 2]
-    for joint in (model.joints[name] for name in places.on[body]):
+    for joint in places.on[body]:
         names = [one for one, _, _ in MOVES[joint.kind] if one in ("", "turn")]
         mine = {*tie.ends} != {*joint.ends}
         cosine = float(model.frames(joint)[0].axes[:, 2] @ along)

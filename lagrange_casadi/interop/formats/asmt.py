@@ -185,8 +185,8 @@ class _Reader:
     def ends(self, line: _Line) -> tuple[tuple[str, str], tuple[Frame, Frame]]:
         """Return the bodies and the frames of the two markers that a line names."""
         stated = (line.attribute(key) for key in ("MarkerI", "MarkerJ"))
-        names = [line.known("marker", one, self.markers) for one in stated]
-        (parent, near), (child, far) = (self.markers[name] for name in names)
+        sides = (self.markers[line.known("marker", one, self.markers)] for one in stated)
+        (parent, near), (child, far) = sides
         return (parent, child), (near, far)
 
     def joint(self, line: _Line) -> None:
@@ -194,8 +194,7 @@ class _Reader:
         model, kind, where = self.model, line.name, line.at()
         stated = line.attribute("Name") or f"{kind}_{line.line}"
         if kind not in KINDS and kind not in TIES:
-            words = f"is not supported; valid: {', '.join([*KINDS, *TIES])}"
-            raise model.refuse(where, words)
+            raise model.refuse(where, f"is not supported; valid: {', '.join([*KINDS, *TIES])}")
         bodies, (near, far) = self.ends(line)
         if kind in KINDS:
             offset = line.amount("offset", 0.0) if kind == "PlanarJoint" else 0.0
@@ -230,8 +229,9 @@ class _Reader:
                 model.motions[coordinate] = Law(_law(line.attribute(key)), where=where)
             return
         if line.name not in _MOTIONS:
-            words = f"is not supported; valid: {', '.join([*_MOTIONS, 'GeneralMotion'])}"
-            raise model.refuse(where, words)
+            raise model.refuse(
+                where, f"is not supported; valid: {', '.join([*_MOTIONS, 'GeneralMotion'])}"
+            )
         key, direction, single = _MOTIONS[line.name]
         path = model.known(where, "joint", line.attribute("MotionJoint"), self.named)
         joint = model.joints[self.named[path]]

@@ -10,7 +10,7 @@ import numpy as np
 from ...base.arrays import Array
 from .file_frames import Frame
 from .posture import EXACT, SLACK, apart, assemble, extent, hang, outward
-from .record import GROUND, Body, Model
+from .record import GROUND, Body, Joint, Model
 
 SHORTEST_ROD = 1e-9
 """The length of a rod, at least, of its mechanism's size: places are as exact as doubles are."""
@@ -28,8 +28,8 @@ def checked(model: Model, *, accept_inertias: bool = False) -> Model:
     if not any(body.mass for body in model.bodies.values()):
         raise model.refuse("", "no body that moves has a mass: give the bodies masses")
     wrong: dict[str, str] = {}
-    welds = (one for one in model.joints.values() if one.kind == "weld")
-    welded = {name for one in welds for name in one.ends}
+    joints = model.joints.values()
+    welded = {name for one in joints if one.kind == "weld" for name in one.ends}
     for body in model.bodies.values():
         model.bodies[body.name] = _body(model, body, welded, wrong)
     if wrong and not accept_inertias:
@@ -49,14 +49,15 @@ def checked(model: Model, *, accept_inertias: bool = False) -> Model:
         for name in joint.ends:
             model.known(f"{joint.where}: joint '{joint.name}'", "body", name, bodies)
         if joint.parent == joint.child:
-            words = f"joint '{joint.name}' joins '{joint.parent}' to itself"
-            raise model.refuse(joint.where, words)
+            raise model.refuse(
+                joint.where, f"joint '{joint.name}' joins '{joint.parent}' to itself"
+            )
     hang(model)
     if model.drawn:
         assemble(model)
     _connected(model)
     _lengths(model)
-    valid = {name: None for joint in model.joints.values() for name in joint.coordinates}
+    valid = model.coordinates
     single = {name: None for name in valid if ":" not in name}
     stated = {name: law.where for name, law in model.motions.items()}
     stated |= dict.fromkeys(model.posture, "posture")
@@ -82,9 +83,11 @@ def _body(model: Model, body: Body, welded: set[str], wrong: dict[str, str]) -> 
     inertia = (body.inertia + body.inertia.T) / 2.0
     if not np.any(inertia) and body.mass > 0.0 and not body.point:
         if body.name not in welded:
-            words = f"{what} has a mass of {body.mass:g} kg and no inertia"
-            words += "; give its moments of inertia about the centre of mass"
-            raise model.refuse(body.where, words)
+            raise model.refuse(
+                body.where,
+                f"{what} has a mass of {body.mass:g} kg and no inertia; give its moments of"
+                " inertia about the centre of mass",
+            )
         model.notes.append(f"{what} has no inertia: its mass is a lump at its centre.")
     moments = np.linalg.eigvalsh(inertia)
     excess, off = float(2.0 * moments[2] - moments.sum()), EXACT * float(np.abs(moments).max())
@@ -112,8 +115,7 @@ def _connected(model: Model) -> None:
             model.attach(free, GROUND, "free", one.where)
     for body in model.bodies.values():
         if body.name not in reached:
-            words = f"body '{body.name}' is not connected to the ground"
-            raise model.refuse(body.where, words)
+            raise model.refuse(body.where, f"body '{body.name}' is not connected to the ground")
 
 
 def _lengths(model: Model) -> None:
@@ -123,8 +125,11 @@ def _lengths(model: Model) -> None:
     size = extent(model)
     for body in model.bodies.values():
         if body.rod and not (length := math.dist(*body.rod)) > SHORTEST_ROD * size:
-            words = f"body '{body.name}': a rod of {length:g} m in a mechanism of {size:g} m"
-            raise model.refuse(body.where, f"{words}; expected at least {SHORTEST_ROD:g} of it")
+            raise model.refuse(
+                body.where,
+                f"body '{body.name}': a rod of {length:g} m in a mechanism of {size:g} m;"
+                f" expected at least {SHORTEST_ROD:g} of it",
+            )
     for tie in model.ties.values():
         near, far = model.frames(tie)
         away = (one.relative(other).place[:2] for one, other in ((near, far), (far, near)))
@@ -140,7 +145,7 @@ def _spins(model: Model) -> None:
         body = model.bodies[name]
         if body.rod is not None:
             continue
-        first, last = (model.joints[one] for one in on[name])
+        first, last = on[name]
         other = last.parent if last.child == name else last.child
         along = model.frames(last)[0].place - model.frames(first)[0].place
         across = _axis_of(model, on[other], along / np.linalg.norm(along))
@@ -158,11 +163,11 @@ def _spins(model: Model) -> None:
         )
 
 
-def _axis_of(model: Model, joints: list[str], along: Array) -> Array:
+def _axis_of(model: Model, joints: list[Joint], along: Array) -> Array:
     """Return a direction across a line, about which the body at its end, which has these joints,
     turns, where it does.
     """
-    for joint in (model.joints[one] for one in joints):
+    for joint in joints:
         if joint.kind == "revolute":
             axis = model.frames(joint)[0].axes[:, 2]
             across = axis - (axis @ along) * along
@@ -172,11 +177,13 @@ def _axis_of(model: Model, joints: list[str], along: Array) -> Array:
 
 
 def _rounding(model: Model) -> None:
-    """Lay the frames of each joint on each other where they miss by a drawing's rounding."""
+    """Note axes and frames of joints that miss by a drawing's rounding."""
     size, (off, where) = extent(model), model.rounded
     if off:
-        words = f"Axes that are off right angles by {off:.1e} (at {where}) or less"
-        model.notes.append(f"{words} are taken as rounding, and set at right angles.")
+        model.notes.append(
+            f"Axes that are off right angles by {off:.1e} (at {where}) or less are taken as"
+            " rounding, and set at right angles."
+        )
     for joint in model.joints.values():
         gap, angle = apart(model, joint)
         if EXACT < max(gap / size, angle) <= SLACK:
@@ -192,7 +199,7 @@ def spinning(model: Model) -> list[str]:
     """
     found, on = [], model.joints_on()
     for body in model.bodies.values():
-        mine = [model.joints[one] for one in on[body.name]]
+        mine = on[body.name]
         if len(mine) != 2 or any(one.kind != "spherical" for one in mine) or body.point:
             continue
         places = [one.on_parent if one.parent == body.name else one.on_child for one in mine]

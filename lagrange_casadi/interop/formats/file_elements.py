@@ -88,8 +88,7 @@ class Element:
 
     def ignore(self) -> None:
         """Note that the element is not read."""
-        words = f"{self.form.format(self.name)} of line {self.line} is ignored."
-        self.model.notes.append(words)
+        self.model.notes.append(f"{self.form.format(self.name)} of line {self.line} is ignored.")
 
     def needed(self, *names: str) -> Self:
         """Return the first element in it of these names, of which there must be one."""
@@ -228,8 +227,10 @@ def parsed(model: Model, text: str, root: str) -> Element:
         stack.pop()
 
     def refuse(*_: object) -> None:
-        where = f"line {parser.CurrentLineNumber}"
-        raise model.refuse(where, "document types and entities are refused: a model is data")
+        raise model.refuse(
+            f"line {parser.CurrentLineNumber}",
+            "document types and entities are refused: a model is data",
+        )
 
     parser.StartElementHandler, parser.EndElementHandler = start, end
     parser.CharacterDataHandler = lambda data: pieces[-1].append(data)

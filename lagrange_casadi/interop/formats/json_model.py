@@ -114,9 +114,11 @@ def read(model: Model, text: str) -> None:
         raise model.refuse("", "lists in lists are too deep, or a number is too long") from None
     top = _object(model, "", data, TOP, "schema", "version", "bodies", "joints")
     if data["schema"] != SCHEMA or data["version"] != VERSION:
-        expected = f'"schema": "{SCHEMA}", "version": {VERSION}'
-        got = f"{shown(data['schema'])}, {shown(data['version'])}"
-        raise model.refuse("", f"expected {expected}, got {got}")
+        raise model.refuse(
+            "",
+            f'expected "schema": "{SCHEMA}", "version": {VERSION},'
+            f" got {shown(data['schema'])}, {shown(data['version'])}",
+        )
     if data.get("units", "SI") != "SI":
         raise model.refuse("units", f'expected "SI", got {shown(data["units"])}')
     model.name = model.name_of("mechanism", top.word("name", model.name), top.at("name"))
@@ -162,14 +164,14 @@ def write(model: Model) -> str:
     return json.dumps(given, indent=1, allow_nan=False, default=_plain) + "\n"
 
 
-def _plain(part: object) -> object:
+def _plain(part: object) -> Any:
     """Return a part of a record in the words of the file."""
     match part:
         case Body():
             own: dict[str, Any] = {"centre": part.centre, "inertia": part.inertia}
             own = {"rod": part.rod} if part.rod else {"point": True} if part.point else own
             own |= {"places": part.places} if part.places else {}
-            return {"name": part.name, "mass": part.mass, **_plain_frame(part.frame), **own}
+            return {"name": part.name, "mass": part.mass, **_plain(part.frame), **own}
         case Joint() | Coupling():
             keys = COUPLING if isinstance(part, Coupling) else JOINT if part.lead else JOINT[:-1]
             return {key: getattr(part, key) for key in keys}
@@ -177,14 +179,10 @@ def _plain(part: object) -> object:
             samples = part.samples
             return part.text if samples is None else dict(zip(SAMPLES, samples, strict=True))
         case Frame():
-            return _plain_frame(part)
+            upright = np.array_equal(part.axes, np.eye(3))
+            return {"place": part.place} | ({} if upright else {"axes": part.axes.T})
     assert isinstance(part, np.ndarray)
     return part.tolist()
-
-
-def _plain_frame(frame: Frame) -> dict[str, Array]:
-    upright = np.array_equal(frame.axes, np.eye(3))
-    return {"place": frame.place} | ({} if upright else {"axes": frame.axes.T})
 
 
 def _body(one: _Object) -> None:

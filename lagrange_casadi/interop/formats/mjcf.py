@@ -126,8 +126,7 @@ def _compiled(model: Model, files: dict[str, bytes]) -> dict[str, Any]:
         for name, content in files.items():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             (folder / name).write_bytes(content)
-        found = run_apart(compiled, model.file.name, _READ, _IDLE, folder=folder, **LIMITS)
-    return dict(found)
+        return dict(run_apart(compiled, model.file.name, _READ, _IDLE, folder=folder, **LIMITS))
 
 
 def _files(model: Model, text: str) -> dict[str, bytes]:
@@ -231,14 +230,14 @@ class _Reader:
             words |= {"Contacts": None}
         model.notes += [f"{one}: not read." for one in words]
 
-    def called(self, kind: str, k: int) -> str:
-        """Return the name of an object, or its number."""
-        return self.names[kind][k] or f"{kind}_{k}"
+    def called(self, kind: str, k: int) -> tuple[str, str]:
+        """Return the name of an object, or its number, and what messages call it."""
+        stated = self.names[kind][k] or f"{kind}_{k}"
+        return stated, f"{kind} {shown(stated)}"
 
     def body(self, k: int) -> None:
         """Declare a body, and the joints that it hangs on."""
-        model, m, stated = self.model, self.m, self.called("body", k)
-        where = f"body {shown(stated)}"
+        model, m, (stated, where) = self.model, self.m, self.called("body", k)
         mass = model.number(where, m.body_mass[k], "mass")
         place = model.numbers(where, m.xpos[k], "place")
         frame = Frame(place, model.rotation(where, np.reshape(m.xmat[k], (3, 3))))
@@ -262,9 +261,8 @@ class _Reader:
 
     def joint(self, j: int, above: str, below: str, frame: Frame) -> None:
         """Declare a joint, with its spring; in the reference posture its coordinate is zero."""
-        model, m, stated = self.model, self.m, self.called("joint", j)
+        model, m, (stated, where) = self.model, self.m, self.called("joint", j)
         kind = ("free", "spherical", "prismatic", "revolute")[m.jnt_type[j]]
-        where = f"joint {shown(stated)}"
         far = Frame() if kind == "free" else self.frame(where, m.jnt_pos[j])
         if kind in ("prismatic", "revolute"):
             axis = model.numbers(where, m.jnt_axis[j], "axis")
@@ -292,8 +290,8 @@ class _Reader:
 
     def equality(self, k: int) -> None:
         """Declare an equality: connect and weld close loops, joint couples two of them."""
-        model, m, stated = self.model, self.m, self.called("equality", k)
-        where, data, kind = f"equality {shown(stated)}", m.eq_data[k], self.kinds["eq_type"][k]
+        model, m, (stated, where) = self.model, self.m, self.called("equality", k)
+        data, kind = m.eq_data[k], self.kinds["eq_type"][k]
         one, other = m.eq_obj1id[k], m.eq_obj2id[k]
         if kind == "JOINT":
             if np.any(data[2:5]) or other < 0:

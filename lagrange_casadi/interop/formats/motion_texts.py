@@ -62,12 +62,14 @@ def parsed(text: str) -> tuple[str, float | None]:
         try:
             found[node] = _number(node, [found[part] for part in _parts(node, plain)])
         except (ArithmeticError, TypeError, ValueError):
-            words = f"'{_stated(node, plain)}' is no number of at most {LARGEST:g}"
-            raise LawError(words) from None
+            raise LawError(
+                f"'{_stated(node, plain)}' is no number of at most {LARGEST:g}"
+            ) from None
     nested = max(accumulate((one == "(") - (one == ")") for one in plain))
     if len(nodes) > 2 * _TALLEST or nested > _DEEPEST:
-        most = f"{_TALLEST} terms, and {_DEEPEST} pairs of parentheses in each other"
-        raise LawError(f"expected at most {most}")
+        raise LawError(
+            f"expected at most {_TALLEST} terms, and {_DEEPEST} pairs of parentheses in each other"
+        )
     return re.sub(r"(?<![\w.])[a-z]\w*", lambda word: _WORDS[word[0]], plain), found[tree]
 
 
@@ -86,8 +88,9 @@ def _parts(node: ast.expr, text: str) -> list[ast.expr]:
             if len(given) != 1 + (name == "atan2"):
                 raise LawError(f"{name} of {len(given)} numbers")
             return given
-    words = f"'{_stated(node, text)}' is not supported"
-    raise LawError(f"{words}; valid: numbers, pi, t, + - * / ^, {_NAMES}")
+    raise LawError(
+        f"'{_stated(node, text)}' is not supported; valid: numbers, pi, t, + - * / ^, {_NAMES}"
+    )
 
 
 def _stated(node: ast.expr, text: str) -> str:
@@ -138,8 +141,7 @@ class Motions:
         try:
             text, value = parsed(law.text)
         except LawError as error:
-            words = f"motion of '{coordinate}': {error}"
-            raise self.model.refuse(law.where, words) from None
+            raise self.model.refuse(law.where, f"motion of '{coordinate}': {error}") from None
         if value is None:
             return Call("expression", [f"lambda t: {text}{signed(-less)}"])
         return Call("polynomial", [of_pi(value - less)])
@@ -158,7 +160,9 @@ class Motions:
         if all(str(self.law(one, law)) == "polynomial(0.0)" for one, law in given.items()):
             return False
         if len(given) < len(turns):
-            words = f"motion of '{next(iter(given))}': expected one of each turn of joint '{name}'"
-            words += ", for the body is turned about several axes in the reference posture"
-            raise self.model.refuse(joint.where, words)
+            raise self.model.refuse(
+                joint.where,
+                f"motion of '{next(iter(given))}': expected one of each turn of joint '{name}',"
+                " for the body is turned about several axes in the reference posture",
+            )
         return True

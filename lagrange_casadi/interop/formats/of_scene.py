@@ -71,7 +71,7 @@ def model_of(scene: Scene, parameters: Mapping[str, float], file: Path) -> Model
             )
     for name, joint in described.joints.items():
         model.joints[name] = _joint(name, joint)
-    known = [name for joint in model.joints.values() for name in joint.coordinates]
+    known = model.coordinates
     values = ca.DM(list(scene.values(parameters).values()))
     laws = scene.prescribed
     for k, name in enumerate(laws.joints):

@@ -34,8 +34,7 @@ class Places:
         self.at = {one.name: self.place(model.frames(one)[1].place) for one in closed}
         self.on = model.joints_on()
         self.between = {
-            name: self._ends(body, [model.joints[one] for one in self.on[name]])
-            for name, body in model.bodies.items()
+            name: self._ends(body, self.on[name]) for name, body in model.bodies.items()
         }
         self.named: dict[Place, str] = {}
         self._masses: dict[str, str] = {}

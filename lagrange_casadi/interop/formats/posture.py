@@ -202,8 +202,8 @@ def opened(model: Model) -> dict[str, tuple[float, float]]:
     size = extent(model)
     gaps = {one.name: apart(model, one) for one in model.closures}
     off = {name: max(gap / size, angle) for name, (gap, angle) in gaps.items()}
-    names = sorted(off, key=lambda name: -off[name])
-    return {name: gaps[name] for name in names if off[name] > SLACK}
+    most = sorted(off, key=off.__getitem__, reverse=True)
+    return {name: gaps[name] for name in most if off[name] > SLACK}
 
 
 def hang(model: Model) -> None:

@@ -239,8 +239,8 @@ class Model:
 
     def taken(self, name: str) -> bool:
         """Return whether a part has a name here."""
-        parts = (self.bodies, self.joints, self.couplings, self.ties)
-        return name == GROUND or any(name in one for one in parts)
+        tables = (self.bodies, self.joints, self.couplings, self.ties)
+        return any(name in one for one in ({GROUND}, *tables))
 
     @property
     def closures(self) -> list[Joint]:
@@ -263,8 +263,10 @@ class Model:
         try:
             return number(given)
         except (TypeError, ValueError, OverflowError):
-            expected = f"expected a finite number of at most {LARGEST:g}"
-            raise self.refuse(where, f"{what}: {expected}, got {shown(given)}") from None
+            raise self.refuse(
+                where,
+                f"{what}: expected a finite number of at most {LARGEST:g}, got {shown(given)}",
+            ) from None
 
     def numbers(self, where: str, given: object, what: str, count: int = 3) -> Array:
         """Return so many numbers of the file, from a list or from a text with blanks."""
@@ -387,13 +389,18 @@ class Model:
         name = f"{body}_{'fixed' if kind == 'weld' else kind}"
         self.add(Joint, name, where, kind, parent, body, near, Frame())
 
-    def joints_on(self) -> dict[str, list[str]]:
-        """Return the names of the joints on each body."""
-        found: dict[str, list[str]] = {name: [] for name in (GROUND, *self.bodies)}
+    def joints_on(self) -> dict[str, list[Joint]]:
+        """Return the joints on each body."""
+        found: dict[str, list[Joint]] = {name: [] for name in (GROUND, *self.bodies)}
         for joint in self.joints.values():
             for name in joint.ends:
-                found[name].append(joint.name)
+                found[name].append(joint)
         return found
+
+    @property
+    def coordinates(self) -> dict[str, Joint]:
+        """The joints by the full names of their coordinates."""
+        return {name: joint for joint in self.joints.values() for name in joint.coordinates}
 
     def frame_of(self, body: str) -> Frame:
         """Return where a body is in the reference posture."""

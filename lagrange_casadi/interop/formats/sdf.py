@@ -117,7 +117,7 @@ class Joints:
         resist(model, name, line.optional("axis"), Element.inner)
         resist(model, name, line.optional("axis2"), Element.inner, first=False)
 
-    def couplings(self, line: Element, on: dict[str, list[str]]) -> None:
+    def couplings(self, line: Element, on: dict[str, list[Joint]]) -> None:
         """Declare what ties a joint to another one, a mimic or a gearbox, by the joints on each
         body.
         """
@@ -135,11 +135,9 @@ class Joints:
         for side in ("parent", "child"):
             body = self.end(line, side)
             bodies = {body, self.on[line.known("link", carrier, self.on)]}
-            mine = (model.joints[name] for name in on[body])
-            found = [one.name for one in mine if {*one.ends} == bodies]
+            found = [one.name for one in on[body] if {*one.ends} == bodies]
             if len(found) != 1:
-                words = f"its {side} has no joint on the reference body {shown(carrier)}"
-                raise line.refuse(words)
+                raise line.refuse(f"its {side} has no joint on the reference body {shown(carrier)}")
             ends += found
         model.add(Coupling, data, line.where, *ends, -ratio)
 

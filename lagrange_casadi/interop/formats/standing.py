@@ -27,8 +27,9 @@ def free(model: Model, name: str) -> None:
     connected = [joint for base, joint in bases.items() if base in reached]
     if len(connected) != 1:
         found = ", ".join(map(repr, connected)) or "none"
-        words = f"expected joints from '{name}' to one base that is free, found {found}"
-        raise model.refuse("", words)
+        raise model.refuse(
+            "", f"expected joints from '{name}' to one base that is free, found {found}"
+        )
     del model.joints[connected[0]]
     place = model.frame_of(body).then(frame)
     model.add(Joint, f"{name}_free", "", "free", GROUND, body, place, frame)

@@ -43,8 +43,9 @@ def read(model: Model, text: str) -> None:
     root = parsed(model, text, "robot")
     for one in root.inside:
         if one.name.startswith("xacro:"):
-            data = f"xacro {model.file.name} > expanded.urdf"
-            raise one.refuse(f"is a macro of xacro; expand it first: {data}")
+            raise one.refuse(
+                f"is a macro of xacro; expand it first: xacro {model.file.name} > expanded.urdf"
+            )
     model.name = model.name_of("mechanism", root.given.get("name", model.name), root.where)
     _Robot(model, root).read()
     note_unread(model, root)
@@ -189,8 +190,9 @@ class _Robot:
                     else:
                         fixed.append(stated)
         if fixed:
-            words = f"Drives of joints that are fixed or not in the file: {listed(fixed)}."
-            model.notes.append(words)
+            model.notes.append(
+                f"Drives of joints that are fixed or not in the file: {listed(fixed)}."
+            )
 
     def rotor(self, joint: str, parts: list[Element]) -> None:
         """Read the ratio and the rotor's inertia of a joint's transmission, from any of its
