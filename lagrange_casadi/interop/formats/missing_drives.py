@@ -32,23 +32,23 @@ def drive(model: Model) -> None:
     names = [name for one in twists.values() for name in one]
     idle = sum(model.bodies[one].rod is not None for one in spinning(model))
     idle += 3 * sum(body.point for body in model.bodies.values())
-    joint_of = {name: one for one in model.joints.values() for name in one.coordinates}
-    preferred = set(model.preferred)
+    joint_of, preferred = model.coordinates, set(model.preferred)
 
     def last(name: str) -> tuple[bool, ...]:
         several = name in joint_of and len(joint_of[name].coordinates) > 2
         later = name.partition(":")[0] not in preferred
         return name not in model.motions, name not in joint_of, later, several
 
-    order, rank = sorted(names, key=last), 0
-    followed: set[str] = set()
-    for rows, block, _ in blocks(model, _rows(model, twists, size), order):
-        found = int(np.linalg.matrix_rank(rows, RANK))
-        followed |= {block[k] for k in _basis(rows, found)}
-        rank += found
-    needed = len(names) - rank - idle - sum(name in model.motions for name in names)
-    free = (one for one in order if one in joint_of and one not in {*followed, *model.motions})
-    resting = [*free][: max(needed, 0)]
+    equations, factors = list[Rows](), 0
+    for found in _rows(model, twists, size):
+        check_size(model, factors := factors + 6 * len(found))
+        equations += [found] if found else []
+    order, followed = sorted(names, key=last), set[str]()
+    for rows, block, _ in blocks(model, equations, order):
+        followed |= {block[k] for k in _basis(rows)}
+    needed = len(names) - len(followed) - idle - sum(name in model.motions for name in names)
+    taken = {*followed, *model.motions}
+    resting = [one for one in order if one in joint_of and one not in taken][: max(needed, 0)]
     if resting:
         model.notes.append(REST.format(", ".join(resting)))
     for name in resting:
@@ -56,9 +56,9 @@ def drive(model: Model) -> None:
         model.motions[name] = Law(repr(float(start) + 0.0))
 
 
-def _basis(rows: Array, rank: int) -> list[int]:
+def _basis(rows: Array) -> list[int]:
     """Return the numbers of columns on which all others depend, the last ones that do."""
-    found: list[int] = []
+    found, rank = list[int](), int(np.linalg.matrix_rank(rows, RANK))
     axes = np.zeros((len(rows), rank))
     for k in reversed(range(rows.shape[1])):
         if len(found) == rank:
@@ -72,32 +72,24 @@ def _basis(rows: Array, rank: int) -> list[int]:
     return found
 
 
-def _rows(model: Model, twists: dict[str, Rows], size: float) -> list[Rows]:
-    """Return what closes in the reference posture: equations of loops, couplings and ties.
-
-    Raises :class:`.ModelFileError` for too many factors.
-    """
+def _rows(model: Model, twists: dict[str, Rows], size: float) -> Iterator[Rows]:
+    """Yield what closes in the reference posture: equations of loops, couplings and ties."""
     above: dict[str, tuple[int, str, str, float]] = {GROUND: (0, "", "", 0.0)}
-    found: list[Rows] = []
-    factors = 0
     for joint in outward([*model.joints.values()], {GROUND}):
-        for one, other, sign in (joint.child, joint.parent, 1.0), (joint.parent, joint.child, -1.0):
-            if one not in above:
-                above[one] = (above[other][0] + 1, other, joint.name, sign)
-                break
+        parent, child = joint.ends
+        if child not in above:
+            above[child] = (above[parent][0] + 1, parent, joint.name, 1.0)
+        elif parent not in above:
+            above[parent] = (above[child][0] + 1, child, joint.name, -1.0)
         else:
-            rows = _between(above, twists, joint.child, joint.parent) | twists[joint.name]
-            found.append(rows)
-            check_size(model, factors := factors + 6 * len(rows))
+            yield _between(above, twists, child, parent) | twists[joint.name]
     for coupling in model.couplings.values():
         ratio = np.array([[-coupling.ratio]])
-        found.append({coupling.second: np.ones((1, 1)), coupling.first: ratio})
+        yield {coupling.second: np.ones((1, 1)), coupling.first: ratio}
     for tie in model.ties.values():
         slopes = closing(model, tie, tie.rows, size)[1]
         rows = _between(above, twists, tie.parent, tie.child)
-        found.append({name: slopes @ twist for name, twist in rows.items()})
-        check_size(model, factors := factors + 6 * len(rows))
-    return [rows for rows in found if rows]
+        yield {name: slopes @ twist for name, twist in rows.items()}
 
 
 def _between(

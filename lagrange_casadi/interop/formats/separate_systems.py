@@ -23,8 +23,11 @@ number that an unknown has; all have as many.
 def check_size(model: Model, factors: int) -> None:
     """Raise :class:`.ModelFileError` for equations with more factors than :data:`MOST`."""
     if factors > MOST:
-        words = f"its loops have so many joints in common that {factors} factors relate these"
-        raise model.refuse("", f"{words}; expected at most {MOST}")
+        raise model.refuse(
+            "",
+            f"its loops have so many joints in common that {factors} factors relate these;"
+            f" expected at most {MOST}",
+        )
 
 
 def blocks(
@@ -54,12 +57,9 @@ def blocks(
 def _matrix(model: Model, equations: Sequence[Rows], names: list[str]) -> Array:
     """Return the factors of equations, a group of columns for each unknown."""
     shapes = [next(iter(rows.values())).shape for rows in equations]
-    height, width = sum(shape[0] for shape in shapes), shapes[0][1]
-    check_size(model, height * len(names) * width)
-    column, at = {name: k for k, name in enumerate(names)}, 0
-    found = np.zeros((height, len(names), width))
+    check_size(model, sum(height * width for height, width in shapes) * len(names))
+    parts = []
     for rows, shape in zip(equations, shapes, strict=True):
-        for name, factors in rows.items():
-            found[at : at + shape[0], column[name]] += factors
-        at += shape[0]
-    return found.reshape(height, -1)
+        nothing = np.zeros(shape)
+        parts.append(np.hstack([rows.get(name, nothing) for name in names]))
+    return np.vstack(parts)
