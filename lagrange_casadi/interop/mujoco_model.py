@@ -53,9 +53,10 @@ def compiled(file: str, fields: list[str], usual: str) -> dict[str, object]:
     try:
         import mujoco
     except ImportError as error:
-        words = "a model of MuJoCo is compiled by MuJoCo: pip install mujoco"
         broken = "" if isinstance(error, ModuleNotFoundError) else f"; it is broken here: {error}"
-        raise MissingPackageError(words + broken) from None
+        raise MissingPackageError(
+            f"a model of MuJoCo is compiled by MuJoCo: pip install mujoco{broken}"
+        ) from None
     try:
         model = mujoco.MjModel.from_xml_path(file)
         data = mujoco.MjData(model)
@@ -63,36 +64,35 @@ def compiled(file: str, fields: list[str], usual: str) -> dict[str, object]:
     except (ValueError, mujoco.FatalError) as error:
         return {"refused": one_line(error)}
     values, plain = _values(mujoco, model), _values(mujoco, mujoco.MjModel.from_xml_string(_PLAIN))
-    idle = re.compile(usual)
-    others = [
-        name
-        for name, value in values.items()
-        if name not in fields and not idle.fullmatch(name) and _differs(value, plain.get(name))
-    ]
-    kinds = {
-        "eq_type": mujoco.mjtEq,
-        "eq_objtype": mujoco.mjtObj,
-        "actuator_trntype": mujoco.mjtTrn,
-    }
-    names = {
-        kind: [mujoco.mj_id2name(model, number, k) for k in range(count)]
-        for kind, number, count in (
-            ("body", mujoco.mjtObj.mjOBJ_BODY, model.nbody),
-            ("joint", mujoco.mjtObj.mjOBJ_JOINT, model.njnt),
-            ("equality", mujoco.mjtObj.mjOBJ_EQUALITY, model.neq),
-            ("site", mujoco.mjtObj.mjOBJ_SITE, model.nsite),
-        )
-    }
+    posture = {"xpos": data.xpos.tolist(), "xmat": data.xmat.tolist()}
     return {
         "name": model.names.partition(b"\0")[0].decode(errors="replace"),  # its own is the first
-        "fields": {name: np.asarray(values[name]).tolist() for name in fields if name in values}
-        | {"xpos": data.xpos.tolist(), "xmat": data.xmat.tolist()},
-        "names": names,
+        "fields": posture
+        | {name: np.asarray(values[name]).tolist() for name in fields if name in values},
+        "names": {
+            kind: [mujoco.mj_id2name(model, number, k) for k in range(count)]
+            for kind, number, count in (
+                ("body", mujoco.mjtObj.mjOBJ_BODY, model.nbody),
+                ("joint", mujoco.mjtObj.mjOBJ_JOINT, model.njnt),
+                ("equality", mujoco.mjtObj.mjOBJ_EQUALITY, model.neq),
+                ("site", mujoco.mjtObj.mjOBJ_SITE, model.nsite),
+            )
+        },
         "kinds": {
             name: [known(int(one)).name.partition("_")[2] for one in np.asarray(values[name])]
-            for name, known in kinds.items()
+            for name, known in (
+                ("eq_type", mujoco.mjtEq),
+                ("eq_objtype", mujoco.mjtObj),
+                ("actuator_trntype", mujoco.mjtTrn),
+            )
         },
-        "others": others,
+        "others": [
+            name
+            for name, value in values.items()
+            if name not in fields
+            and not re.fullmatch(usual, name)
+            and _differs(value, plain.get(name))
+        ],
     }
 
 

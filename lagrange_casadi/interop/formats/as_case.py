@@ -17,9 +17,9 @@ import numpy as np
 
 from ...base.arrays import Array
 from .file_frames import Frame
-from .motion_texts import Motions
+from .motion_texts import LawError, parsed
 from .places import Places
-from .posture import about_z, opened
+from .posture import about_z, at_reference, extent, opened
 from .python_text import Call, comment, direction, of_pi, safe, short, signed, text_of, vector
 from .record import GROUND, MOVES, Body, Coupling, Joint, Model, Spring
 
@@ -61,11 +61,9 @@ class CaseText:
     """The lines of a case under way, of a checked model."""
 
     def __init__(self, model: Model) -> None:
-        gaps = opened(model)
-        counted = Motions(model, gaps).counted
-        self.counted = [name for name in model.joints if counted(name)]
-        self.open = dict.fromkeys(self.counted, (0.0, 0.0)) | gaps
-        self.model, self.motions = model, Motions(model, self.open)
+        self.model, self.size, self.open = model, extent(model), opened(model)
+        self.counted = [name for name in model.joints if self.counts_turns(name)]
+        self.open = dict.fromkeys(self.counted, (0.0, 0.0)) | self.open
         self.places = Places(model, self.open, NAMES)
         self.variables = self.places.variables
         self.lines: list[str] = []
@@ -78,6 +76,48 @@ class CaseText:
             for (kind, stated), here in model.named.items()
             if kind != "mechanism" and stated != here
         }
+
+    def offset(self, coordinate: str) -> float:
+        """Return what a coordinate of the file is where that of the case is zero: a case counts
+        from the reference posture, but those of joints that are open as in the file.
+        """
+        if coordinate.partition(":")[0] in self.open:
+            return 0.0
+        return at_reference(self.model, coordinate, self.size)
+
+    def law(self, coordinate: str) -> Call:
+        """Return the motion of a coordinate."""
+        law, less = self.model.motions[coordinate], self.offset(coordinate)
+        if law.samples is not None:
+            times, values = law.samples
+            return Call("samples", [vector(times), vector(one - less for one in values)])
+        try:
+            text, value = parsed(law.text)
+        except LawError as error:
+            raise self.model.refuse(law.where, f"motion of '{coordinate}': {error}") from None
+        if value is None:
+            return Call("expression", [f"lambda t: {text}{signed(-less)}"])
+        return Call("polynomial", [of_pi(value - less)])
+
+    def counts_turns(self, name: str) -> bool:
+        """Return whether the turns of a joint are counted from another posture than the reference:
+        three turns, of which not the last one alone differs from zero there, have no difference.
+        """
+        joint = self.model.joints[name]
+        turns = [one for one in joint.coordinates if ":turn_" in one]
+        turned = (at_reference(self.model, one, self.size) for one in turns[:-1])
+        if len(turns) < 3 or not any(turned):
+            return False
+        given = [one for one in turns if one in self.model.motions]
+        if all(str(self.law(one)) == "polynomial(0.0)" for one in given):
+            return False
+        if len(given) < len(turns):
+            raise self.model.refuse(
+                joint.where,
+                f"motion of '{given[0]}': expected one of each turn of joint '{name}',"
+                " for the body is turned about several axes in the reference posture",
+            )
+        return True
 
     def text(self) -> str:
         """Return the text of the file."""
@@ -146,7 +186,7 @@ class CaseText:
             return
         base, tip = self.places.between[body.name]
         axes, centre = body.frame.axes, self.places.place(body.frame.at(body.centre))
-        own = Frame(np.array(base), self.places.link_axes(body.name))
+        own = self.places.frame(body.name)
         arguments: list[object] = [json.dumps(body.name)]
         if body.name in self.places.held:
             arguments.append(Call("between=", [*map(self.places.written, (base, tip))]))
@@ -163,7 +203,7 @@ class CaseText:
             if np.array_equal(inertia, diagonal := np.diag(np.diag(inertia))):
                 arguments.append(vector(np.diag(diagonal).tolist(), "inertia"))
             else:
-                arguments.append(Call("inertia=", [vector(row) for row in inertia.tolist()]))
+                arguments.append(Call("inertia=", [*map(vector, inertia.tolist())]))
             arguments += ["accept_inertia=True"] if body.strange else []
         self.call(f"{name} = m.link", *arguments)
 
@@ -183,14 +223,12 @@ class CaseText:
                 self.lines.append(
                     f"# Closes a loop elsewhere: here it is {gap:.3g} m, {angle:.3g} rad open."
                 )
-            parent, child = (self.places.link_axes(one) for one in joint.ends)
-            arguments.append(self.places.point(joint.parent, near.place))
-            arguments.append(self.places.point(joint.child, far.place))
+            parent, child = (self.places.frame(one).axes for one in joint.ends)
+            arguments += map(self.places.point, joint.ends, (near.place, far.place))
             arguments += self.axes(joint, parent.T @ near.axes, far)
             if joint.kind not in ("spherical", "free", "slot") or joint.name in self.counted:
                 turned = short(parent.T @ near.axes @ far.axes.T @ child, 1.0)
-                columns = [vector(column) for column in turned[:, :2].T.tolist()]
-                arguments.append(Call("turned=", columns))
+                arguments.append(Call("turned=", [*map(vector, turned[:, :2].T.tolist())]))
         else:
             arguments += [self.variables[joint.parent], self.variables[joint.child]]
             arguments += self.axes(joint, near.axes, far)
@@ -225,7 +263,7 @@ class CaseText:
         """Declare a coupling as a pair of gears."""
         joints = [self.variables[f"joint {name}"] for name in (one.first, one.second)]
         arguments = [json.dumps(one.name), *joints, f"ratio={of_pi(one.ratio)}"]
-        first, second = (self.motions.offset(name) for name in (one.first, one.second))
+        first, second = (self.offset(name) for name in (one.first, one.second))
         offset = one.offset - (second - one.ratio * first)
         arguments += [f"offset={of_pi(offset)}"] if offset else []
         self.call("m.gear", *arguments)
@@ -235,7 +273,7 @@ class CaseText:
         acts.
         """
         for one in self.model.springs:
-            joint, rest = self.variables[f"joint {one.joint}"], self.motions.offset(one.joint)
+            joint, rest = self.variables[f"joint {one.joint}"], self.offset(one.joint)
             losses = [f"viscous={text_of(one.damping)}"] if one.damping else []
             losses += [f"coulomb={text_of(one.friction)}", _SMOOTH] if one.friction else []
             if losses:
@@ -271,7 +309,7 @@ class CaseText:
         near = self.model.frames(joint)[0]
         for body, sign in ((joint.child, ""), (joint.parent, "-")):
             if body != GROUND:
-                along = short(self.places.link_axes(body).T @ near.axes[:, 2], 1.0)
+                along = short(self.places.frame(body).axes.T @ near.axes[:, 2], 1.0)
                 point, name = self.places.point(body, near.place), f"{one.joint}_spring_{body}"
                 self.force(name, point, along, f"{sign}{pull}", "turning=True")
 
@@ -286,15 +324,15 @@ class CaseText:
         model = self.model
         self.lines.append("laws = {")
         for name in (name for name in model.coordinates if name in model.motions):
-            law = self.motions.law(name, model.motions[name])
+            law = self.law(name)
             entry = replace(law, function=f"{json.dumps(name)}: {law.function}")
             self.lines += [f"    {line}" for line in entry.lines(",")]
         self.lines.append("}")
         start, stop, count = model.span
         end = [f"t=({text_of(start)}, {text_of(stop)}, {count})"]
         if model.posture:
-            offset = self.motions.offset
-            rough = {name: round(x - offset(name), 6) + 0.0 for name, x in model.posture.items()}
+            posture = model.posture.items()
+            rough = {name: round(x - self.offset(name), 6) + 0.0 for name, x in posture}
             end.append(f"posture={json.dumps(rough)}")
         if model.drives is not None:
             end.append(f"drives={json.dumps(model.drives)}")

@@ -159,8 +159,8 @@ class _Reader:
                 motion.ignore()
             else:
                 self.motion(motion)
-        ignored = [*sets.below("Limits"), *sets.below("GeneralConstraintSets")]
-        for one in (*ignored, *root.below("ForceTorques")):
+        limits, more = sets.below("Limits"), sets.below("GeneralConstraintSets")
+        for one in (*limits, *more, *root.below("ForceTorques")):
             one.ignore()
         self.times()
 

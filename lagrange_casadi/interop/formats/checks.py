@@ -141,10 +141,7 @@ def _lengths(model: Model) -> None:
 def _spins(model: Model) -> None:
     """Hold the idle spin of bodies that are no rods: one of their spherical joints is universal."""
     on = model.joints_on()
-    for name in spinning(model):
-        body = model.bodies[name]
-        if body.rod is not None:
-            continue
+    for name in (name for name in spinning(model) if model.bodies[name].rod is None):
         first, last = on[name]
         other = last.parent if last.child == name else last.child
         along = model.frames(last)[0].place - model.frames(first)[0].place
@@ -197,21 +194,21 @@ def spinning(model: Model) -> list[str]:
     """Return the bodies between two spherical joints and on no other, whose spin about the line
     between these loads nothing.
     """
-    found, on = [], model.joints_on()
-    for body in model.bodies.values():
-        mine = on[body.name]
-        if len(mine) != 2 or any(one.kind != "spherical" for one in mine) or body.point:
-            continue
-        places = [one.on_parent if one.parent == body.name else one.on_child for one in mine]
-        first, second = (frame.place for frame in places)
-        if not (length := float(np.linalg.norm(second - first))):
-            continue
-        along, beside = (second - first) / length, body.centre - first
-        off = float(np.linalg.norm(beside - (beside @ along) * along))
-        twist = body.inertia @ along
-        askew = float(np.linalg.norm(twist - (twist @ along) * along))
-        if (off <= SLACK * length or not body.mass) and askew <= SLACK * float(
-            np.trace(body.inertia)
-        ):
-            found.append(body.name)
-    return found
+    on = model.joints_on()
+    return [name for name, body in model.bodies.items() if _spins_idly(body, on[name])]
+
+
+def _spins_idly(body: Body, joints: list[Joint]) -> bool:
+    """Return whether a body's spin about the line between two spherical joints loads nothing."""
+    if len(joints) != 2 or any(one.kind != "spherical" for one in joints) or body.point:
+        return False
+    own = (one.on_parent if one.parent == body.name else one.on_child for one in joints)
+    first, second = (frame.place for frame in own)
+    if not (length := float(np.linalg.norm(second - first))):
+        return False
+    along, beside = (second - first) / length, body.centre - first
+    off = float(np.linalg.norm(beside - (beside @ along) * along))
+    twist = body.inertia @ along
+    askew = float(np.linalg.norm(twist - (twist @ along) * along))
+    straight = askew <= SLACK * float(np.trace(body.inertia))
+    return straight and (off <= SLACK * length or not body.mass)

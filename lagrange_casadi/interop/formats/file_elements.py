@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field
+from itertools import count
 from typing import TYPE_CHECKING, Any, ClassVar
 from xml.parsers import expat
 
@@ -207,15 +208,13 @@ def parsed(model: Model, text: str, root: str) -> Element:
     Raises :class:`.ModelFileError`.
     """
     # The text is decoded, whatever encoding it states.
-    parser, stack, count = expat.ParserCreate("utf-8"), [Element(model, "", 0)], 0
+    parser, stack, number = expat.ParserCreate("utf-8"), [Element(model, "", 0)], count(1)
     pieces: list[list[str]] = []
 
     def start(name: str, given: dict[str, str]) -> None:
-        nonlocal count
-        count += 1
         part = given.get("name") or given.get("reference") or stack[-1].part
         one = Element(model, name, parser.CurrentLineNumber, given, part=part)
-        if len(stack) > _DEEPEST or count > _MOST:
+        if len(stack) > _DEEPEST or next(number) > _MOST:
             raise one.refuse("too deep, or too many elements")
         stack[-1].inside.append(one)
         stack.append(one)

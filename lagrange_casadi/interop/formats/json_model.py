@@ -32,7 +32,6 @@ SPAN, SAMPLES = ("start", "stop", "count"), ("times", "values")
 class _Object(Element):
     """An object of the file; its name is its path."""
 
-    form = "'{}'"
     blank = ()
 
     @property

@@ -197,9 +197,7 @@ class _Reader:
     """A compiled model under way: ``m`` are its fields, dots in names as lines."""
 
     def __init__(self, model: Model, found: dict[str, Any]) -> None:
-        self.model, self.names, self.kinds = model, found["names"], found["kinds"]
-        self.others, self.stated = found["others"], found["name"]
-        fields = found["fields"]
+        self.model, self.found, fields = model, found, found["fields"]
         off = {name for name in _SWITCHES if fields.get(f"disable {name}")}
         for name, switches in _SWITCHED.items():
             if any(off.issuperset(one.split()) for one in switches):
@@ -211,28 +209,28 @@ class _Reader:
 
     def read(self) -> None:
         """Read the model."""
-        model, m = self.model, self.m
-        model.name = model.name_of("mechanism", self.stated or model.name, "")
+        model, m, kinds = self.model, self.m, self.found["kinds"]
+        model.name = model.name_of("mechanism", self.found["name"] or model.name, "")
         model.gravity = model.numbers("option", m.opt_gravity, "gravity")
         for k in range(1, len(m.body_mass)):
             self.body(k)
         for k in np.flatnonzero(m.eq_active0).tolist():
             self.equality(k)
-        for kind, (j, *_) in zip(self.kinds["actuator_trntype"], m.actuator_trnid, strict=True):
+        for kind, (j, *_) in zip(kinds["actuator_trntype"], m.actuator_trnid, strict=True):
             if kind in ("JOINT", "JOINTINPARENT") and j in self.joints:
                 model.preferred.append(self.joints[j])
         for k, body in enumerate(m.site_bodyid):
-            if stated := self.names["site"][k]:
+            if stated := self.found["names"]["site"][k]:
                 frame = self.frame(f"site {shown(stated)}", m.site_pos[k], m.site_quat[k])
                 model.spots[stated] = self.bodies[body], frame
-        words = dict.fromkeys(map(_words, self.others))
+        words = dict.fromkeys(map(_words, self.found["others"]))
         if np.any(m.geom_contype) and len(m.geom_contype) > 1:
             words |= {"Contacts": None}
         model.notes += [f"{one}: not read." for one in words]
 
     def called(self, kind: str, k: int) -> tuple[str, str]:
         """Return the name of an object, or its number, and what messages call it."""
-        stated = self.names[kind][k] or f"{kind}_{k}"
+        stated = self.found["names"][kind][k] or f"{kind}_{k}"
         return stated, f"{kind} {shown(stated)}"
 
     def body(self, k: int) -> None:
@@ -291,7 +289,7 @@ class _Reader:
     def equality(self, k: int) -> None:
         """Declare an equality: connect and weld close loops, joint couples two of them."""
         model, m, (stated, where) = self.model, self.m, self.called("equality", k)
-        data, kind = m.eq_data[k], self.kinds["eq_type"][k]
+        data, kind = m.eq_data[k], self.found["kinds"]["eq_type"][k]
         one, other = m.eq_obj1id[k], m.eq_obj2id[k]
         if kind == "JOINT":
             if np.any(data[2:5]) or other < 0:
@@ -299,12 +297,12 @@ class _Reader:
                     where, "is not supported: it does not couple two joints linearly"
                 )
             offset, ratio = model.numbers(where, data[:2], "polycoef", 2).tolist()
-            joints = self.joints[other], self.joints[one]
-            model.add(Coupling, stated, where, *joints, ratio, offset)
+            first, second = self.joints[other], self.joints[one]
+            model.add(Coupling, stated, where, first, second, ratio, offset)
             return
         if kind not in ("CONNECT", "WELD"):
             raise model.refuse(where, "is not supported; valid: connect, weld, joint")
-        if self.kinds["eq_objtype"][k] == "SITE":
+        if self.found["kinds"]["eq_objtype"][k] == "SITE":
             near, far = (self.frame(where, m.site_pos[i], m.site_quat[i]) for i in (one, other))
             one, other = m.site_bodyid[one], m.site_bodyid[other]
         elif kind == "CONNECT":
@@ -313,8 +311,7 @@ class _Reader:
             near, far = self.frame(where, data[3:6], data[6:10]), self.frame(where, data[:3])
         # Without a scale of its torque a weld holds no direction.
         shape = "weld" if kind == "WELD" and data[10] else "spherical"
-        ends = self.bodies[one], self.bodies[other]
-        model.add(Joint, stated, where, shape, *ends, near, far)
+        model.add(Joint, stated, where, shape, self.bodies[one], self.bodies[other], near, far)
 
     def frame(
         self, where: str, place: Sequence[float], quaternion: Sequence[float] = _UPRIGHT

@@ -6,12 +6,10 @@ import ast
 import math
 import operator
 import re
-from collections.abc import Callable, Container, Sequence
+from collections.abc import Callable, Sequence
 from itertools import accumulate
 
-from .posture import at_reference, extent
-from .python_text import Call, of_pi, signed, vector
-from .record import LARGEST, Law, Model, number
+from .record import LARGEST, number
 
 ONE_NUMBER = "sin cos tan asin acos atan sinh cosh tanh exp log sqrt fabs"
 """Functions of one number that a law may have; CasADi's and Python's are called the same."""
@@ -116,53 +114,3 @@ def _number(node: ast.expr, values: Sequence[float | None]) -> float | None:
         case ast.UnaryOp(op=sign) | ast.BinOp(op=sign) if None not in values:
             return number(_OPERATORS[type(sign)](*values))
     return None
-
-
-class Motions:
-    """Motions of a record as a case counts them: from the reference posture, and those of joints
-    that are open as in the file.
-    """
-
-    def __init__(self, model: Model, opened: Container[str]) -> None:
-        self.model, self.opened, self.size = model, opened, extent(model)
-
-    def offset(self, coordinate: str) -> float:
-        """Return what a coordinate of the file is where that of the case is zero."""
-        if coordinate.partition(":")[0] in self.opened:
-            return 0.0
-        return at_reference(self.model, coordinate, self.size)
-
-    def law(self, coordinate: str, law: Law) -> Call:
-        """Return the motion of a coordinate."""
-        less = self.offset(coordinate)
-        if law.samples is not None:
-            times, values = law.samples
-            return Call("samples", [vector(times), vector(one - less for one in values)])
-        try:
-            text, value = parsed(law.text)
-        except LawError as error:
-            raise self.model.refuse(law.where, f"motion of '{coordinate}': {error}") from None
-        if value is None:
-            return Call("expression", [f"lambda t: {text}{signed(-less)}"])
-        return Call("polynomial", [of_pi(value - less)])
-
-    def counted(self, name: str) -> bool:
-        """Return whether the turns of a joint are counted from another posture than the reference:
-        three turns, of which not the last one alone differs from zero there, have no difference.
-        """
-        joint = self.model.joints[name]
-        turns = [one for one in joint.coordinates if ":turn_" in one]
-        if len(turns) < 3 or not any(
-            at_reference(self.model, one, self.size) for one in turns[:-1]
-        ):
-            return False
-        given = {one: law for one in turns if (law := self.model.motions.get(one))}
-        if all(str(self.law(one, law)) == "polynomial(0.0)" for one, law in given.items()):
-            return False
-        if len(given) < len(turns):
-            raise self.model.refuse(
-                joint.where,
-                f"motion of '{next(iter(given))}': expected one of each turn of joint '{name}',"
-                " for the body is turned about several axes in the reference posture",
-            )
-        return True

@@ -92,12 +92,12 @@ class Places:
         self._used.add(name)
         return name
 
-    def link_axes(self, body: str) -> Array:
-        """Return the axes of a link as declared: x from its base to its tip, y across."""
+    def frame(self, body: str) -> Frame:
+        """Return the frame of a link as declared: at its base, x to its tip, y across."""
         if body == GROUND:
-            return np.eye(3)
+            return Frame()
         base, tip = (np.array(place) for place in self.between[body])
-        return Frame.about(tip - base).axes[:, [2, 0, 1]]
+        return Frame(base, Frame.about(tip - base).axes[:, [2, 0, 1]])
 
     def place(self, place: Array) -> Place:
         """Return a place without the rounding of sums."""
@@ -111,8 +111,7 @@ class Places:
     def point(self, body: str, place: Array) -> Call:
         """Return a point of a body that is at a place in the reference posture."""
         if body not in self.held:
-            own = Frame(np.array(self.between[body][0]), self.link_axes(body))
-            local = self.place(own.relative(Frame(place)).place)
+            local = self.place(self.frame(body).relative(Frame(place)).place)
             return Call(f"{self.variables[body]}.at", [text_of(one) for one in local])
         at = map(text_of, self.place(place))
         if body == GROUND:

@@ -211,9 +211,9 @@ def hang(model: Model) -> None:
     they are.
     """
     open_joints = opened(model)
-    closed = [one for one in model.joints.values() if one.name not in open_joints]
-    placed = {GROUND, *(name for one in closed for name in one.ends)}
-    for joint in outward([*model.joints.values()], placed):
+    joints = [*model.joints.values()]
+    placed = {end for one in joints if one.name not in open_joints for end in one.ends} | {GROUND}
+    for joint in outward(joints, placed):
         if placed.issuperset(joint.ends):
             continue
         gap, angle = open_joints[joint.name]
@@ -286,10 +286,9 @@ def assemble(model: Model) -> None:
             model.bodies[body.name] = replace(body, frame=by.then(body.frame))
     if left := opened(model):
         name = next((name for name in drawn if name in left), next(iter(left)))
-        where = next(one.where for one in model.closures if one.name == name)
         words = words.format(name, *drawn.get(name, (0.0, 0.0)))
         raise model.refuse(
-            where,
+            next(one.where for one in model.closures if one.name == name),
             f"{words}, and by {left[name][0]:.3g} m and {left[name][1]:.3g} rad if parts are moved"
             " to close all joints: assemble them first, as FreeCAD's assembly solver does",
         )

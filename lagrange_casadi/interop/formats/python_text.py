@@ -26,9 +26,8 @@ def text_of(value: float) -> str:
 
 def of_pi(value: float) -> str:
     """Return a number as text: as a simple multiple of pi where it is one to the last digits."""
-    share = value / math.pi
     for part in (1, 2, 3, 4, 6):
-        whole = share * part
+        whole = value / math.pi * part
         near = round(whole)
         if near and abs(near) < 1000 and abs(whole - near) < 4e-16 * abs(whole):
             times = {1: "pi", -1: "-pi"}.get(near, f"{near} * pi")
@@ -75,9 +74,8 @@ def safe(text: str) -> str:
 
 def comment(text: str) -> list[str]:
     """Return the lines of a comment."""
-    words = " ".join(safe(text).split())
     lines = TextWrapper(WIDTH, "# ", "#   ", break_long_words=False, break_on_hyphens=False)
-    return lines.wrap(words)
+    return lines.wrap(" ".join(safe(text).split()))
 
 
 def short(values: Array, size: float | None = None) -> Array:

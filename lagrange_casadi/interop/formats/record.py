@@ -179,8 +179,8 @@ class Row:
     @property
     def text(self) -> str:
         """The expression of its value, as Python."""
-        e, f, factor = "xyz"[self.i], "uvw"[self.j], repr(float(self.factor) + 0.0)
-        return ROWS[self.kind].format(e=e, f=f, factor=factor)
+        factor = repr(float(self.factor) + 0.0)
+        return ROWS[self.kind].format(e="xyz"[self.i], f="uvw"[self.j], factor=factor)
 
 
 @dataclass(frozen=True, eq=False)
@@ -254,8 +254,9 @@ class Model:
     def known(self, where: str, what: str, stated: str, valid: Collection[str]) -> str:
         """Return a name of the file, which must be one of the valid ones."""
         if stated not in valid:
-            names = ", ".join(valid) or "none"
-            raise self.refuse(where, f"unknown {what} {shown(stated)}; valid: {names}")
+            raise self.refuse(
+                where, f"unknown {what} {shown(stated)}; valid: {', '.join(valid) or 'none'}"
+            )
         return stated
 
     def number(self, where: str, given: object, what: str) -> float:

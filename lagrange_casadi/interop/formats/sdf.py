@@ -61,8 +61,7 @@ def read(model: Model, text: str) -> None:
     for name, one in named.items():
         if one.name == "frame" and (body := joints.body_of(name)):
             model.spots[name] = body, model.frame_of(body).relative(joints.frame(name))
-    hung = {name for one in model.joints.values() for name in one.ends}
-    if GROUND not in hung and model.bodies:
+    if model.bodies and not model.joints_on()[GROUND]:
         first = next(iter(model.bodies.values()))
         model.base(first.name, first.where)
         if not model.floating:
@@ -159,9 +158,7 @@ class Joints:
     def end(self, line: Element, key: str) -> str:
         """Return the body of a joint's parent or child, which may be given by a frame on it."""
         data = line.needed(key)
-        if not (body := self.body_of(data.text)):
-            raise data.refuse(f"unknown link {shown(data.text)}; valid: {', '.join(self.on)}")
-        return body
+        return self.body_of(data.text) or self.on[data.known("link", data.text, self.on)]
 
     def body_of(self, name: str) -> str:
         """Return the body that a link or frame is on; empty where there is none."""

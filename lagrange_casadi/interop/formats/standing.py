@@ -16,15 +16,10 @@ def free(model: Model, name: str) -> None:
     Raises :class:`.ModelFileError` for one that no joints connect to a free base.
     """
     body, frame = model.spot(name)
-    bases = {
-        one.child: one.name
-        for one in model.joints.values()
-        if one.kind == "free" and one.parent == GROUND
-    }
+    hung, reached = [one for one in model.joints.values() if one.parent == GROUND], {body}
     joints = [one for one in model.joints.values() if one.parent != GROUND]
-    reached = {body}
     list(outward(joints, reached))  # which adds what joints connect
-    connected = [joint for base, joint in bases.items() if base in reached]
+    connected = [one.name for one in hung if one.kind == "free" and one.child in reached]
     if len(connected) != 1:
         found = ", ".join(map(repr, connected)) or "none"
         raise model.refuse(
