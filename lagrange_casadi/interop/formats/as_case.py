@@ -214,8 +214,7 @@ class CaseText:
         arguments: list[object] = [json.dumps(joint.name)]
         if joint.name in self.model.contacts:
             foot, at = self.places.point(joint.child, far.place), self.places.place(near.place)
-            mu = f"friction={self.places.mu}"
-            self.call("m.contact", *arguments, foot, mu, vector(at, "at"))
+            self.call("m.contact", *arguments, foot, f"friction={self.places.mu}", vector(at, "at"))
             return
         if joint.name in self.open:
             gap, angle = self.open[joint.name]
@@ -240,33 +239,28 @@ class CaseText:
     def axes(self, joint: Joint, axes: Array, far: Frame) -> list[object]:
         """Return the arguments that say along and about what a joint moves."""
         x, y, z = axes.T
-        match joint.kind:
-            case "weld":
-                return []
-            case "spherical" | "free":
-                given = {*self.model.motions, *self.model.posture} & {*joint.coordinates}
-                usual = not given or np.array_equal(short(axes, 1.0), np.eye(3))
-                return [] if usual else self.directions(x, y)
-            case "universal":
-                return self.directions(z, far.axes[:, 2])
-            case "planar":
-                return self.directions(z, x)
-            case "screw":
-                return [*self.directions(z), f"lead={text_of(joint.lead)}"]
-        return self.directions(z)
-
-    def directions(self, *axes: Array) -> list[object]:
-        """Return the arguments for one direction or two."""
-        return [direction(*one) for one in zip(axes, ("axis", "second"), strict=False)]
+        several = {
+            "weld": (),
+            "spherical": (x, y),
+            "free": (x, y),
+            "universal": (z, far.axes[:, 2]),
+            "planar": (z, x),
+        }
+        given = several.get(joint.kind, (z,))
+        moved = {*self.model.motions, *self.model.posture} & {*joint.coordinates}
+        usual = not moved or np.array_equal(short(axes, 1.0), np.eye(3))
+        if usual and joint.kind in ("spherical", "free"):
+            return []
+        found = [direction(*one) for one in zip(given, ("axis", "second"), strict=False)]
+        return [*found, f"lead={text_of(joint.lead)}"] if joint.kind == "screw" else [*found]
 
     def coupling(self, one: Coupling) -> None:
         """Declare a coupling as a pair of gears."""
         joints = [self.variables[f"joint {name}"] for name in (one.first, one.second)]
-        arguments = [json.dumps(one.name), *joints, f"ratio={of_pi(one.ratio)}"]
         first, second = (self.offset(name) for name in (one.first, one.second))
         offset = one.offset - (second - one.ratio * first)
-        arguments += [f"offset={of_pi(offset)}"] if offset else []
-        self.call("m.gear", *arguments)
+        law = [f"ratio={of_pi(one.ratio)}", *([f"offset={of_pi(offset)}"] if offset else [])]
+        self.call("m.gear", json.dumps(one.name), *joints, *law)
 
     def loads(self) -> None:
         """Declare springs and dampers of joints, and what bears bodies on which not all of gravity
@@ -315,8 +309,11 @@ class CaseText:
 
     def force(self, name: str, point: Call, along: Array, size: str, *more: str) -> None:
         """Declare a force at a point, along a vector times a size."""
-        parts = zip("xyz", along.tolist(), strict=True)
-        given = [f"{axis}={text_of(part)} * {size}" for axis, part in parts if part]
+        given = [
+            f"{axis}={text_of(part)} * {size}"
+            for axis, part in zip("xyz", along.tolist(), strict=True)
+            if part
+        ]
         self.call("m.force", self.own(name), point, *given, *more)
 
     def end(self) -> None:

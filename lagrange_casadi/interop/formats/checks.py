@@ -59,8 +59,9 @@ def checked(model: Model, *, accept_inertias: bool = False) -> Model:
     _lengths(model)
     valid = model.coordinates
     single = {name: None for name in valid if ":" not in name}
-    stated = {name: law.where for name, law in model.motions.items()}
-    stated |= dict.fromkeys(model.posture, "posture")
+    stated = {name: law.where for name, law in model.motions.items()} | dict.fromkeys(
+        model.posture, "posture"
+    )
     for name, where in stated.items():
         model.known(where, "coordinate", name, valid)
     for one in model.couplings.values():
@@ -101,8 +102,7 @@ def _body(model: Model, body: Body, welded: set[str], wrong: dict[str, str]) -> 
             f"{what}: its largest principal moment of inertia exceeds the sum of the other two by"
             f" {excess:.1e} kg m^2, which is taken as rounding"
         )
-    strange = excess > off or bool(moments[0] < -off)
-    return replace(body, inertia=inertia, strange=strange)
+    return replace(body, inertia=inertia, strange=excess > off or bool(moments[0] < -off))
 
 
 def _connected(model: Model) -> None:

@@ -21,7 +21,9 @@ from .record import Model
 if TYPE_CHECKING:
     from typing_extensions import Self
 
-_DEEPEST = 200
+DEEPEST = 200
+"""Elements in each other, and poses on each other, at most."""
+
 _MOST = 500_000
 _LONGEST = 60
 """Characters of a name in a note, at most."""
@@ -208,22 +210,21 @@ def parsed(model: Model, text: str, root: str) -> Element:
     Raises :class:`.ModelFileError`.
     """
     # The text is decoded, whatever encoding it states.
-    parser, stack, number = expat.ParserCreate("utf-8"), [Element(model, "", 0)], count(1)
-    pieces: list[list[str]] = []
+    parser, number = expat.ParserCreate("utf-8"), count(1)
+    stack = [(Element(model, "", 0), list[str]())]  # with the pieces of their texts
 
     def start(name: str, given: dict[str, str]) -> None:
-        part = given.get("name") or given.get("reference") or stack[-1].part
+        part = given.get("name") or given.get("reference") or stack[-1][0].part
         one = Element(model, name, parser.CurrentLineNumber, given, part=part)
-        if len(stack) > _DEEPEST or next(number) > _MOST:
+        if len(stack) > DEEPEST or next(number) > _MOST:
             raise one.refuse("too deep, or too many elements")
-        stack[-1].inside.append(one)
-        stack.append(one)
-        pieces.append([])
+        stack[-1][0].inside.append(one)
+        stack.append((one, []))
 
     def end(_: str) -> None:
-        if data := "".join(pieces.pop()).strip():
-            stack[-1].given[""] = data
-        stack.pop()
+        one, pieces = stack.pop()
+        if data := "".join(pieces).strip():
+            one.given[""] = data
 
     def refuse(*_: object) -> None:
         raise model.refuse(
@@ -232,14 +233,14 @@ def parsed(model: Model, text: str, root: str) -> Element:
         )
 
     parser.StartElementHandler, parser.EndElementHandler = start, end
-    parser.CharacterDataHandler = lambda data: pieces[-1].append(data)
+    parser.CharacterDataHandler = lambda data: stack[-1][1].append(data)
     parser.StartDoctypeDeclHandler = parser.EntityDeclHandler = refuse
     parser.buffer_text = True
     try:
         parser.Parse(text.encode(), True)
     except expat.ExpatError as error:
         raise model.refuse(f"line {error.lineno}", f"no XML: {error}") from None
-    found = stack[0].inside[0]
+    found = stack[0][0].inside[0]
     if root and found.name != root:
         raise found.refuse(f"expected <{root}>")
     return found

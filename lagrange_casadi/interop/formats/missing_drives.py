@@ -84,8 +84,7 @@ def _rows(model: Model, twists: dict[str, Rows], size: float) -> Iterator[Rows]:
         else:
             yield _between(above, twists, child, parent) | twists[joint.name]
     for coupling in model.couplings.values():
-        ratio = np.array([[-coupling.ratio]])
-        yield {coupling.second: np.ones((1, 1)), coupling.first: ratio}
+        yield {coupling.second: np.ones((1, 1)), coupling.first: np.array([[-coupling.ratio]])}
     for tie in model.ties.values():
         slopes = closing(model, tie, tie.rows, size)[1]
         rows = _between(above, twists, tie.parent, tie.child)
@@ -115,20 +114,15 @@ def _twists(model: Model, joint: Joint, size: float) -> Iterator[tuple[str, Arra
     three of the mass itself, which are no coordinates.
     """
     near, far = model.frames(joint)
-    ends = (model.bodies[one] for one in joint.ends if one != GROUND)
-    point = next((body.frame.place for body in ends if body.point), None)
-    for name, (_, move, axis) in zip(joint.coordinates, MOVES[joint.kind], strict=True):
-        if point is not None and move != "slide":
-            continue
-        along = far.axes[:, 2] if axis == "w" else near.axes[:, "xyz".index(axis)]
-        speed, spin = along, np.zeros(3)
-        if move != "slide":
-            slide = joint.lead / (2.0 * np.pi) * along if move == "screw" else 0.0
-            speed, spin = np.cross(near.place, along) + slide, along
+    axes = dict(zip("xyzw", (*near.axes.T, far.axes[:, 2]), strict=True))
+    freedoms = zip(joint.coordinates, MOVES[joint.kind], strict=True)
+    moves = [(name, move, axes[axis], near.place) for name, (_, move, axis) in freedoms]
+    bodies = (model.bodies[one] for one in joint.ends if one != GROUND)
+    if points := [one.frame.place for one in bodies if one.point]:
+        moves = [one for one in moves if one[1] == "slide"]
+        moves += [(f"{joint.name} {k}", "turn", x, points[0]) for k, x in enumerate(np.eye(3))]
+    for name, move, along, place in moves:
+        speed, spin = (along, 0.0 * along) if move == "slide" else (np.cross(place, along), along)
+        if move == "screw":
+            speed = speed + joint.lead / (2.0 * np.pi) * along
         yield name, np.concatenate([speed / size, spin])
-    if point is not None:
-        for k, along in enumerate(np.eye(3)):
-            yield (
-                f"{joint.name} {k}",
-                np.concatenate([np.cross(point, along) / size, along]),
-            )

@@ -41,7 +41,6 @@ a path have together.
 
 _FOLDERS = ("assetdir", "meshdir", "texturedir")
 _BLANK = b"\xef\xbb\xbf \t\r\n"
-_UPRIGHT = (1.0, 0.0, 0.0, 0.0)
 _SWITCHES = ("gravity", "equality", "constraint", "spring", "damper", "passive", "frictionloss")
 _SWITCHED = {
     "opt.gravity": ("gravity",),
@@ -145,15 +144,14 @@ def _files(model: Model, text: str) -> dict[str, bytes]:
             line = waiting.pop()
             waiting += line.inside
             for key, name in line.given.items():
-                if not key.startswith("file") and key not in _FOLDERS:
-                    continue
-                if name.startswith(("/", "\\")) or ":" in name or name.count("..") > _UP:
+                leads = name.startswith(("/", "\\")) or ":" in name or name.count("..") > _UP
+                if leads and (key.startswith("file") or key in _FOLDERS):
                     raise line.refuse(f"{key} {shown(name)} leads out of its folder")
                 if key in _FOLDERS:
                     inner.add(name)
-                    continue
-                named.setdefault(name, line)
-                parts |= {name} if line.name in ("include", "model") else set()
+                elif key.startswith("file"):
+                    named.setdefault(name, line)
+                    parts |= {name} if line.name in ("include", "model") else set()
         if len(bases) * len(inner) > _PLACES or len(named) > _MOST:
             raise model.refuse("", "names too many files or folders")
         for base, folder, name in product(sorted(bases), sorted(inner), named):
@@ -223,9 +221,8 @@ class _Reader:
             if stated := self.found["names"]["site"][k]:
                 frame = self.frame(f"site {shown(stated)}", m.site_pos[k], m.site_quat[k])
                 model.spots[stated] = self.bodies[body], frame
-        words = dict.fromkeys(map(_words, self.found["others"]))
-        if np.any(m.geom_contype) and len(m.geom_contype) > 1:
-            words |= {"Contacts": None}
+        contacts = ["Contacts"] if len(m.geom_contype) > 1 and np.any(m.geom_contype) else []
+        words = dict.fromkeys([*map(_words, self.found["others"]), *contacts])
         model.notes += [f"{one}: not read." for one in words]
 
     def called(self, kind: str, k: int) -> tuple[str, str]:
@@ -242,8 +239,7 @@ class _Reader:
         own = self.frame(where, m.body_ipos[k], m.body_iquat[k])
         inertia = own.tensor(np.diag(model.numbers(where, m.body_inertia[k], "inertia")))
         weight = model.number(where, 1.0 - m.body_gravcomp[k], "gravcomp")
-        given = (mass, own.place, inertia, frame)
-        name = model.add(Body, stated, where, *given, weight=weight)
+        name = model.add(Body, stated, where, mass, own.place, inertia, frame, weight=weight)
         self.bodies[k], above = name, self.bodies[m.body_parentid[k]]
         first, count = m.body_jntadr[k], m.body_jntnum[k]
         if not count and above == GROUND:
@@ -314,7 +310,7 @@ class _Reader:
         model.add(Joint, stated, where, shape, self.bodies[one], self.bodies[other], near, far)
 
     def frame(
-        self, where: str, place: Sequence[float], quaternion: Sequence[float] = _UPRIGHT
+        self, where: str, place: Sequence[float], quaternion: Sequence[float] = (1.0, 0.0, 0.0, 0.0)
     ) -> Frame:
         """Return the frame of a place and a quaternion, which MuJoCo takes even as no numbers."""
         found = self.model.numbers(where, place, "place")

@@ -84,8 +84,7 @@ def model_of(scene: Scene, parameters: Mapping[str, float], file: Path) -> Model
         if model.joints[name.partition(":")[0]].kind == "universal":
             # Its turns are counted from the reference posture, which is that at the start.
             motion = motion - ca.substitute(motion, t, start)
-        law = ca.Function("law", [t], [motion])
-        model.motions[name] = _law(law, model.span)
+        model.motions[name] = _law(ca.Function("law", [t], [motion]), model.span)
     if scene.drives is not None:
         model.drives = list(scene.drives)
     return model
@@ -124,8 +123,7 @@ def _joint(name: str, numbers: JointNumbers) -> Joint:
     (u, v, w), zero = np.array(numbers.triad), np.array(numbers.turned).T
     kind, parent, child = numbers.kind, numbers.parent, numbers.child
     # Slides and turns are about z of a frame; of three of a kind about x, y and z.
-    columns = (u, v, w) if kind in ("spherical", "free") else (v, w, u)
-    near = np.column_stack(columns)
+    near = np.column_stack((u, v, w) if kind in ("spherical", "free") else (v, w, u))
     far = zero.T @ (np.column_stack([w, u, v]) if kind == "universal" else near)
     frames = Frame(np.array(parent.at), near), Frame(np.array(child.at), far)
     return Joint(name, kind, parent.body, child.body, *frames, numbers.pitch * math.tau)

@@ -27,6 +27,20 @@ SLACK = 1e-6
 EXACT = 1e-12
 """Difference that is rounding of sums, and is not worth a note."""
 
+_SLIDES = {kind: [one for _, move, one in of if move == "slide"] for kind, of in MOVES.items()}
+_TURNS = {kind: [one for _, move, one in of if move != "slide"] for kind, of in MOVES.items()}
+"""The axes along which a kind of joint slides, and those about which it turns."""
+
+_HELD = {
+    kind: [
+        k
+        for k, axis in enumerate("xyz")
+        if all(axis != one or move == "turn" for _, move, one in of)
+    ]
+    for kind, of in MOVES.items()
+}
+"""The axes along which a kind of joint holds its place."""
+
 _COSINES = {0: ((0, 1), (0, 2), (1, 2)), 1: ((0, 2), (1, 2)), 2: ((2, 2),), 3: ()}
 """Axes of the parent's and of the child's frame that so many turns leave at right angles."""
 
@@ -105,27 +119,18 @@ def _put(model: Model, joint: Joint, across: Frame, reached: Collection[str]) ->
     return far
 
 
-def _axes(kind: str, *moves: str) -> str:
-    """Return the axes along or about which a kind of joint moves so."""
-    return "".join(axis for _, move, axis in MOVES[kind] if move in moves)
-
-
-def _turns(kind: str) -> str:
-    return _axes(kind, "turn", "screw")
-
-
 def at_reference(model: Model, name: str, size: float) -> float:
     """Return a coordinate in the reference posture of a mechanism of a size [m], zero where it is
     but for rounding.
     """
     joint = model.joints[name.partition(":")[0]]
     known, turns = _relative(model, joint), [0.0, 0.0]  # of a universal joint
-    if len(axes := _turns(joint.kind)) == 1:
+    if len(axes := _TURNS[joint.kind]) == 1:
         turns = [about_z(known)]
     elif len(axes) == 3:
         order = ["xyz".index(axis) for axis in axes]
         turns = _three_turns(known.axes[np.ix_(order, order)])
-    slides = [known.place["xyz".index(axis)] for axis in _axes(joint.kind, "slide")]
+    slides = [known.place["xyz".index(axis)] for axis in _SLIDES[joint.kind]]
     found = float([*slides, *turns][joint.coordinates.index(name)])
     return 0.0 if abs(found) < EXACT * max(size, 1.0) else found
 
@@ -152,14 +157,14 @@ def _closest(model: Model, joint: Joint) -> Frame:
     posture, is closed with the coordinates that it has there.
     """
     known = _relative(model, joint)
-    place = np.where([axis in _axes(joint.kind, "slide") for axis in "xyz"], known.place, 0.0)
-    match len(_turns(joint.kind)):
+    place = np.where([axis in _SLIDES[joint.kind] for axis in "xyz"], known.place, 0.0)
+    match len(_TURNS[joint.kind]):
         case 3:
             return Frame(place, known.axes)
         case 2:  # of a universal joint: the child's z is across the parent's
             across = np.array([known.axes[0, 2], known.axes[1, 2], 0.0])
             return Frame.about(across if np.any(across) else np.eye(3)[0], place)
-    angle = about_z(known) if _turns(joint.kind) else 0.0
+    angle = about_z(known) if _TURNS[joint.kind] else 0.0
     if joint.kind == "screw":
         place[2] = joint.lead * angle / math.tau
     return Frame(place, turned([0.0, 0.0, angle]))
@@ -169,8 +174,8 @@ def apart(model: Model, joint: Joint) -> tuple[float, float]:
     """Return by how much the frames of a joint miss what it holds: in m, and in rad."""
     if joint.rows:
         return _untied(model, joint)
-    known, turns = _relative(model, joint), len(_turns(joint.kind))
-    gap = math.hypot(*known.place[_held(joint.kind)].tolist())
+    known, turns = _relative(model, joint), len(_TURNS[joint.kind])
+    gap = math.hypot(*known.place[_HELD[joint.kind]].tolist())
     if any(one != GROUND and model.bodies[one].point for one in joint.ends):
         return gap, 0.0
     if joint.kind == "universal":
@@ -255,13 +260,8 @@ def _rows(joint: Joint) -> list[Row]:
     """Return the rows that a joint holds; those that count turns hold in any posture."""
     if joint.rows:
         return [row for row in joint.rows if row.kind not in ("slide and turn", "wheels")]
-    held = [Row("slide", i) for i in _held(joint.kind)]
-    return held + [Row("cosine", i, j) for i, j in _COSINES[len(_turns(joint.kind))]]
-
-
-def _held(kind: str) -> list[int]:
-    """Return the axes along which a kind of joint holds its place."""
-    return [k for k, axis in enumerate("xyz") if axis not in _axes(kind, "slide", "screw")]
+    held = [Row("slide", i) for i in _HELD[joint.kind]]
+    return held + [Row("cosine", i, j) for i, j in _COSINES[len(_TURNS[joint.kind])]]
 
 
 def assemble(model: Model) -> None:

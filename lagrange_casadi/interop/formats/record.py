@@ -376,8 +376,9 @@ class Model:
 
         Raises :class:`.ModelFileError` for an unknown one.
         """
-        bodies = {stated: here for (kind, stated), here in self.named.items() if kind == "body"}
-        valid = {stated: (here, Frame()) for stated, here in bodies.items()} | self.spots
+        valid = {
+            stated: (here, Frame()) for (kind, stated), here in self.named.items() if kind == "body"
+        } | self.spots
         return valid[self.known("", "link or frame", stated, valid)]
 
     def base(self, body: str, where: str) -> None:

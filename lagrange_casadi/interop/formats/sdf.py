@@ -7,9 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ...base.arrays import Array
 from ...errors import shown
-from .file_elements import Element, note_unread, parsed, six_moments
+from .file_elements import DEEPEST, Element, note_unread, parsed, six_moments
 from .file_frames import Frame
 from .record import GROUND, Body, Coupling, Joint, Model, Spring
 
@@ -28,8 +27,6 @@ KINDS: dict[str, str] = {
 
 _DYNAMICS = ("damping", "spring_stiffness", "spring_reference", "friction")
 """Numbers of what resists the motion of a revolute or prismatic joint."""
-
-_DEEPEST = 200
 
 
 def read(model: Model, text: str) -> None:
@@ -53,8 +50,9 @@ def read(model: Model, text: str) -> None:
     named = line.by_name("link", "frame", "joint")
     for one in line.all("frame"):
         one.seen = False  # until something lies on it
-    own = _pose(line.optional("pose"))
-    joints = Joints(model, named, {"world": GROUND}, {"world": Frame()}, own, on_model)
+    joints = Joints(
+        model, named, {"world": GROUND}, {"world": Frame()}, _pose(line.optional("pose")), on_model
+    )
     for name, link in ((name, one) for name, one in named.items() if one.name == "link"):
         joints.on[name] = _body(model, link, joints.frame(name))
     joints.read()
@@ -98,19 +96,16 @@ class Joints:
 
     def joint(self, line: Element, kind: str) -> None:
         """Declare a joint, whose frames coincide as the model stands."""
-        model, data, lead = self.model, line.attribute("name"), 0.0
+        model, data = self.model, line.attribute("name")
         parent, child = self.end(line, "parent"), self.end(line, "child")
         near = far = frame = self.frame(data)
         if kind in ("revolute", "prismatic", "screw", "universal"):
-            first = self.axis(line, "axis", frame)
-            near = far = Frame.about(first, frame.place)
-            if kind == "universal":
-                second = self.axis(line, "axis2", frame)
-                if abs(first @ second) > 1e-6:
-                    raise line.refuse("its two axes are not at right angles")
-                far = Frame.about(second, frame.place)
-        if kind == "screw":
-            lead = line.inner("screw_thread_pitch", 1.0)
+            near = far = self.axis(line, "axis", frame)
+        if kind == "universal":
+            far = self.axis(line, "axis2", frame)
+            if abs(near.axes[:, 2] @ far.axes[:, 2]) > 1e-6:
+                raise line.refuse("its two axes are not at right angles")
+        lead = line.inner("screw_thread_pitch", 1.0) if kind == "screw" else 0.0
         near, far = model.frame_of(parent).relative(near), model.frame_of(child).relative(far)
         name = model.add(Joint, data, line.where, kind, parent, child, near, far, lead)
         resist(model, name, line.optional("axis"), Element.inner)
@@ -140,8 +135,8 @@ class Joints:
             ends += found
         model.add(Coupling, data, line.where, *ends, -ratio)
 
-    def axis(self, line: Element, key: str, frame: Frame) -> Array:
-        """Return the direction of a joint's axis, on the ground's axes."""
+    def axis(self, line: Element, key: str, frame: Frame) -> Frame:
+        """Return a frame on the ground, at the place of a joint's, whose z is its axis."""
         data = line.optional(key)
         xyz, given, on = data.optional("xyz"), np.array([0.0, 0.0, 1.0]), frame
         if xyz.text:
@@ -153,7 +148,7 @@ class Joints:
         elif data.switch("use_parent_model_frame", self.on_model):
             on = self.own
         given = self.model.direction(data.where, given)
-        return np.asarray(on.axes @ given / np.linalg.norm(given))
+        return Frame.about(on.axes @ given / np.linalg.norm(given), frame.place)
 
     def end(self, line: Element, key: str) -> str:
         """Return the body of a joint's parent or child, which may be given by a frame on it."""
@@ -177,7 +172,7 @@ class Joints:
             return self.placed[name]
         line = self.named[name]
         line.seen = True
-        if name in above or len(above) > _DEEPEST:
+        if name in above or len(above) > DEEPEST:
             what = "itself" if name in above else "too many others"
             raise line.refuse(f"its pose is relative to {what}")
         pose = line.optional("pose")

@@ -46,14 +46,13 @@ def placed(model: Model, posture: Mapping[str, Number], contacts: Sequence[str])
         unit = "m" if moves[name] == "slide" else "rad"
         model.posture[name] = quantity(f"posture: '{name}'", value, unit)
     found = posed(model, model.posture) if model.posture else model
-    joints = list(model.joints.values())
     for stated in contacts:
         body, frame = model.spot(stated)
         place = Frame(found.frame_of(body).then(frame).place)
         ends = GROUND, body, place, Frame(frame.place)
         model.contacts.append(model.add(Joint, f"{stated}_contact", "", "spherical", *ends))
     if contacts:
-        for name in (name for one in joints if one.kind == "free" for name in one.coordinates):
+        for name in (name for name, one in model.coordinates.items() if one.kind == "free"):
             model.motions.setdefault(name, Law(repr(model.posture.get(name, 0.0))))
-        model.drives = [one.name for one in joints if one.coordinates == (one.name,)]
+        model.drives = [name for name, one in model.coordinates.items() if one.name == name]
     return found

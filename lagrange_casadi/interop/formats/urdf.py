@@ -90,8 +90,8 @@ class _Robot:
         for joint in self.joints:
             if (mimic := joint.first("mimic")) is not None:
                 name, leader = joint.attribute("name"), mimic.attribute("joint")
-                law = mimic.amount("multiplier", 1.0), mimic.amount("offset", 0.0)
-                self.model.follow(name, leader, mimic.where, *law)
+                ratio, offset = mimic.amount("multiplier", 1.0), mimic.amount("offset", 0.0)
+                self.model.follow(name, leader, mimic.where, ratio, offset)
         above = {one.child: one for one in reversed(joints)}
         for coupling in self.root.all("coupling"):
             self.coupling(coupling, above)
