@@ -104,9 +104,11 @@ def _values(mujoco: ModuleType, model: MjModel) -> dict[str, Value]:
         ("disable", model.opt.disableflags, mujoco.mjtDisableBit),
         ("enable", model.opt.enableflags, mujoco.mjtEnableBit),
     ):
-        for name, bit in bits.__members__.items():
-            if int(bit).bit_count() == 1 and not name.startswith("mjN"):
-                values[f"{word} {name.partition('_')[2].lower()}"] = bool(flags & int(bit))
+        values |= {
+            f"{word} {name.partition('_')[2].lower()}": bool(flags & int(bit))
+            for name, bit in bits.__members__.items()
+            if int(bit).bit_count() == 1 and not name.startswith("mjN")
+        }
     return {
         name: value
         for name, value in values.items()

@@ -39,11 +39,11 @@ def checked(model: Model, *, accept_inertias: bool = False) -> Model:
             f" sum of the other two: {'; '.join(wrong.values())}; correct them, or take them as"
             " they are by accept_inertias=True",
         )
-    for words in wrong.values():
-        model.notes.append(
-            f"{words}: no body has such principal moments of inertia; they are as in the file."
-            + (" The energy of this one may be negative." if "negative" in words else "")
-        )
+    model.notes += [
+        f"{words}: no body has such principal moments of inertia; they are as in the file."
+        + (" The energy of this one may be negative." if "negative" in words else "")
+        for words in wrong.values()
+    ]
     bodies = {GROUND: None, **model.bodies}
     for joint in model.closures:
         for name in joint.ends:

@@ -30,8 +30,9 @@ def drive(model: Model) -> None:
         for one in model.joints.values()
     }
     names = [name for one in twists.values() for name in one]
-    idle = sum(model.bodies[one].rod is not None for one in spinning(model))
-    idle += 3 * sum(body.point for body in model.bodies.values())
+    idle = 3 * sum(body.point for body in model.bodies.values()) + sum(
+        model.bodies[one].rod is not None for one in spinning(model)
+    )
     joint_of, preferred = model.coordinates, set(model.preferred)
 
     def last(name: str) -> tuple[bool, ...]:

@@ -214,9 +214,11 @@ class _Reader:
             self.body(k)
         for k in np.flatnonzero(m.eq_active0).tolist():
             self.equality(k)
-        for kind, (j, *_) in zip(kinds["actuator_trntype"], m.actuator_trnid, strict=True):
-            if kind in ("JOINT", "JOINTINPARENT") and j in self.joints:
-                model.preferred.append(self.joints[j])
+        model.preferred += [
+            self.joints[j]
+            for kind, (j, *_) in zip(kinds["actuator_trntype"], m.actuator_trnid, strict=True)
+            if kind in ("JOINT", "JOINTINPARENT") and j in self.joints
+        ]
         for k, body in enumerate(m.site_bodyid):
             if stated := self.found["names"]["site"][k]:
                 frame = self.frame(f"site {shown(stated)}", m.site_pos[k], m.site_quat[k])
@@ -279,8 +281,11 @@ class _Reader:
             model.motor(name, armature=motor[0], effort=motor[1])
             return
         unread = {"Spring and damper": spring[:2], "Friction": spring[3], "Armature": motor}
-        for words in (words for words, given in unread.items() if np.any(given)):
-            model.notes.append(f"{words} of {where}, which has no axis: not read.")
+        model.notes += [
+            f"{words} of {where}, which has no axis: not read."
+            for words, given in unread.items()
+            if np.any(given)
+        ]
 
     def equality(self, k: int) -> None:
         """Declare an equality: connect and weld close loops, joint couples two of them."""

@@ -88,14 +88,18 @@ def outward(
                 heappush(waiting, other)
 
 
+def _tree(model: Model, reached: set[str]) -> Iterator[Joint]:
+    """Yield the joints that lead from bodies that are reached to others, before these are added."""
+    joints = outward([*model.joints.values()], reached)
+    return (one for one in joints if not reached.issuperset(one.ends))
+
+
 def posed(model: Model, posture: Mapping[str, float]) -> Model:
     """Return a model whose bodies are where coordinates of its tree of joints, zero in the
     reference posture, put them.
     """
     found, reached = replace(model, bodies=dict(model.bodies)), {GROUND}
-    for joint in outward([*model.joints.values()], reached):
-        if reached.issuperset(joint.ends):
-            continue
+    for joint in _tree(model, reached):
         across = Frame()
         for name, (_, move, axis) in zip(joint.coordinates, MOVES[joint.kind], strict=True):
             if axis == "w":
@@ -216,11 +220,9 @@ def hang(model: Model) -> None:
     they are.
     """
     open_joints = opened(model)
-    joints = [*model.joints.values()]
-    placed = {end for one in joints if one.name not in open_joints for end in one.ends} | {GROUND}
-    for joint in outward(joints, placed):
-        if placed.issuperset(joint.ends):
-            continue
+    closed = (one for one in model.joints.values() if one.name not in open_joints)
+    placed = {GROUND} | {end for one in closed for end in one.ends}
+    for joint in _tree(model, placed):
         gap, angle = open_joints[joint.name]
         moved = _put(model, joint, _closest(model, joint), placed)
         model.notes.append(

@@ -21,9 +21,10 @@ def free(model: Model, name: str) -> None:
     list(outward(joints, reached))  # which adds what joints connect
     connected = [one.name for one in hung if one.kind == "free" and one.child in reached]
     if len(connected) != 1:
-        found = ", ".join(map(repr, connected)) or "none"
         raise model.refuse(
-            "", f"expected joints from '{name}' to one base that is free, found {found}"
+            "",
+            f"expected joints from '{name}' to one base that is free, found"
+            f" {', '.join(map(repr, connected)) or 'none'}",
         )
     del model.joints[connected[0]]
     place = model.frame_of(body).then(frame)

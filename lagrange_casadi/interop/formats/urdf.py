@@ -209,10 +209,9 @@ class _Robot:
 
     def body(self, stated: str, frame: Frame) -> str:
         """Declare a link as a body."""
-        link, mass = self.links[stated], 0.0
+        link = self.links[stated]
         inertial = link.optional("inertial")
-        if inertial.seen:
-            mass = inertial.needed("mass").amount("value", what="mass")
+        mass = inertial.needed("mass").amount("value", what="mass") if inertial.seen else 0.0
         centre, moments = self.origin(inertial.optional("origin")), inertial.optional("inertia")
         inertia = centre.tensor(six_moments(moments.amount))
         return self.model.add(Body, stated, link.where, mass, centre.place, inertia, frame)
