@@ -139,9 +139,8 @@ class CaseText:
             self.lines += _tie_lines(self.places, tie)
         for body in model.bodies.values():
             for name, place in body.places.items():
-                self.call(
-                    "m.path", json.dumps(name), self.places.point(body.name, body.frame.at(place))
-                )
+                point = self.places.point(body.name, body.frame.at(place))
+                self.call("m.path", json.dumps(name), point)
         self.end()
         return self.imports() + "".join(f"    {line}\n" for line in self.lines)
 

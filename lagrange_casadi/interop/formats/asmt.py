@@ -203,8 +203,9 @@ class _Reader:
                 model.frame_of(body).then(at) for body, at in zip(bodies, (near, far), strict=True)
             )
             far = far.then(Frame(axes=_half_turn(KINDS[kind], one.relative(other).axes)))
-            name = model.add(Joint, stated, where, KINDS[kind], *bodies, near, far)
-            self.named[f"{self.path}/{line.attribute('Name')}"] = name
+            self.named[f"{self.path}/{line.attribute('Name')}"] = model.add(
+                Joint, stated, where, KINDS[kind], *bodies, near, far
+            )
         else:
             key, rows = TIES[kind]
             value = line.amount(key, None if kind == "GearJoint" else 0.0) if key else 0.0
