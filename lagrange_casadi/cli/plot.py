@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import cast
+from typing import Any, cast
 
 from ..base.files import check_writable
 from ..base.units import quantity
@@ -13,7 +13,7 @@ from ..results.store.runs import figure_specs, load
 from ..results.store.specs import Spec as FigureSpec
 from ..results.store.untrusted import reported_as
 from ..studies.sweep import Sweep, is_sweep
-from ..views.charts.designs import Spec, draw_sweep
+from ..views.charts.designs import draw_sweep
 from ..views.charts.usual_designs import default_plots
 from ..views.shapes.index import MANIFEST, NAME, write_index
 from .drawing import draw_with_progress
@@ -78,15 +78,17 @@ def plot(
     echo(f"wrote the figures in {out}/; {out}/{NAME} shows all of them")
 
 
-def _draw(sweep: Sweep, specs: Sequence[Spec], out: Path, svg: bool) -> None:
-    """Draw a sweep; what shows nothing is said.
+def _draw(
+    sweep: Sweep, figures: Mapping[str, Callable[[Sweep], Any]], out: Path, svg: bool
+) -> None:
+    """Draw figures of a sweep; what shows nothing is said.
 
     Raises :class:`NoDesignError` where no figure shows anything.
     """
     with reported_as(_UNDRAWN, sweep.path), MANIFEST.filling(out) as draft:
-        done = list(bar_of("figures", draw_sweep(sweep, specs, draft, svg), len(specs)))
+        done = list(bar_of("figures", draw_sweep(sweep, figures, draft, svg), len(figures)))
         skipped = [f"{path.name}: {why}" for path, why in done if why]
-        if len(skipped) == len(specs):
+        if len(skipped) == len(figures):
             raise NoDesignError(f"there is nothing to draw: {'; '.join(dict.fromkeys(skipped))}")
         write_index(sweep.case, [path for path, why in done if not why], draft)
     echo(*(f"note: not drawn: {line}" for line in skipped), err=True)

@@ -5,8 +5,7 @@ the front of two columns.
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -63,173 +62,144 @@ _STAR: dict[str, Any] = {
 }
 
 
-@dataclass(frozen=True)
-class Peaks:
+def draw_peaks(
+    sweep: Sweep,
+    columns: Sequence[str],
+    over: Sequence[str],
+    family: str,
+    at: Mapping[str, float],
+) -> Figure:
     """Sizes of columns: of a grid over two parameters as maps, or over one as curves, one for each
     of some values of ``family``; of a list as dots over each parameter.
 
-    Other parameters of a grid stay ``at`` values, or in the middle of their axes.
+    Other parameters of a grid stay ``at`` values, or in the middle of their axes. Raises
+    :class:`NoDesignError` where no design that it shows has a result, or none differs from another.
     """
-
-    name: str
-    columns: tuple[str, ...]
-    over: tuple[str, ...]
-    family: str = ""
-    at: Mapping[str, float] = field(default_factory=dict)
-
-    def draw(self, sweep: Sweep) -> Figure:
-        """The figure.
-
-        Raises :class:`NoDesignError` where no design that it shows has a result, or none differs
-        from another.
-        """
-        cut = Cut.of(sweep, self.over, self.at, self.family)
-        shown, same = _differing(self.columns, cut)
-        listed = DESIGN in cut.names
-        each = [(name,) for name in self.over] if listed else [self.over]
-        mapped = len(each[0]) == 2
-        panels = Panels.of(
-            len(shown) * len(each),
-            len(each) if listed else 0,
-            sharex="col" if listed else "all",
-            sharey="row" if listed else mapped,
-        )
-        style = {"linestyle": "", "alpha": 0.6} if listed else {"linewidth": 1.1}
-        families = [""]
-        if self.family:
-            there = cut.along(self.family).tolist()
-            families = [value(sweep, self.family, one) for one in there]
-        for axes, (column, over) in zip(panels.axes, product(shown, each), strict=True):
-            values, x, words = shown[column], [*map(cut.along, over)], label(sweep, column)
-            if mapped:
-                panels.map(axes, x, values, words, cut.gaps)
-            else:
-                many = values.reshape(x[0].size, -1).T
-                panels.curves(
-                    axes, x[0], many, families, cut.gaps, marker=".", markersize=4, **style
-                )
-                along(axes, "x", x[0])
-                scaled(axes, "y", values, words)
-            if listed:
-                axes.label_outer()
-            _star(panels, axes, cut, x, values)
-        panels.name_axes(
-            [label(sweep, name) for name in (self.over if listed else self.over[:1])],
-            label(sweep, self.over[1]) if mapped else "",
-        )
-        what = f"{cut.sweep.size} designs" if listed else "each design"
-        return panels.finish(f"{sweep.case}: peak over time of {what}", cut.notes, same)
+    cut = Cut.of(sweep, over, at, family)
+    shown, same = _differing(columns, cut)
+    listed = DESIGN in cut.names
+    each = [(name,) for name in over] if listed else [tuple(over)]
+    mapped = len(each[0]) == 2
+    panels = Panels.of(
+        len(shown) * len(each),
+        len(each) if listed else 0,
+        sharex="col" if listed else "all",
+        sharey="row" if listed else mapped,
+    )
+    style = {"linestyle": "", "alpha": 0.6} if listed else {"linewidth": 1.1}
+    families = [value(sweep, family, one) for one in cut.along(family)] if family else [""]
+    for axes, (column, names) in zip(panels.axes, product(shown, each), strict=True):
+        values, x, words = shown[column], [*map(cut.along, names)], label(sweep, column)
+        if mapped:
+            panels.map(axes, x, values, words, cut.gaps)
+        else:
+            many = values.reshape(x[0].size, -1).T
+            panels.curves(axes, x[0], many, families, cut.gaps, marker=".", markersize=4, **style)
+            along(axes, "x", x[0])
+            scaled(axes, "y", values, words)
+        if listed:
+            axes.label_outer()
+        _star(panels, axes, cut, x, values)
+    panels.name_axes(
+        [label(sweep, name) for name in (over if listed else over[:1])],
+        label(sweep, over[1]) if mapped else "",
+    )
+    what = f"{cut.sweep.size} designs" if listed else "each design"
+    return panels.finish(f"{sweep.case}: peak over time of {what}", cut.notes, same)
 
 
-@dataclass(frozen=True)
-class Along:
+def draw_along(sweep: Sweep, link: str, over: str, at: Mapping[str, float]) -> Figure:
     """The section forces of a link over xi/l and a parameter: at each ratio the largest in size
     over the instants, signed.
 
     A few values of the parameter are curves, more are a map. Where the sign alternates, as where
-    the largest and the least of a force are alike, the size is drawn.
+    the largest and the least of a force are alike, the size is drawn. Raises
+    :class:`NoDesignError` where no design that it shows has a result.
     """
-
-    name: str
-    link: str
-    over: str
-    at: Mapping[str, float] = field(default_factory=dict)
-
-    def draw(self, sweep: Sweep) -> Figure:
-        """The figure. Raises :class:`NoDesignError` where no design that it shows has a result."""
-        cut, xi = Cut.of(sweep, (self.over,), self.at), sweep["xi"]
-        there = cut.along(self.over)
-        mapped = there.size > LINES
-        forces = table_of(sweep.description.space).forces
-        panels = Panels.of(len(forces), sharex="all", sharey=mapped)
-        for axes, force in zip(panels.axes, forces, strict=True):
-            column = f"peak_at:section:{self.link}:{force}"
-            values = cut[column]
-            if np.isnan(values).all():
-                raise NoDesignError(_none(cut.notes))
-            sized = _alternates(values)
-            values, words = np.abs(values) if sized else values, label(sweep, column, sized)
-            if mapped:
-                panels.map(axes, (there, xi), values, words, cut.gaps, signed=not sized)
-                continue
-            names = [value(sweep, self.over, one) for one in there.tolist()]
-            panels.curves(axes, xi, values, names, cut.gaps, linewidth=1.1)
-            axes.axhline(0.0, color="0.6", linewidth=0.8, zorder=0)
-            axes.set_ylabel(words)
-        ratio = r"$\xi/l$"
-        panels.name_axes(*(([label(sweep, self.over)], ratio) if mapped else ([ratio],)))
-        title = f"section forces of {self.link}, at each ratio the largest in size over time"
-        return panels.finish(f"{sweep.case}: {title}", cut.notes)
+    cut, xi = Cut.of(sweep, (over,), at), sweep["xi"]
+    there = cut.along(over)
+    mapped = there.size > LINES
+    forces = table_of(sweep.description.space).forces
+    panels = Panels.of(len(forces), sharex="all", sharey=mapped)
+    for axes, force in zip(panels.axes, forces, strict=True):
+        column = f"peak_at:section:{link}:{force}"
+        values = cut[column]
+        if np.isnan(values).all():
+            raise NoDesignError(_none(cut.notes))
+        sized = _alternates(values)
+        values, words = np.abs(values) if sized else values, label(sweep, column, sized)
+        if mapped:
+            panels.map(axes, (there, xi), values, words, cut.gaps, signed=not sized)
+            continue
+        names = [value(sweep, over, one) for one in there]
+        panels.curves(axes, xi, values, names, cut.gaps, linewidth=1.1)
+        axes.axhline(0.0, color="0.6", linewidth=0.8, zorder=0)
+        axes.set_ylabel(words)
+    ratio = r"$\xi/l$"
+    panels.name_axes(*(([label(sweep, over)], ratio) if mapped else ([ratio],)))
+    title = f"section forces of {link}, at each ratio the largest in size over time"
+    return panels.finish(f"{sweep.case}: {title}", cut.notes)
 
 
-@dataclass(frozen=True)
-class Front:
-    """Two columns or parameters of all designs against each other, and the designs of which no
-    other is less in both.
+def draw_front(sweep: Sweep, pair: tuple[str, str], at: Mapping[str, float]) -> Figure:
+    """Two columns or parameters of the designs ``at`` these values against each other, and the
+    designs of which no other is less in both.
 
-    Where ``at`` is given, of the designs with these values.
+    Raises :class:`NoDesignError` where no design has a result.
     """
-
-    name: str
-    first: str
-    second: str
-    at: Mapping[str, float] = field(default_factory=dict)
-
-    def draw(self, sweep: Sweep) -> Figure:
-        """The figure. Raises :class:`NoDesignError` where no design has a result."""
-        pair, sweep = (self.first, self.second), sweep.select(**self.at)
-        notes = "".join(stays(sweep, self.at))
-        front = best(sweep, minimise=pair)
-        if not front:
-            raise NoDesignError(_none(notes))
-        stride = 1 + sweep.size // DOTS
-        count, dots = 0, []
-        for numbers, values in chosen(sweep, pair, ["status==0"]):
-            count += numbers.size
-            # By the golden ratio, since each n-th of a grid may be all that share a value, or none
-            # of those chosen.
-            few = numbers * _GOLDEN % 1.0 * stride < 1.0
-            dots.append([size(name, values[name])[few] for name in pair])
-        every = np.concatenate(dots, axis=1)
-        u, v = (size(name, np.array([design.values[name] for design in front])) for name in pair)
-        panels = Panels.of(1)
-        (axes,) = panels.axes
-        style = {"linestyle": "", "markersize": 3}
-        if count > len(front):
-            words = "designs with a result" + (f", 1 in {stride} drawn" if stride > 1 else "")
-            (panels.legend[words],) = axes.plot(*every, marker=".", color="0.75", **style)
-        axes.step(u, v, where="post", color=RED, linewidth=0.8)
-        words = f"front: no other is less in both ({len(front)})"
-        (panels.legend[words],) = axes.plot(u, v, marker=".", color=RED, **style)
-        for axis, name, few, on in zip("xy", pair, every, (u, v), strict=True):
-            scaled(axes, axis, np.append(few, on), label(sweep, name), on.tolist())
-        names = varied(sweep)
-        for n, k in enumerate(_apart(u, v), 1):
-            where = ", ".join(value(sweep, name, front[k].values[name]) for name in names)
-            ring, number = (
-                axes.plot(u[k], v[k], marker=mark, markersize=points, mfc=fill, **_KEY)
-                for mark, points, fill in (("o", 8.0, "white"), (f"${n}$", 4.5, RED))
-            )
-            panels.legend[where] = (*ring, *number)
-        return panels.finish(f"{sweep.case}: designs and their front", notes)
-
-
-Spec = Peaks | Along | Front
+    sweep = sweep.select(**at)
+    notes = "".join(stays(sweep, at))
+    front = best(sweep, minimise=pair)
+    if not front:
+        raise NoDesignError(_none(notes))
+    stride = 1 + sweep.size // DOTS
+    count, dots = 0, []
+    for numbers, values in chosen(sweep, pair, ["status==0"]):
+        count += numbers.size
+        # By the golden ratio, since each n-th of a grid may be all that share a value, or none
+        # of those chosen.
+        few = numbers * _GOLDEN % 1.0 * stride < 1.0
+        dots.append([size(name, values[name])[few] for name in pair])
+    every = np.concatenate(dots, axis=1)
+    u, v = (size(name, np.array([design.values[name] for design in front])) for name in pair)
+    panels = Panels.of(1)
+    (axes,) = panels.axes
+    style = {"linestyle": "", "markersize": 3}
+    if count > len(front):
+        words = "designs with a result" + (f", 1 in {stride} drawn" if stride > 1 else "")
+        (panels.legend[words],) = axes.plot(*every, marker=".", color="0.75", **style)
+    axes.step(u, v, where="post", color=RED, linewidth=0.8)
+    words = f"front: no other is less in both ({len(front)})"
+    (panels.legend[words],) = axes.plot(u, v, marker=".", color=RED, **style)
+    for axis, name, few, on in zip("xy", pair, every, (u, v), strict=True):
+        scaled(axes, axis, np.append(few, on), label(sweep, name), on.tolist())
+    names = varied(sweep)
+    for n, k in enumerate(_apart(u, v), 1):
+        where = ", ".join(value(sweep, name, front[k].values[name]) for name in names)
+        ring, number = (
+            axes.plot(u[k], v[k], marker=mark, markersize=points, mfc=fill, **_KEY)
+            for mark, points, fill in (("o", 8.0, "white"), (f"${n}$", 4.5, RED))
+        )
+        panels.legend[where] = (*ring, *number)
+    return panels.finish(f"{sweep.case}: designs and their front", notes)
 
 
 def draw_sweep(
-    sweep: Sweep, specs: Sequence[Spec], folder: Path, svg: bool = False
+    sweep: Sweep,
+    figures: Mapping[str, Callable[[Sweep], Figure]],
+    folder: Path,
+    svg: bool = False,
 ) -> Iterator[tuple[Path, str]]:
-    """Draw into an existing folder, one by one, as PNG or as SVG: the file, and where it is not
-    drawn, why.
+    """Draw figures by their names into an existing folder, one by one, as PNG or as SVG: the file,
+    and where it is not drawn, why.
     """
     ending = ".svg" if svg else ".png"
-    for spec in specs:
-        path = folder / f"{spec.name}{ending}"
+    for name, figure in figures.items():
+        path = folder / f"{name}{ending}"
         why = ""
         with one_at_a_time(STYLE):
             try:
-                save(spec.draw(sweep), path, ending, dpi=200)
+                save(figure(sweep), path, ending, dpi=200)
             except NoDesignError as error:
                 why = str(error)
         yield path, why

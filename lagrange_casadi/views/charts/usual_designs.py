@@ -4,8 +4,10 @@ parameters, by what names.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from itertools import product
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,8 +15,11 @@ from ...base.quantities import Output
 from ...errors import DeclarationError, NoDesignError, check_known
 from ...studies.sweep.axes import DESIGN
 from ...studies.sweep.reading import Sweep
-from .designs import Along, Front, Peaks, Spec
+from .designs import draw_along, draw_front, draw_peaks
 from .panels import varied
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _INTERVALS, _ROWS, _ACROSS = 9, 4, 3
 _TOGETHER = {"effort": "effort", "load": "loads", "multiplier": "multipliers", "motion": "motion"}
@@ -25,9 +30,9 @@ def default_plots(
     over: Sequence[str],
     at: Mapping[str, float],
     against: Sequence[tuple[str, str]],
-) -> tuple[Spec, ...]:
-    """The usual drawings of a sweep: over the one or two parameters named, or the first ones that
-    vary, the others ``at`` values.
+) -> dict[str, Callable[[Sweep], Figure]]:
+    """The usual drawings of a sweep, by their names: over the one or two parameters given, or the
+    first ones that vary, the others ``at`` values.
 
     Of a list they are over each of the parameters named, or over all. Raises
     :class:`UnknownNameError` for what is not there, :class:`NoDesignError` where no design has a
@@ -45,7 +50,7 @@ def default_plots(
             f"{sweep.path}: no design has a result ({why}): there is nothing to draw"
         )
     listed = DESIGN in sweep.dimensions
-    specs: list[Spec] = []
+    found: dict[str, Callable[[Sweep], Figure]] = {}
     free = [name for name in varied(sweep.select(**at)) if name not in names]
     family = free[0] if free and len(names) == 1 and not listed else ""
     rows, across = (_ROWS, _ACROSS) if listed else (_INTERVALS, 2)
@@ -53,13 +58,11 @@ def default_plots(
         pages = [*product(_pages(columns, rows), _pages(names, across))]
         for k, (some, few) in enumerate(pages, 1):
             name = f"peak_{group}_{k}" if len(pages) > 1 else f"peak_{group}"
-            specs.append(Peaks(name, some, few, family, at))
+            found[name] = partial(draw_peaks, columns=some, over=few, family=family, at=at)
     links = dict.fromkeys(output.part for output in _of_kind(sweep, "peak_at").values())
-    specs += [
-        Along(f"along_{link}", link, (names or tuple(sweep.dimensions))[0], at)
-        for link in links
-        if not listed
-    ]
+    for link in () if listed else links:
+        along = (names or tuple(sweep.dimensions))[0]
+        found[f"along_{link}"] = partial(draw_along, link=link, over=along, at=at)
     for first, second in dict.fromkeys(against) or usual_pair(sweep, at):
         for name in (first, second):
             if name not in sweep.parameters and sweep.column(name).axes:
@@ -70,15 +73,9 @@ def default_plots(
             raise DeclarationError(
                 f"expected two columns to draw against each other, got '{first}' twice"
             )
-        specs.append(
-            Front(
-                "front_" + "_".join(name.replace(":", "-") for name in (first, second)),
-                first,
-                second,
-                at,
-            )
-        )
-    if not specs:
+        name = f"front_{first}_{second}".replace(":", "-")
+        found[name] = partial(draw_front, pair=(first, second), at=at)
+    if not found:
         one = sweep.select(**at).size == 1
         why = (
             "it has only one design"
@@ -86,7 +83,7 @@ def default_plots(
             else "it keeps no peak of an effort, a reaction, a section force or a load"
         )
         raise DeclarationError(f"{sweep.path}: there is nothing to draw: {why}")
-    return tuple(specs)
+    return found
 
 
 def _over(sweep: Sweep, over: tuple[str, ...], at: Mapping[str, float]) -> tuple[str, ...]:
