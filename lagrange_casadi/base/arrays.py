@@ -28,7 +28,7 @@ Json: TypeAlias = str | float | Sequence["Json"] | Mapping[str, "Json"] | None
 """A value that JSON holds."""
 
 
-Instants: TypeAlias = slice | npt.NDArray[np.generic]
+Instants: TypeAlias = slice | list[int] | npt.NDArray[np.generic]
 """Some of the instants: a slice, their numbers, or True and False."""
 
 

@@ -46,11 +46,6 @@ class Action:
     moment: bool = False
 
     @property
-    def colour(self) -> str:
-        """The colour of its arrow."""
-        return ACTION_COLOURS[self.kind]
-
-    @property
     def tail(self) -> bool:
         """True if the arrow begins at its place, and does not end there."""
         return self.kind != "load"
@@ -96,7 +91,7 @@ def _arrow(action: Action, space: bool, size: float, largest: float) -> Arrow:
         length = action.vector * (LONGEST * size / largest)
         start = action.place if action.tail else action.place - length
         points = np.stack([start, start + length], axis=1)
-    return Arrow(points, action.colour, _HEAD * size)
+    return Arrow(points, ACTION_COLOURS[action.kind], _HEAD * size)
 
 
 def actions_of(solution: Solution, poses: Poses) -> list[tuple[str, list[Action], float]]:

@@ -26,7 +26,7 @@ from ..shapes.poses import Poses, frame_along
 from ..shapes.primitives import disc_axis, drawing, size_of
 from ..shapes.shapes import Shape, shapes
 from ..shapes.symbols import PATH
-from .forces import LONGEST, actions_of
+from .forces import ACTION_COLOURS, LONGEST, actions_of
 from .solids import Mesh, arrow, block, cylinder, prism, sphere, together
 
 _GIRTH = 0.013
@@ -208,8 +208,8 @@ def _actions(file: _File, solution: Solution, poses: Poses, size: float) -> Iter
         scale = LONGEST * size / largest
         heads = 2 if unit == "N m" else 1
         meshes = {
-            colour: file.mesh("arrow", arrow(heads), colour)
-            for colour in dict.fromkeys(one.colour for one in actions)
+            kind: file.mesh("arrow", arrow(heads), ACTION_COLOURS[kind])
+            for kind in dict.fromkeys(one.kind for one in actions)
         }
         for one in actions:
             sizes = np.linalg.norm(one.vector, axis=1)
@@ -221,7 +221,7 @@ def _actions(file: _File, solution: Solution, poses: Poses, size: float) -> Iter
                 "scale": np.tile(np.maximum(scale * sizes, _LEAST * size)[:, None], 3),
             }
             extras = {"unit": unit, "metres_per_unit": scale, "largest": float(sizes.max())}
-            yield file.node(f"{one.kind} {one.of}", moves, mesh=meshes[one.colour], extras=extras)
+            yield file.node(f"{one.kind} {one.of}", moves, mesh=meshes[one.kind], extras=extras)
 
 
 def _solids(shape: Shape, poses: Poses, girth: float) -> Iterator[Mesh]:

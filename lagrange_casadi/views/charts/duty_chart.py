@@ -10,11 +10,11 @@ import numpy as np
 from ...base.arguments import public
 from ...studies.actuators.duty import Duty
 from ...studies.actuators.motor import Motor
-from ..shapes.picture_files import check_picture, one_at_a_time, put_figure, subplots
+from ..shapes.picture_files import GRIDS, one_at_a_time, put_figure, subplots
 
 
 @public
-@one_at_a_time()
+@one_at_a_time(GRIDS)
 def plot_duty(duty: Duty, path: str | Path, motor: Motor | None = None) -> None:
     """Draw torque over speed of a duty, with the limits of a motor, into a file.
 
@@ -34,7 +34,6 @@ def plot_duty(duty: Duty, path: str | Path, motor: Motor | None = None) -> None:
     DeclarationError
         For another ending.
     """
-    check_picture(path)
     per_minute = 1.0 if duty.linear else 60.0 / math.tau
     figure, (axes,) = subplots((7.0, 5.0))
     axes.plot(
@@ -66,6 +65,5 @@ def plot_duty(duty: Duty, path: str | Path, motor: Motor | None = None) -> None:
         axes.plot(per_minute * ends, limit, color="#b3541e", label=f"{motor.name}, peak")
     speed, pull = ("speed [m/s]", "force [N]") if duty.linear else ("speed [1/min]", "torque [N m]")
     axes.set(xlabel=speed, ylabel=pull, xlim=(0, None), ylim=(0, None))
-    axes.grid(True, color="0.92")
-    figure.legend(loc="outside lower center", ncols=2, frameon=False, fontsize=9)
+    figure.legend(loc="outside lower center", ncols=2)
     put_figure(figure, path)

@@ -12,11 +12,11 @@ import numpy as np
 from ...base.arguments import public
 from ...results.statistics import shares
 from ...studies.forward.free_motion import FreeMotion
-from ..shapes.picture_files import check_picture, one_at_a_time, put_figure, subplots
+from ..shapes.picture_files import GRIDS, one_at_a_time, put_figure, subplots
 
 
 @public
-@one_at_a_time()
+@one_at_a_time(GRIDS)
 def plot_cycle(motion: FreeMotion, path: str | Path) -> None:
     """Draw torques and speed of a free machine over its coordinate, into a file.
 
@@ -39,7 +39,6 @@ def plot_cycle(motion: FreeMotion, path: str | Path) -> None:
     The required torque is the one that would keep the present speed constant. The areas between it
     and the torque of the drive are the energy that changes the speed.
     """
-    check_picture(path)
     angle = motion.unit == "rad"
     x = np.degrees(motion.angle) if angle else motion.angle
     resisting = motion.resisting
@@ -51,13 +50,11 @@ def plot_cycle(motion: FreeMotion, path: str | Path) -> None:
     upper.axhline(mean, color="#1f4e79", lw=0.8, ls="--", label="its mean")
     upper.plot(x, motion.drive, color="#c0392b", lw=1.0, label="drive")
     upper.set(ylabel="torque [N m]" if angle else "force [N]")
-    upper.legend(loc="best", frameon=False, fontsize=9)
+    upper.legend(loc="best")
     turn = 60.0 / math.tau if angle else 1.0
     lower.plot(x, turn * motion.speed, color="#2e7d4f", lw=1.2)
     lower.set(
         xlabel=f"{motion.joint} [{'deg' if angle else 'm'}]",
         ylabel="speed [1/min]" if angle else "speed [m/s]",
     )
-    for axes in (upper, lower):
-        axes.grid(True, color="0.92")
     put_figure(figure, path)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from ...base.arguments import public
 from ...studies.identification.fit import Comparison
-from ..shapes.picture_files import check_picture, one_at_a_time, put_figure, save, subplots
+from ..shapes.picture_files import GRIDS, one_at_a_time, put_figure, save, subplots
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,7 +21,7 @@ _COLOURS = {"measured": "0.6", "model": "#1f4e79", "difference": "#c0392b"}
 
 
 @public
-@one_at_a_time()
+@one_at_a_time(GRIDS)
 def plot_identification(compared: Comparison, path: str | os.PathLike[str]) -> None:
     """Draw measurements and model over time, and what is left, into a file.
 
@@ -39,7 +39,6 @@ def plot_identification(compared: Comparison, path: str | os.PathLike[str]) -> N
     PathError
         If the file cannot be written.
     """
-    check_picture(path)
     names = list(compared.measured)
     figure, axes = subplots((9.0, 2.2 * len(names) + 0.6), len(names), 2, sharex=True)
     for name, left, right in zip(names, axes[::2], axes[1::2], strict=True):
@@ -50,18 +49,17 @@ def plot_identification(compared: Comparison, path: str | os.PathLike[str]) -> N
     for one in axes[-2:]:
         one.set_xlabel("t [s]")
     handles = [line for one in axes[:2] for line in one.get_legend_handles_labels()[0]]
-    figure.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False, fontsize=9)
+    figure.legend(handles=handles, loc="outside lower center", ncols=3)
     put_figure(figure, path)
 
 
-@one_at_a_time()
+@one_at_a_time(GRIDS)
 def chart(compared: Comparison, name: str, curves: Sequence[str]) -> bytes:
     """Return a picture of some curves of a quantity, as SVG."""
     (figure, (axes,)), file = subplots((5.6, 2.6)), io.BytesIO()
     _draw(axes, compared, name, curves)
-    axes.set_xlabel("t [s]")
-    axes.set_ylabel(f"{name} [{compared.units[name]}]")
-    figure.legend(loc="outside upper right", ncols=2, frameon=False, fontsize=9)
+    axes.set(xlabel="t [s]", ylabel=f"{name} [{compared.units[name]}]")
+    figure.legend(loc="outside upper right", ncols=2)
     save(figure, file, ".svg")
     return file.getvalue()
 
@@ -71,4 +69,3 @@ def _draw(axes: Axes, compared: Comparison, name: str, curves: Sequence[str]) ->
     values = {"measured": measured, "model": model, "difference": measured - model}
     for curve in curves:
         axes.plot(compared.t, values[curve], color=_COLOURS[curve], lw=0.9, label=curve)
-    axes.grid(True, color="0.92")

@@ -205,7 +205,6 @@ class Panels:
                 [textwrap.fill(text, _LETTERS) for text in self.legend],
                 loc="outside lower center",
                 ncols=min(len(self.legend), halves),
-                frameon=False,
             )
             around.append(legend)
         heights = (artist.get_window_extent().height / self.figure.dpi for artist in around)

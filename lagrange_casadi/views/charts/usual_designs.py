@@ -76,10 +76,9 @@ def default_plots(
         name = f"front_{first}_{second}".replace(":", "-")
         found[name] = partial(draw_front, pair=(first, second), at=at)
     if not found:
-        one = sweep.select(**at).size == 1
         why = (
             "it has only one design"
-            if one
+            if sweep.select(**at).size == 1
             else "it keeps no peak of an effort, a reaction, a section force or a load"
         )
         raise DeclarationError(f"{sweep.path}: there is nothing to draw: {why}")
@@ -118,13 +117,11 @@ def _groups(sweep: Sweep) -> dict[str, list[str]]:
     moment = "moment" if sweep.description.space else "mz"
     reactions = {"resultant": "reactions", moment: "reaction_moments"}
     for name, output in _of_kind(sweep, "peak").items():
-        if output.group == "section":
-            group = f"section_{output.part}"
-        elif output.group == "reaction":
-            group = reactions.get(output.member, "")
-        else:
-            group = _TOGETHER.get(output.group, "")
-        if group:
+        together = _TOGETHER | {
+            "section": f"section_{output.part}",
+            "reaction": reactions.get(output.member, ""),
+        }
+        if group := together.get(output.group):
             groups.setdefault(group, []).append(name)
     return groups
 

@@ -11,7 +11,7 @@ import numpy as np
 from ...base.arrays import Array
 from ...results.elastic.vibration import Vibration, vibration
 from ...results.solution import Solution
-from ..shapes.picture_files import subplots
+from ..shapes.picture_files import BLUE, RED, subplots
 from ..shapes.readable import Scale
 from .link_map import draw_along
 
@@ -49,9 +49,7 @@ def draw_deflection(
     upper.set_xlabel(label)
     for axes in lower:
         _spectrum(axes, response)
-    figure.suptitle(
-        f"{solution.case}: deflection of {link} from {_FROM[found.against]}", fontsize=11
-    )
+    figure.suptitle(f"{solution.case}: deflection of {link} from {_FROM[found.against]}")
     return figure
 
 
@@ -67,27 +65,29 @@ def _spectrum(axes: Axes, response: Vibration) -> None:
             frequencies[shown],
             _FLOOR,
             shares[shown],
-            color="#2166ac",
+            color=BLUE,
             linewidth=2.0,
             label="harmonics of its bending",
         )
     axes.axvline(
         response.frequency,
-        color="#b2182b",
+        color=RED,
         label=f"first bending frequency, {' and '.join(response.ends)}",
     )
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    axes.set_ylim(_FLOOR, 1e2)  # room for the legend
-    axes.xaxis.set_major_formatter("{x:g}")
-    axes.xaxis.set_minor_formatter(NullFormatter())
-    axes.set_xlabel("frequency [Hz]")
-    axes.set_ylabel("share of the largest bending")
     off = (
         f"{100 * response.excess:.3g} %"
         if response.excess is not None and response.excess < 10.0
         else "many times"
     )
     verdict = "enough" if response.enough else "NOT enough"
-    axes.set_title(f"resonance changes bending by {off}: rigid links are {verdict}", fontsize=10)
-    axes.legend(frameon=False, fontsize=9)
+    axes.set(
+        xscale="log",
+        yscale="log",
+        ylim=(_FLOOR, 1e2),  # room for the legend
+        xlabel="frequency [Hz]",
+        ylabel="share of the largest bending",
+        title=f"resonance changes bending by {off}: rigid links are {verdict}",
+    )
+    axes.xaxis.set_major_formatter("{x:g}")
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.legend()

@@ -20,6 +20,7 @@ from ...results.histories import Peak
 from ...results.ordering import vanishes
 from ...results.section_laws import SectionLaw
 from ...results.solution import Solution
+from ..shapes.picture_files import BLUE, RED
 from ..shapes.readable import instant, number, scale_for
 
 if TYPE_CHECKING:
@@ -38,9 +39,6 @@ _SYMBOLS = {
 }
 _SIDES: tuple[Side, Side] = ("base", "tip")
 _POINTS, _SAME = 121, 1e-9
-_POSITIVE, _NEGATIVE = "#b2182b", "#2166ac"
-_CURVE, _LARGEST = "#2166ac", "#b2182b"
-"""Colours of the loads of a bearing over time, and of the largest one."""
 _ROW, _PANEL, _LENGTH, _HEIGHT = 1.5, 3.1, 2.2, 0.42
 """Height of a row, and width of a panel; length of a link in it, and height of its largest value
 [inch].
@@ -151,7 +149,7 @@ def _panel(
     ratios = np.unique([*np.linspace(0.0, 1.0, _POINTS), *(mark.xi for mark in found)])
     values = np.stack([law.at(force, ratios[None], side)[0] for side in _SIDES], axis=1).ravel()
     x, y = x0 + _LENGTH * np.repeat(ratios, 2), y0 + _HEIGHT / largest * values
-    for sign, colour in ((1.0, _POSITIVE), (-1.0, _NEGATIVE)):
+    for sign, colour in ((1.0, RED), (-1.0, BLUE)):
         if (sign * values > 0.0).any():
             edge = y0 + sign * np.maximum(sign * (y - y0), 0.0)
             axes.fill_between(x, y0, edge, color=colour, alpha=0.25, linewidth=0.0)
@@ -258,14 +256,14 @@ def _polar(
             x0 + dx, y0 + dy, f"${member[0]}_{member[1]}$", fontsize=9, ha="center", va="center"
         )
     points: Array = _RADIUS / radius * scale.factor * np.array(forces)
-    axes.plot(x0 + points[0], y0 + points[1], color=_CURVE, linewidth=1.4)
+    axes.plot(x0 + points[0], y0 + points[1], color=BLUE, linewidth=1.4)
     axes.plot(
         x0 + np.array([0.0, points[0, i]]),
         y0 + np.array([0.0, points[1, i]]),
-        color=_LARGEST,
+        color=RED,
         linewidth=1.2,
     )
-    axes.plot(x0 + points[0, i], y0 + points[1, i], "o", color=_LARGEST, markersize=4)
+    axes.plot(x0 + points[0, i], y0 + points[1, i], "o", color=RED, markersize=4)
     angle = math.degrees(math.atan2(points[1, i], points[0, i]))
     words = f"{scale.said(most)} at {number(angle, 3)}°" if most else "0"
     axes.text(x0, y0 - _RADIUS - 0.14, words, fontsize=8, ha="center", va="top")

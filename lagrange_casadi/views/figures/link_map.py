@@ -67,7 +67,6 @@ def draw_map(
     )
     if peak is not None:
         axes.plot(*peak, "k+", markersize=13, markeredgewidth=1.8, clip_on=False)
-    axes.set_title(title, fontsize=10)
-    axes.set_ylabel(r"$\xi/l$")
+    axes.set(title=title, ylabel=r"$\xi/l$")
     bar = axes.figure.colorbar(picture, ax=axes, label=f"{what} [{scale.unit}]")
     scale.put(bar.ax.yaxis)

@@ -21,7 +21,7 @@ from ..shapes.poses import Poses
 from ..shapes.primitives import cloud, drawing, seen, size_of
 from ..shapes.readable import Scale, instant, scale_for
 from ..shapes.symbols import GROUND, Line, Name, Primitive, Symbol, outlines
-from .stills import stills
+from .stills import THINNED, stills
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -37,9 +37,6 @@ _POINTS, _LETTER = 8.0, 0.075
 _FAINT, _MARGIN = 0.2, 0.12
 """The opacity of other instants, and the room around everything over the mechanism's size."""
 
-_THINNED = 2000
-"""Largest number of instants at which everything must have room."""
-
 _ROW, _IN_ROW = 0.21, 6
 """The height of a row of the legend [inch], and bodies in a row beside other pictures."""
 
@@ -54,7 +51,7 @@ def draw_mechanism(solution: Solution, spec: MechanismDrawing, si: bool = False)
     from matplotlib.figure import Figure
 
     chosen = stills(solution, spec.count)
-    thin = Poses.of(solution.during(every(solution.t.size, _THINNED)))
+    thin = Poses.of(solution.during(every(solution.t.size, THINNED)))
     everything, poses = drawing(thin), Poses.of(solution)
     size = size_of(everything)
     panels = _panels(solution, spec, chosen)
@@ -80,7 +77,7 @@ def draw_mechanism(solution: Solution, spec: MechanismDrawing, si: bool = False)
         shares = np.add(place, (0.0, foot, 0.0, 0.0)) / [across, tall, across, tall]
         axes = figure.add_axes(tuple(shares))
         _frame(axes, view, box, place[2:], scale_for("m", size, si))
-        axes.set_title(view.title, fontsize=10)
+        axes.set_title(view.title)
         point = (box[1] - box[0]) / (72.0 * place[2])
         for k in reversed(instants[1:]):
             other = seen(drawing(poses.during([k]), thin, {}), view)
@@ -93,12 +90,10 @@ def draw_mechanism(solution: Solution, spec: MechanismDrawing, si: bool = False)
         names,
         loc="lower center",
         ncols=columns,
-        frameon=False,
-        fontsize=9,
         labelspacing=0.35,
         handler_map={Symbol: _Legend()},
     )
-    figure.suptitle("\n".join(head), fontsize=11, y=1.0 - 0.1 / tall, va="top")
+    figure.suptitle("\n".join(head), y=1.0 - 0.1 / tall, va="top")
     return figure
 
 
@@ -110,8 +105,7 @@ def draw_into(axes: Axes, solution: Solution) -> None:
     whole, one = Poses.of(solution), view_of(description)
     everything = drawing(whole)
     size = size_of(everything)
-    (left, bottom), (right, top) = _ends(everything, one, size)
-    box = left, right, bottom, top
+    box = np.column_stack(_ends(everything, one, size)).ravel().tolist()
     _frame(axes, one, box, (4.6, 3.4), scale_for("m", size))
     axes.set_aspect("equal")
     if description.space:
@@ -120,17 +114,10 @@ def draw_into(axes: Axes, solution: Solution) -> None:
     figure: Any = axes.figure
     if not figure.legends:
         names, handles = zip(*bodies, strict=True)
-        figure.legend(
-            handles,
-            names,
-            loc="outside lower center",
-            ncols=_IN_ROW,
-            frameon=False,
-            fontsize=8,
-        )
+        figure.legend(handles, names, loc="outside lower center", ncols=_IN_ROW, fontsize=8)
     # How large a point is on the page is known when that is laid out.
     figure.draw_without_rendering()
-    point = (right - left) / (72.0 * axes.bbox.width / figure.dpi)
+    point = (box[1] - box[0]) / (72.0 * axes.bbox.width / figure.dpi)
     _show(axes, one, whole.during([0]), whole, box, point)
 
 
@@ -150,9 +137,8 @@ def _show(
     if named and now.description.space:
         everything = drawing(whole)
         things += seen(ground_axes(view, cloud(seen(everything, view)), size_of(everything)), view)
-    left, right, bottom, top = box
-    letters, corners = np.full(2, _POINTS / LETTER * point), ((left, bottom), (right, top))
-    _painted(axes, written(things, letters, corners), point)
+    letters = np.full(2, _POINTS / LETTER * point)
+    _painted(axes, written(things, letters, np.reshape(box, (2, 2)).T), point)
 
 
 def _painted(

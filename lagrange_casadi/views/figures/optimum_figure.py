@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, BinaryIO
 
 import numpy as np
 
+from ...base.arrays import Array, Flags
 from ...model.scene import Scene
 from ...studies.evaluate import evaluate
 from ...studies.optimise.front import Front
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 _TEXT = 40
 
 
-@one_at_a_time()
+@one_at_a_time({"axes.grid": True, "grid.color": "0.93"})
 def draw_optimum(scene: Scene, optimum: Optimum, file: BinaryIO, ending: str) -> None:
     """Write the picture into a file; its kind follows from the ending of the name."""
     from matplotlib.figure import Figure
@@ -39,35 +40,33 @@ def draw_optimum(scene: Scene, optimum: Optimum, file: BinaryIO, ending: str) ->
     for number in np.unique(history[:, 0]):
         rows = history[(history[:, 0] == number) & (history[:, 3] > 0)]
         axes.plot(np.arange(len(rows)), rows[:, 1], "-", color="0.6", lw=1, zorder=1)
-        holds = rows[:, 2] <= 1e-6
-        axes.plot(np.flatnonzero(holds), rows[holds, 1], "o", color="tab:blue", ms=4)
-        axes.plot(np.flatnonzero(~holds), rows[~holds, 1], "x", color="tab:red", ms=5)
+        _plot_dots(axes, np.arange(0.0, len(rows)), rows[:, 1], rows[:, 2] <= 1e-6, 4)
     axes.axhline(optimum.objective, color="tab:blue", lw=0.8, ls=":")
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
-    axes.set(xlabel="program", ylabel=f"{optimum.minimised} [{optimum.unit}]")
-    axes.set_title("each start: o within the limits, x beyond one", fontsize=10)
-    axes.grid(True, color="0.93")
+    axes.set(
+        xlabel="program",
+        ylabel=f"{optimum.minimised} [{optimum.unit}]",
+        title="each start: o within the limits, x beyond one",
+    )
     table = figure.add_subplot(grid[1, 1])
     table.axis("off")
     lines = [f"{optimum.minimised} = {optimum.objective:.6g} {optimum.unit}", ""]
-    for limit in optimum.limits:
-        active = "active" if limit.active else ""
-        lines.append(
-            f"{limit.constraint!s:<{_TEXT}} {limit.value:>11.5g} {active:<6}"
-            f" {limit.multiplier:>11.4g}"
-        )
-    for name, multiplier in optimum.bounds.items():
-        active = "active" if multiplier else ""
-        lines.append(
-            f"{'bounds of ' + name:<{_TEXT}} {optimum.values[name]:>11.5g} {active:<6}"
-            f" {multiplier:>11.4g}"
-        )
+    limits = [
+        (str(one.constraint), one.value, one.active, one.multiplier) for one in optimum.limits
+    ]
+    limits += [
+        (f"bounds of {name}", optimum.values[name], multiplier != 0.0, multiplier)
+        for name, multiplier in optimum.bounds.items()
+    ]
+    for what, value, active, multiplier in limits:
+        words = "active" if active else ""
+        lines.append(f"{what:<{_TEXT}} {value:>11.5g} {words:<6} {multiplier:>11.4g}")
     table.text(0.0, 0.98, "\n".join(lines), va="top", fontsize=8, family="monospace")
-    table.set_title("limits: value, whether active, multiplier", fontsize=10, loc="left")
+    table.set_title("limits: value, whether active, multiplier", loc="left")
     save(figure, file, ending)
 
 
-@one_at_a_time()
+@one_at_a_time({"axes.grid": True, "grid.color": "0.93"})
 def draw_front(scene: Scene, front: Front, file: BinaryIO, ending: str) -> None:
     """Write the picture into a file; its kind follows from the ending of the name."""
     from matplotlib.figure import Figure
@@ -84,8 +83,7 @@ def draw_front(scene: Scene, front: Front, file: BinaryIO, ending: str) -> None:
         x, y = values[:, number], values[:, 0]
         if len(others) == 1:
             axes.plot(x[feasible], y[feasible], "-", color="0.75", lw=1, zorder=1)
-        axes.plot(x[feasible], y[feasible], "o", color="tab:blue", ms=5)
-        axes.plot(x[~feasible], y[~feasible], "x", color="tab:red", ms=6)
+        _plot_dots(axes, x, y, feasible, 5)
         for k in shown:
             axes.annotate(
                 f"{k + 1}", (x[k], y[k]), textcoords="offset points", xytext=(6, 6), fontsize=9
@@ -94,16 +92,20 @@ def draw_front(scene: Scene, front: Front, file: BinaryIO, ending: str) -> None:
             xlabel=f"{front.minimised[number]} [{front.units[number]}]",
             ylabel=f"{front.minimised[0]} [{front.units[0]}]",
         )
-        axes.grid(True, color="0.93")
     figure.suptitle(
-        f"{front.case}: designs of which none is better in {'both' if len(others) == 1 else 'all'}",
-        fontsize=11,
+        f"{front.case}: designs of which none is better in {'both' if len(others) == 1 else 'all'}"
     )
     for column, k in enumerate(shown):
         axes = figure.add_subplot(below[0, column])
         optimum = front.points[k].optimum
         _draw_design(axes, scene, optimum.parameters, f"{k + 1}: ", optimum, 9)
     save(figure, file, ending)
+
+
+def _plot_dots(axes: Axes, x: Array, y: Array, holds: Flags, size: int) -> None:
+    """Plot values whose limits hold as circles of a size [pt], others as crosses."""
+    axes.plot(x[holds], y[holds], "o", color="tab:blue", ms=size)
+    axes.plot(x[~holds], y[~holds], "x", color="tab:red", ms=size + 1)
 
 
 def _draw_design(

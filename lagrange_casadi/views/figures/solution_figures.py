@@ -172,11 +172,9 @@ def draw(
     if not os.path.isdir(folder):
         raise PathError(f"draw: expected an existing folder, got {shown(folder)}")
     for spec in chosen:
-        if not _has(solution, spec):
-            yield spec, None
-            continue
-        path = folder / f"{spec.name}{ending}"
-        save(spec.draw(solution, si), path, ending, dpi=120)
+        path = folder / f"{spec.name}{ending}" if _has(solution, spec) else None
+        if path:
+            save(spec.draw(solution, si), path, ending, dpi=120)
         yield spec, path
 
 
@@ -287,8 +285,7 @@ def _maps(spec: SectionMaps, solution: Solution, si: bool) -> Figure:
     for axes in plots[len(names) :]:
         axes.set_axis_off()
     figure.suptitle(
-        f"{solution.case}: section forces of {spec.link}, as the tip's side acts on the base's",
-        fontsize=11,
+        f"{solution.case}: section forces of {spec.link}, as the tip's side acts on the base's"
     )
     return figure
 
@@ -350,4 +347,4 @@ def _finish(axes: Axes, solution: Solution, names: Sequence[str], si: bool) -> N
     axes.grid(True, color="0.9")
     axes.margins(x=0.0)
     if axes.get_legend_handles_labels()[0]:
-        axes.legend(frameon=False)
+        axes.legend(fontsize=10)

@@ -12,7 +12,8 @@ from ..shapes.primitives import drawing, size_of
 _SAME = 0.02
 """Over the mechanism's size: postures all of whose points are no farther apart look the same."""
 
-_THINNED = 2000
+THINNED = 2000
+"""Largest number of instants at which postures are looked at."""
 
 
 def stills(solution: Solution, count: int) -> list[int]:
@@ -24,7 +25,7 @@ def stills(solution: Solution, count: int) -> list[int]:
     n = solution.t.size
     if count < 2 or n < 2:
         return [0]
-    few = every(n, _THINNED)
+    few = every(n, THINNED)
     thin = solution.during(few)
     things = drawing(Poses.of(thin))
     size = size_of(things)

@@ -15,7 +15,7 @@ from ...results.solution import Solution
 from ...results.strength.fatigue import Loaded, loaded, use_score, used
 from ...results.strength.fibres import sampled, worst
 from ...results.strength.stress import Stress
-from ..shapes.picture_files import subplots
+from ..shapes.picture_files import BLUE, RED, subplots
 from ..shapes.readable import Scale
 from .link_map import draw_along
 
@@ -55,9 +55,7 @@ def draw_strength(
     upper.set_xlabel(label)
     for axes in lower:
         _goodman(axes, stress, unit)
-    figure.suptitle(
-        f"{solution.case}: strength of {link}, {stress.member.beam.material.name}", fontsize=11
-    )
+    figure.suptitle(f"{solution.case}: strength of {link}, {stress.member.beam.material.name}")
     return figure
 
 
@@ -76,12 +74,14 @@ def draw_utilisation(solution: Solution, parts: Sequence[str]) -> Figure:
     axes.barh(
         places,
         [share for _, share, _ in rows],
-        color=["#b2182b" if most else "#92a5b5" for _, _, most in rows],
+        color=[RED if most else "#92a5b5" for _, _, most in rows],
     )
     axes.set_yticks(places, [name for name, _, _ in rows])
     axes.axvline(1.0, color="k", linewidth=0.9)
-    axes.set_xlim(0.0, 1.05 * max(1.0, *(min(share, 10.0) for _, share, _ in rows)))
-    axes.set_xlabel("utilisation, 1 / factor of safety")
+    axes.set(
+        xlim=(0.0, 1.05 * max(1.0, *(min(share, 10.0) for _, share, _ in rows))),
+        xlabel="utilisation, 1 / factor of safety",
+    )
     axes.set_title(f"{solution.case}: what governs each part is red", fontsize=11)
     return figure
 
@@ -93,21 +93,23 @@ def _goodman(axes: Axes, stress: Stress, unit: Scale) -> None:
         strength / _MEGA
         for strength in material.needs("Goodman's diagram", "endurance", "ultimate")
     )
-    cycles: dict[str, list[Loaded]] = {"swings, every fibre": [], "in notches": []}
+    cycles: dict[bool, list[Loaded]] = {False: [], True: []}
     for notch, histories in sampled(stress.member):
-        label = "in notches" if notch else "swings, every fibre"
-        cycles[label] += [loaded(history) for history in histories]
+        cycles[notch is not None] += map(loaded, histories)
     found = worst(stress.member, use_score(material))
     most = loaded(found.history)
-    axes.plot([0.0, ultimate], [endurance, 0.0], color="#b2182b", label="Goodman")
+    axes.plot([0.0, ultimate], [endurance, 0.0], color=RED, label="Goodman")
     if material.yield_strength is not None:
         strength = material.yield_strength / _MEGA
         axes.plot([0.0, strength], [strength, 0.0], color="0.6", linestyle="--", label="yield")
     top = endurance
-    for (label, counted), color in zip(cycles.items(), ("#2166ac", "#e08214"), strict=True):
-        if counted:
+    for notched, label, color in (
+        (False, "swings, every fibre", BLUE),
+        (True, "in notches", "#e08214"),
+    ):
+        if cycles[notched]:
             means, amplitudes = (
-                np.concatenate([getattr(one, name) for one in counted]) / _MEGA
+                np.concatenate([getattr(one, name) for one in cycles[notched]]) / _MEGA
                 for name in ("mean", "amplitude")
             )
             axes.plot(means, amplitudes, ".", markersize=3, color=color, label=label)
@@ -116,17 +118,16 @@ def _goodman(axes: Axes, stress: Stress, unit: Scale) -> None:
     axes.plot(
         most.mean[k] / _MEGA, most.amplitude[k] / _MEGA, "k+", markersize=13, markeredgewidth=1.8
     )
-    axes.set_xlim(left=0.0)
-    axes.set_ylim(0.0, 1.05 * top)
-    axes.set_xlabel(f"mean [{unit.unit}]")
-    axes.set_ylabel(f"amplitude [{unit.unit}]")
-    unit.put(axes.xaxis)
-    unit.put(axes.yaxis)
     least = 1.0 / found.score if found.score else math.inf
     where = "in the notch at " if found.strips.notch else "at "
-    axes.set_title(
-        f"fatigue: least factor {least:.4g} {where}"
+    axes.set(
+        xlim=(0.0, None),
+        ylim=(0.0, 1.05 * top),
+        xlabel=f"mean [{unit.unit}]",
+        ylabel=f"amplitude [{unit.unit}]",
+        title=f"fatigue: least factor {least:.4g} {where}"
         rf"$\xi/l$ = {found.xi:.3f}, {found.fibre}",
-        fontsize=10,
     )
-    axes.legend(frameon=False, fontsize=9)
+    unit.put(axes.xaxis)
+    unit.put(axes.yaxis)
+    axes.legend()

@@ -13,7 +13,7 @@ _OFFSETS = ((0, 6), (0, -14), (0, 17), (0, -25))
 _LEAST = 1e-17
 
 
-@one_at_a_time()
+@one_at_a_time({"axes.grid": True, "grid.color": "0.9"})
 def draw_trade(trade: Trade, file: BinaryIO, ending: str) -> None:
     """Write the picture into a file; its kind follows from the ending of the name."""
     figure, (axes, key) = subplots((12.0, 6.5), 1, 2, width_ratios=(3, 2))
@@ -51,7 +51,6 @@ def draw_trade(trade: Trade, file: BinaryIO, ending: str) -> None:
         ylabel="largest error over the peak",
     )
     axes.set_title(f"{trade.case}: speed and accuracy of every output", fontsize=11)
-    axes.grid(True, color="0.9")
     axes.margins(0.1)
     key.axis("off")
     key.set_title(

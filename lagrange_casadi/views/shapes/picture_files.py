@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import threading
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
@@ -39,17 +39,30 @@ def check_picture(
     check_writable(target)
 
 
+RED, BLUE = "#b2182b", "#2166ac"
+
+_STYLE: dict[Any, Any] = {
+    "axes.titlesize": 10,
+    "figure.titlesize": 11,
+    "legend.fontsize": 9,
+    "legend.frameon": False,
+}
+"""Settings of matplotlib for all figures."""
+
+GRIDS = {"axes.grid": True, "grid.color": "0.92"}
+"""Settings beside these for charts, all of which have a grid."""
+
 _drawing = threading.RLock()
 
 
 @contextmanager
-def one_at_a_time(settings: Any = None) -> Iterator[None]:
-    """Draw, by ``settings`` of matplotlib beside those that hold: a thread at a time, for they are
-    those of the whole process.
+def one_at_a_time(settings: Mapping[Any, Any] = {}) -> Iterator[None]:
+    """Draw, by ``settings`` of matplotlib beside those of all figures: a thread at a time, for they
+    are those of the whole process.
     """
     from matplotlib import rc_context
 
-    with _drawing, rc_context(settings):
+    with _drawing, rc_context({**_STYLE, **settings}):
         yield
 
 
@@ -75,7 +88,11 @@ def save(
 
 
 def put_figure(figure: Figure, path: str | os.PathLike[str]) -> None:
-    """Write a figure into a file that appears whole, of the kind that the name's ending says."""
+    """Write a figure into a file that appears whole, of the kind that the name's ending says.
+
+    Raises as :func:`check_picture` does.
+    """
+    check_picture(path)
     target = Path(path)
     with writing(target) as file:
         save(figure, file, target.suffix)

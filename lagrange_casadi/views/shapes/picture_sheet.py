@@ -124,7 +124,7 @@ def sheet(title: str, pictures: Sequence[Picture], across: int, lines: Sequence[
 def written(
     things: Sequence[Line | Symbol | Name],
     point: Array,
-    corners: tuple[tuple[float, float], tuple[float, float]],
+    corners: Sequence[Sequence[float]] | Array,
 ) -> list[Line | Symbol | Name]:
     """Things on a sheet with their names where these hide neither each other nor more of the first
     frame than they must, and are between ``corners`` at all frames; with a line to a place that is

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ...base.arrays import Array
+from ...base.arrays import Array, Instants, during
 from ...base.quantities import Output
 from ...errors import DeclarationError
 from ...model.description import Description, Place, Triple
@@ -41,19 +41,19 @@ class Poses:
     @classmethod
     def of(cls, solution: Solution) -> Poses:
         """The poses at the instants of a solution, which must have its motion."""
-        count = solution.t.size
-        bases = {"ground": np.zeros((count, 3))}
-        axes = {"ground": np.tile(np.eye(3), (count, 1, 1))}
-        for body in solution.description.bodies:
-            pose = solution.pose(body)
-            z = 0.0 * pose.x if pose.z is None else pose.z
-            bases[body], axes[body] = np.column_stack([pose.x, pose.y, z]), _axes(pose)
+        poses = {body: solution.pose(body) for body in solution.description.bodies}
+        bases = {"ground": np.zeros((solution.t.size, 3))} | {
+            body: np.column_stack([pose.x, pose.y, 0.0 * pose.x if pose.z is None else pose.z])
+            for body, pose in poses.items()
+        }
+        axes = {"ground": np.tile(np.eye(3), (solution.t.size, 1, 1))} | {
+            body: _axes(pose) for body, pose in poses.items()
+        }
         return cls(solution.description, bases, axes)
 
-    def during(self, chosen: slice | list[int]) -> Poses:
+    def during(self, chosen: Instants) -> Poses:
         """The poses at some of the instants."""
-        bases = {body: base[chosen] for body, base in self.bases.items()}
-        return replace(self, bases=bases, axes={body: a[chosen] for body, a in self.axes.items()})
+        return replace(self, bases=during(self.bases, chosen), axes=during(self.axes, chosen))
 
     def place(self, spot: Place) -> Array:
         """A place on a body or on the ground, (t, 3) in ground axes [m]."""

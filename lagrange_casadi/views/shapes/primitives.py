@@ -144,14 +144,10 @@ def seen(primitives: Iterable[Primitive], view: View) -> list[Line | Symbol | Na
 
     found: list[Line | Symbol | Name] = []
     for one in sorted(primitives, key=behind):
-        points = view.on_page(one.points)
-        if isinstance(one, Arrow):
-            found += _arrow(one, points)
-        elif isinstance(one, Symbol):
-            along = None if one.along is None else view.on_page(one.along)
-            found.append(replace(one, points=points, along=along))
-        else:
-            found.append(replace(one, points=points))
+        flat = replace(one, points=view.on_page(one.points))
+        if isinstance(flat, Symbol) and flat.along is not None:
+            flat = replace(flat, along=view.on_page(flat.along))
+        found += _arrow(flat) if isinstance(flat, Arrow) else [flat]
     return found
 
 
@@ -280,8 +276,9 @@ def _drum(poses: Poses, track: Track) -> Iterator[tuple[str, Line]]:
     yield held, Line(ring, colour, 2.0, closed=True, opacity=0.25, level=POINTS, body=held)
 
 
-def _arrow(arrow: Arrow, points: Array) -> Iterator[Line]:
+def _arrow(arrow: Arrow) -> Iterator[Line]:
     """The shaft of an arrow on a page and its head, which is smaller where the arrow is short."""
+    points = arrow.points
     steps = np.diff(points, axis=1)
     length = np.sum(np.hypot(steps[..., 0], steps[..., 1]), axis=1)
     head = np.minimum(arrow.head, length)[:, None]

@@ -13,7 +13,7 @@ from ...results.solution import Solution
 if TYPE_CHECKING:
     from matplotlib.axis import Axis
 
-STEPS = (
+_STEPS = (
     (1e9, "G", 1e-9),
     (1e6, "M", 1e-6),
     (1e3, "k", 1e-3),
@@ -21,8 +21,11 @@ STEPS = (
     (1e-4, "m", 1e3),
     (0.0, "µ", 1e6),
 )
-LENGTHS = ((1.0, "", 1.0), (1e-3, "m", 1e3), (0.0, "µ", 1e6))
-PREFIXED = ("N", "N m", "Pa", "W", "J", "N/m", "N s/m")
+_PREFIXES = {
+    "m": ((1.0, "", 1.0), (1e-3, "m", 1e3), (0.0, "µ", 1e6)),
+    **dict.fromkeys(("N", "N m", "Pa", "W", "J", "N/m", "N s/m"), _STEPS),
+}
+"""For units that have prefixes: each from which size it is used, its letter, and its factor."""
 
 
 @dataclass(frozen=True)
@@ -61,8 +64,7 @@ def instant(solution: Solution, i: int) -> str:
 
 def scale_for(unit: str, size: float, si: bool = False) -> Scale:
     """Scale of values of a unit, of which the largest has a ``size``; SI if ``si`` is asked for."""
-    steps = LENGTHS if unit == "m" else STEPS if unit in PREFIXED else ()
-    asked = () if si or not size > 0.0 else steps
-    reached = ((factor, prefix) for least, prefix, factor in asked if size >= least)
+    prefixes = () if si or not size > 0.0 else _PREFIXES.get(unit, ())
+    reached = ((factor, prefix) for least, prefix, factor in prefixes if size >= least)
     factor, prefix = next(reached, (1.0, ""))
     return Scale(factor, prefix + unit)

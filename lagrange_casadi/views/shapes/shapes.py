@@ -72,15 +72,15 @@ def shapes(description: Description) -> Iterator[Shape]:
                 if np.hypot(at[1], at[2]) > _FLAT * (abs(length) or 1.0)
                 or not 0.0 <= at[0] <= length
             ]
-            plates = _plates([*axis, *beside]) if beside else ()
+            # A true outline stands for the axis and what is beside it.
+            plates = outlines or _plates([*axis, *beside])
             arms = (
                 ()
                 if plates
                 else tuple(((min(max(at[0], 0.0), length), 0.0, 0.0), at) for at in beside)
             )
-            # A true outline stands for the axis and what is beside it.
-            axis, arms = (axis, arms) if not outlines else ((), ())
-            yield Shape(name, "link", length, mass, axis, arms, (outlines or plates) + rollers)
+            shown = () if outlines else axis
+            yield Shape(name, "link", length, mass, shown, arms, plates + rollers)
 
 
 def named_spots(description: Description) -> dict[str, Place]:

@@ -55,8 +55,7 @@ def _element(
         fill = thing.colour if paper or thing.colour != INK else "currentColor"
         halo = f' stroke="{PAPER}" stroke-width="{3.0 * picture.unit:.4g}" paint-order="stroke"'
         ink = f'fill="{fill}"{halo if paper else ""}'
-        start = f'<text transform="translate({places[0]})" {ink}>'
-        yield f"{start}{_text(thing.text)}{moved}</text>"
+        yield f'<text transform="translate({places[0]})" {ink}>{_text(thing.text)}{moved}</text>'
         return
     angles = np.unwrap([turn(thing, k) for k in range(len(thing.points))])
     turns = [f"{-angle:.4g}" for angle in np.degrees(angles)]
