@@ -114,8 +114,11 @@ def picture_of(solution: Solution, film: Film) -> Picture:
     whole = Poses.of(solution)
     shown, closed = frames_of(solution, whole, max(2, round(film.rate * film.seconds)))
     description = solution.description
-    spots = named_spots(description).items() if film.names else ()
-    joints = {name: spot for name, spot in spots if name in description.joints}
+    joints = {
+        name: spot
+        for name, spot in named_spots(description).items()
+        if film.names and name in description.joints
+    }
     poses = Poses.of(shown)
     lines = drawing(poses, whole, joints)
     forces, words = drawn_forces(

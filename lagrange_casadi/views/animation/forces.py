@@ -35,8 +35,8 @@ _ARC, _HEAD = 0.06, 0.03
 class Action:
     """Force [N] or moment [N m] at a place (frames, 3), in ground axes.
 
-    ``kind`` is "reaction", "effort" or "load", ``of`` the joint, the coordinate or the load; a load
-    pushes at its place.
+    ``kind`` is "reaction", "effort" or "load", ``of`` the joint, the coordinate or the load. The
+    arrow of a load ends at its place, any other begins there.
     """
 
     kind: str
@@ -44,11 +44,6 @@ class Action:
     place: Array
     vector: Array
     moment: bool = False
-
-    @property
-    def tail(self) -> bool:
-        """True if the arrow begins at its place, and does not end there."""
-        return self.kind != "load"
 
 
 def drawn_forces(
@@ -89,7 +84,7 @@ def _arrow(action: Action, space: bool, size: float, largest: float) -> Arrow:
         points = action.place[:, None] + _ARC * size * around
     else:
         length = action.vector * (LONGEST * size / largest)
-        start = action.place if action.tail else action.place - length
+        start = action.place - length if action.kind == "load" else action.place
         points = np.stack([start, start + length], axis=1)
     return Arrow(points, ACTION_COLOURS[action.kind], _HEAD * size)
 
@@ -161,11 +156,9 @@ def _laws(solution: Solution, force: str) -> list[str]:
         if solution.determined(Output("section", link, force))
     ]
     if not links:
-        none = (
-            "a body declared by its mass and centre has none, and indeterminate ones are not shown"
-        )
         raise DeclarationError(
-            f"{solution.case}: there is no section force to be shown; want section too; {none}"
+            f"{solution.case}: there is no section force to be shown; want section too; a body"
+            " declared by its mass and centre has none, and indeterminate ones are not shown"
         )
     return links
 

@@ -53,9 +53,8 @@ def glb(solution: Solution, frames: int, seconds: float, *, forces: bool = False
     shown = solution.during(np.isin(np.arange(t.size), keyed))
     size = size_of(drawing(Poses.of(solution)))
     poses = Poses.of(shown)
-    keys = (shown.t - t[0]) / (t[-1] - t[0]) * seconds
     file = _File()
-    file.keys = file.array(keys)
+    file.keys = file.array((shown.t - t[0]) / (t[-1] - t[0]) * seconds)
     parts = [*_bodies(file, poses, _GIRTH * size), *_still(file, poses, _GIRTH * size)]
     if forces:
         parts += _actions(file, shown, poses, size)
@@ -133,8 +132,9 @@ class _File:
         for path, values in (moves or {}).items():
             output = self.array(values)
             self.samplers.append({"input": self.keys, "output": output, "interpolation": "LINEAR"})
-            target = {"node": number, "path": path}
-            self.channels.append({"sampler": len(self.samplers) - 1, "target": target})
+            self.channels.append(
+                {"sampler": len(self.samplers) - 1, "target": {"node": number, "path": path}}
+            )
         return number
 
     def made(self, name: str) -> bytes:
@@ -216,7 +216,7 @@ def _actions(file: _File, solution: Solution, poses: Poses, size: float) -> Iter
             # What is nothing has no direction; it keeps the one before.
             there = np.where(sizes > _NOTHING * largest, np.arange(sizes.size), 0)
             moves = {
-                "translation": one.place if one.tail else one.place - scale * one.vector,
+                "translation": one.place - scale * one.vector if one.kind == "load" else one.place,
                 "rotation": _along(one.vector[np.maximum.accumulate(there)]),
                 "scale": np.tile(np.maximum(scale * sizes, _LEAST * size)[:, None], 3),
             }

@@ -78,9 +78,8 @@ def arrow(heads: int) -> Mesh:
 def sphere(centre: Array, radius: float) -> Mesh:
     """A ball."""
     turns = np.linspace(np.pi, 0.0, 10)[1:-1]
-    between = [(radius * float(np.cos(one)), radius * float(np.sin(one))) for one in turns]
-    rings = [(-radius, 0.0), *between, (radius, 0.0)]
-    found = revolved(centre, np.eye(3)[0], rings)
+    rings = [(radius * float(np.cos(one)), radius * float(np.sin(one))) for one in turns]
+    found = revolved(centre, np.eye(3)[0], [(-radius, 0.0), *rings, (radius, 0.0)])
     return Mesh(found.places, (found.places - centre) / radius, found.corners)
 
 
@@ -100,16 +99,15 @@ def prism(corners: Array, thickness: float) -> Mesh:
     normal = np.asarray(normal) / np.linalg.norm(normal)
     top, bottom = corners + normal * thickness / 2, corners - normal * thickness / 2
     sides = [np.array([bottom[k - 1], bottom[k], top[k], top[k - 1]]) for k in range(len(corners))]
-    outward = [np.cross(side[1] - side[0], normal) for side in sides]
-    faces = [
-        _plate(side, way / np.linalg.norm(way)) for side, way in zip(sides, outward, strict=True)
-    ]
+    faces = [_plate(side, np.cross(side[1] - side[0], normal)) for side in sides]
     return together([_plate(top, normal), _plate(bottom[::-1], -normal), *faces])
 
 
-def _plate(corners: Array, normal: Array) -> Mesh:
-    """A flat polygon, counter-clockwise about its normal, all of its edge seen from its middle."""
+def _plate(corners: Array, outward: Array) -> Mesh:
+    """A flat polygon, counter-clockwise about a direction ``outward`` across it, all of its edge
+    seen from its middle.
+    """
     places = np.vstack([np.mean(corners, axis=0), corners])
     k = np.arange(1, len(places))
     fan = np.stack([np.zeros_like(k), k, np.roll(k, -1)], 1)
-    return Mesh(places, np.tile(normal, (len(places), 1)), fan)
+    return Mesh(places, np.tile(outward / np.linalg.norm(outward), (len(places), 1)), fan)

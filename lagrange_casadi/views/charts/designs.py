@@ -234,8 +234,7 @@ def _star(panels: Panels, axes: Axes, cut: Cut, x: Sequence[Array], values: Arra
     place = np.unravel_index(np.nanargmin(values), values.shape)
     least = float(values[place])
     y = float(x[1][place[1]]) if len(x) > 1 else least
-    (star,) = axes.plot(float(x[0][place[0]]), y, **_STAR)
-    panels.legend["smallest of those drawn"] = star
+    (panels.legend["smallest of those drawn"],) = axes.plot(float(x[0][place[0]]), y, **_STAR)
     spot = {name: cut.along(name)[k] for name, k in zip(cut.names, place, strict=True)}
     where = ", ".join(f"{name} = {there:.4g}" for name, there in spot.items())
     if DESIGN in spot:

@@ -97,10 +97,17 @@ def _values(found: Identification) -> Iterator[tuple[str, ...]]:
 
 def _compared(found: Identification, compared: Comparison) -> Iterator[str]:
     """Yield a table of what is left, and pictures of measurement, model and difference."""
-    relative, rows = compared.relative, []
-    for name, left in compared.residual.items():
-        numbers = f"{left:.4g}", f"{100.0 * relative[name]:.3g} %", f"{found.noise[name]:.3g}"
-        rows.append((name, *numbers, compared.units[name]))
+    relative = compared.relative
+    rows = [
+        (
+            name,
+            f"{left:.4g}",
+            f"{100.0 * relative[name]:.3g} %",
+            f"{found.noise[name]:.3g}",
+            compared.units[name],
+        )
+        for name, left in compared.residual.items()
+    ]
     yield _table(("quantity", "difference, rms", "of measured", "noise of the fit"), rows)
     yield "<main>\n"
     for name in compared.measured:

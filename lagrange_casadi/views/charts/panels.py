@@ -179,8 +179,9 @@ class Panels:
                 self.legend[name] = line
             if (missing := x[np.isnan(row)]).size:
                 foot, place = np.full(missing.size, 0.02), axes.get_xaxis_transform()
-                (mark,) = axes.plot(missing, foot, color=colour, transform=place, **crosses)
-                self.legend[gaps] = mark
+                (self.legend[gaps],) = axes.plot(
+                    missing, foot, color=colour, transform=place, **crosses
+                )
         axes.grid(True)
 
     def name_axes(self, x: Sequence[str], y: str = "") -> None:
@@ -200,13 +201,14 @@ class Panels:
         lines = (textwrap.fill(line, halves * _LETTERS) for line in title if line)
         around: list[Any] = [self.figure.suptitle("\n".join(lines), fontsize=8.5)]
         if self.legend:
-            legend = self.figure.legend(
-                [*self.legend.values()],
-                [textwrap.fill(text, _LETTERS) for text in self.legend],
-                loc="outside lower center",
-                ncols=min(len(self.legend), halves),
+            around.append(
+                self.figure.legend(
+                    [*self.legend.values()],
+                    [textwrap.fill(text, _LETTERS) for text in self.legend],
+                    loc="outside lower center",
+                    ncols=min(len(self.legend), halves),
+                )
             )
-            around.append(legend)
         heights = (artist.get_window_extent().height / self.figure.dpi for artist in around)
         self.figure.set_figheight(self.figure.get_figheight() + sum(heights))
         return self.figure

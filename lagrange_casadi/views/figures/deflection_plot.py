@@ -39,6 +39,7 @@ def draw_deflection(
         upper,
         found.member,
         along,
+        label,
         lambda t, xi: found.size(np.broadcast_to(xi, (solution.t.size, xi.size)))[t] * factor,
         peak,
         f"largest: {peak.value * factor:.4g} {unit}",
@@ -46,7 +47,6 @@ def draw_deflection(
         scale=Scale(1.0, unit),
         what="deflection across the link",
     )
-    upper.set_xlabel(label)
     for axes in lower:
         _spectrum(axes, response)
     figure.suptitle(f"{solution.case}: deflection of {link} from {_FROM[found.against]}")

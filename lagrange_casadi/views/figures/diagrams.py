@@ -95,13 +95,11 @@ def draw_section_diagrams(solution: Solution, links: Sequence[str], si: bool = F
     forces = list(solution.table.sections)
     rows = len(forces) // 3
     wide, high = 3 * _PANEL + 0.2, len(links) * (0.35 + rows * _ROW) + 0.75
-    figure, axes = _sheet(wide, high)
-    axes.text(
-        0.2,
-        high - 0.12,
+    figure, axes = _sheet(
+        wide,
+        high,
         f"{solution.case}: section forces at the instants that govern",
-        fontsize=12,
-        va="top",
+        "action of the tip's side on the base's; N > 0 is tension; base left, tip right",
     )
     top = high - 0.45
     for link in links:
@@ -116,8 +114,6 @@ def draw_section_diagrams(solution: Solution, links: Sequence[str], si: bool = F
             x, y = 0.35 + k % 3 * _PANEL, top - (k // 3 + 0.5) * _ROW
             _panel(axes, solution, Output("section", link, force), law, (x, y), si)
         top -= rows * _ROW + 0.05
-    note = "action of the tip's side on the base's; N > 0 is tension; base left, tip right"
-    axes.text(0.2, 0.08, note, fontsize=8, color="0.35")
     return figure
 
 
@@ -210,15 +206,13 @@ def draw_polar(solution: Solution, joints: Sequence[str], si: bool = False) -> F
     """The force in each joint over all instants, by its components, with the largest marked."""
     across = min(_ACROSS, max(len(joints), 2))
     wide, high = across * _POLAR, -(-len(joints) // across) * (_POLAR + 0.25) + 0.55
-    figure, axes = _sheet(wide, high)
-    axes.text(0.2, high - 0.12, f"{solution.case}: bearing loads", fontsize=12, va="top")
+    where = "on axes across the joint's" if solution.table is SPACE else "in ground axes"
+    note = f"action of the joint's parent on its child, {where}"
+    figure, axes = _sheet(wide, high, f"{solution.case}: bearing loads", note)
     for k, joint in enumerate(joints):
         x = (k % across + 0.5) * _POLAR
         y = high - 0.65 - (k // across) * (_POLAR + 0.25) - _POLAR / 2
         _polar(axes, solution, joint, (x, y), si)
-    where = "on axes across the joint's" if solution.table is SPACE else "in ground axes"
-    note = f"action of the joint's parent on its child, {where}"
-    axes.text(0.2, 0.08, note, fontsize=8, color="0.35")
     return figure
 
 
@@ -277,12 +271,14 @@ def _round_up(value: float) -> float:
     )
 
 
-def _sheet(wide: float, high: float) -> tuple[Figure, Axes]:
-    """A figure of a size, and axes over all of it, in inches."""
+def _sheet(wide: float, high: float, title: str, note: str) -> tuple[Figure, Axes]:
+    """A figure of a size with a title and a note at its foot, and axes over all of it in inches."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(wide, high))
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set(xlim=(0.0, wide), ylim=(0.0, high))
     axes.set_axis_off()
+    axes.text(0.2, high - 0.12, title, fontsize=12, va="top")
+    axes.text(0.2, 0.08, note, fontsize=8, color="0.35")
     return figure, axes

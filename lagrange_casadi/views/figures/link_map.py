@@ -22,13 +22,14 @@ def draw_along(
     axes: Axes,
     member: Member,
     along: Array,
+    label: str,
     grid: Callable[[slice, Array], Array],
     peak: Any,
     title: str,
     **how: Any,
 ) -> None:
     """Draw what ``grid`` gives at instants and ratios of a member over places ``along`` its motion,
-    as :func:`draw_map` does; the title goes on with where the peak is.
+    whose axis has a ``label``, as :func:`draw_map` does; the title goes on with where the peak is.
     """
     instants, ratios = (every(size, PIXELS) for size in (member.t.size, member.xi.size))
     xi = member.xi[ratios]
@@ -41,6 +42,7 @@ def draw_along(
         peak=(place, peak.xi),
         **how,
     )
+    axes.set_xlabel(label)
 
 
 def draw_map(

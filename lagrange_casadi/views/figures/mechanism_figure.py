@@ -80,8 +80,7 @@ def draw_mechanism(solution: Solution, spec: MechanismDrawing, si: bool = False)
         axes.set_title(view.title)
         point = (box[1] - box[0]) / (72.0 * place[2])
         for k in reversed(instants[1:]):
-            other = seen(drawing(poses.during([k]), thin, {}), view)
-            _painted(axes, other, point, strong=False)
+            _painted(axes, seen(drawing(poses.during([k]), thin, {}), view), point, strong=False)
         named = not space or view is panels[1][0]
         _show(axes, view, poses.during([instants[0]]), thin, box, point, named)
     names, handles = zip(*entries, strict=True)
@@ -110,9 +109,9 @@ def draw_into(axes: Axes, solution: Solution) -> None:
     axes.set_aspect("equal")
     if description.space:
         axes.set_xlabel(one.title, fontsize=8)
-    bodies = [entry for entry in _entries(whole) if entry[0] in description.bodies]
     figure: Any = axes.figure
     if not figure.legends:
+        bodies = (entry for entry in _entries(whole) if entry[0] in description.bodies)
         names, handles = zip(*bodies, strict=True)
         figure.legend(handles, names, loc="outside lower center", ncols=_IN_ROW, fontsize=8)
     # How large a point is on the page is known when that is laid out.
@@ -153,16 +152,25 @@ def _painted(
     for order, thing in enumerate(things):
         if isinstance(thing, Name):
             x, y = thing.points[0, 0]
-            halo = [withStroke(linewidth=2.0, foreground="white")]
-            name = axes.text(x, y, thing.text, fontsize=_POINTS, color="0.2", zorder=6)
-            name.set(path_effects=halo, in_layout=False)
+            axes.text(
+                x,
+                y,
+                thing.text,
+                fontsize=_POINTS,
+                color="0.2",
+                zorder=6,
+                path_effects=[withStroke(linewidth=2.0, foreground="white")],
+                in_layout=False,
+            )
             continue
         if thing.level <= GROUND and not strong:
             continue
         for line, points in outlines(thing, np.full(2, _UNIT * point)):
             artist = _artist(line, points, 1.0 if strong else _FAINT)
-            label = line.body if line.body and strong else "_"
-            artist.set(zorder=2.0 + strong + 1e-4 * order, label=label)
+            artist.set(
+                zorder=2.0 + strong + 1e-4 * order,
+                label=line.body if line.body and strong else "_",
+            )
             axes.add_artist(artist)
 
 

@@ -335,12 +335,8 @@ def _finish(axes: Axes, solution: Solution, names: Sequence[str], si: bool) -> N
     curves = axes.get_lines()
     if len(curves) > 1:
         words = list(dict.fromkeys(word.partition(",")[0] for word in words))
-    sizes = [np.abs(curve.get_ydata()) for curve in curves]
-    scale = scale_for(
-        solution.unit(names[0]),
-        max((float(np.nanmax(s, initial=0.0)) for s in sizes), default=0.0),
-        si,
-    )
+    sizes = (float(np.nanmax(np.abs(curve.get_ydata()), initial=0.0)) for curve in curves)
+    scale = scale_for(solution.unit(names[0]), max(sizes, default=0.0), si)
     scale.put(axes.yaxis)
     axes.set_ylabel("\n".join(textwrap.wrap(f"{', '.join(words)} [{scale.unit}]", _LABEL)))
     axes.axhline(0.0, color="0.6", linewidth=0.8, zorder=0)

@@ -14,6 +14,7 @@ from ...base.arrays import Array
 from ...results.solution import Solution
 from ...results.strength.fatigue import Loaded, loaded, use_score, used
 from ...results.strength.fibres import sampled, worst
+from ...results.strength.member import Member
 from ...results.strength.stress import Stress
 from ..shapes.picture_files import BLUE, RED, subplots
 from ..shapes.readable import Scale
@@ -45,6 +46,7 @@ def draw_strength(
         upper,
         stress.member,
         along,
+        label,
         lambda t, xi: Stress(stress.member.during(t)).grid("von_mises", xi) / _MEGA,
         peak,
         f"von Mises: peak {unit.said(peak.value / _MEGA)} at {peak.fibre}",
@@ -52,9 +54,8 @@ def draw_strength(
         scale=unit,
         what="von Mises",
     )
-    upper.set_xlabel(label)
     for axes in lower:
-        _goodman(axes, stress, unit)
+        _goodman(axes, stress.member.counted, unit)
     figure.suptitle(f"{solution.case}: strength of {link}, {stress.member.beam.material.name}")
     return figure
 
@@ -86,17 +87,16 @@ def draw_utilisation(solution: Solution, parts: Sequence[str]) -> Figure:
     return figure
 
 
-def _goodman(axes: Axes, stress: Stress, unit: Scale) -> None:
-    stress = Stress(stress.member.counted)
-    material = stress.member.beam.material
+def _goodman(axes: Axes, member: Member, unit: Scale) -> None:
+    material = member.beam.material
     endurance, ultimate = (
         strength / _MEGA
         for strength in material.needs("Goodman's diagram", "endurance", "ultimate")
     )
     cycles: dict[bool, list[Loaded]] = {False: [], True: []}
-    for notch, histories in sampled(stress.member):
+    for notch, histories in sampled(member):
         cycles[notch is not None] += map(loaded, histories)
-    found = worst(stress.member, use_score(material))
+    found = worst(member, use_score(material))
     most = loaded(found.history)
     axes.plot([0.0, ultimate], [endurance, 0.0], color=RED, label="Goodman")
     if material.yield_strength is not None:

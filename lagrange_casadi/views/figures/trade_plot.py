@@ -25,11 +25,10 @@ def draw_trade(trade: Trade, file: BinaryIO, ending: str) -> None:
     for number, (one, place) in enumerate(places.items(), 1):
         colour = "tab:red" if one in front else "0.35"
         axes.plot(*place, "o", color=colour, ms=5)
-        offset = _OFFSETS[number % len(_OFFSETS)]
         axes.annotate(
             str(number),
             place,
-            offset,
+            _OFFSETS[number % len(_OFFSETS)],
             textcoords="offset points",
             ha="center",
             fontsize=8,

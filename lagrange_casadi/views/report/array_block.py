@@ -44,6 +44,6 @@ class Arrays:
         return base64.b64encode(joined.astype("<f8").tobytes()).decode("ascii")
 
 
-def finite(value: float) -> float | None:
-    """A number that JSON can hold, None for any other."""
-    return float(value) if math.isfinite(value) else None
+def finite(value: float | None) -> float | None:
+    """A number that JSON can hold, None for any other and for none."""
+    return None if value is None or not math.isfinite(value) else float(value)

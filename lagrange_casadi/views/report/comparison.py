@@ -55,29 +55,14 @@ def _page(solutions: tuple[Solution, Solution], names: Sequence[str]) -> str:
             "report: nothing to compare: the two runs have no quantity in common"
         )
     arrays = Arrays()
-    runs: list[Json] = []
     clock = _clock(solutions)
-    for solution, name in zip(solutions, names, strict=True):
-        chosen = shown_instants(solution)
-        runs.append(
-            {
-                "name": name,
-                "case": solution.case,
-                "certified": solution.certified,
-                "t": arrays.add(solution.t[chosen]),
-                "over": drive_entry(solution, chosen, arrays),
-                "series": [*series_of(solution, chosen, arrays)],
-                "parameters": {
-                    parameter: [entry.value, entry.unit]
-                    for parameter, entry in solution.description.parameters.items()
-                },
-                "frame": page(solution, clock=clock),
-            }
-        )
     cases = " and ".join(dict.fromkeys(solution.case for solution in solutions))
     content: dict[str, Json] = {
         "case": cases,
-        "runs": runs,
+        "runs": [
+            _run(solution, name, clock, arrays)
+            for solution, name in zip(solutions, names, strict=True)
+        ],
         "rows": rows,
         "groups": GROUPS,
         "clock": clock,
@@ -91,6 +76,24 @@ def _page(solutions: tuple[Solution, Solution], names: Sequence[str]) -> str:
         [script(name) for name in COMPARISON_SCRIPTS],
         others=[viewer(live=False)],
     )
+
+
+def _run(solution: Solution, name: str, clock: Json, arrays: Arrays) -> dict[str, Json]:
+    """One of the two: its curves, its parameters, and its page."""
+    chosen = shown_instants(solution)
+    return {
+        "name": name,
+        "case": solution.case,
+        "certified": solution.certified,
+        "t": arrays.add(solution.t[chosen]),
+        "over": drive_entry(solution, chosen, arrays),
+        "series": [*series_of(solution, chosen, arrays)],
+        "parameters": {
+            parameter: [entry.value, entry.unit]
+            for parameter, entry in solution.description.parameters.items()
+        },
+        "frame": page(solution, clock=clock),
+    }
 
 
 def same_runs(first: Solution, second: Solution) -> bool:
@@ -119,9 +122,11 @@ def _rows(solutions: tuple[Solution, Solution]) -> Iterator[dict[str, Json]]:
     first, second = solutions
     others = {str(output) for output in ordered(second)}
     for output in ordered(first):
-        if str(output) not in others or first.unit(output) != second.unit(output):
-            continue
-        if not all(one.determined(output) for one in solutions):
+        if (
+            str(output) not in others
+            or first.unit(output) != second.unit(output)
+            or not all(one.determined(output) for one in solutions)
+        ):
             continue
         peaks = [solution.peak(output) for solution in solutions]
         yield {

@@ -250,16 +250,15 @@ def _link(link: str, number: int, solution: Solution, known: Mapping[str, int]) 
     """
     law = solution.section(link).law
     density = law.density
-    distributed_loads = [
-        [known[str(Output("spread", link, member, load.name))] for member in ("width", "end")]
-        for load in law.distributed_loads
-    ]
     degree = max([*map(len, density.cells), *(load.powers for load in law.distributed_loads)]) + 2
     return {
         "number": number,
         "breaks": density.breaks,
         "degree": degree,
-        "spreads": distributed_loads,
+        "spreads": [
+            [known[str(Output("spread", link, member, load.name))] for member in ("width", "end")]
+            for load in law.distributed_loads
+        ],
     }
 
 

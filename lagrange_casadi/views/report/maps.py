@@ -78,8 +78,7 @@ def map_entries(solution: Solution, arrays: Arrays) -> Iterator[dict[str, Json]]
 
 
 def _instants(solution: Solution, t: float) -> Array:
-    distributed = spread(solution.t.size, INSTANTS)
-    return np.unique(np.append(distributed, int(np.argmax(solution.t == t))))
+    return np.unique([*spread(solution.t.size, INSTANTS), int(np.argmax(solution.t == t))])
 
 
 def _numbers(solution: Solution, chosen: Array, grid: Array, arrays: Arrays) -> dict[str, Any]:

@@ -86,28 +86,27 @@ def _table(solution: Solution) -> str:
     """The peaks of efforts, resultants, section forces and own outputs; of many, those of loads
     and friction, and the largest of each unit.
     """
-    plain = [
-        output
+    peaks = {
+        output: solution.peak(output)
         for output in ordered(solution)
         if solution.determined(output)
         and (output.group != "reaction" or output.member in solution.table.reactions)
-    ]
-    peaks = {output: solution.peak(output) for output in plain}
+    }
     largest: dict[str, float] = {}
     for peak in peaks.values():
         largest[peak.unit] = max(largest.get(peak.unit, 0.0), abs(peak.value))
     by_size = sorted(
-        plain, key=lambda output: -abs(peaks[output].value) / (largest[peaks[output].unit] or 1.0)
+        peaks, key=lambda output: -abs(peaks[output].value) / (largest[peaks[output].unit] or 1.0)
     )
     rows = []
-    for output in (one for one in plain if one.group in ON_PARTS or one in by_size[:_ROWS]):
+    for output in (one for one in peaks if one.group in ON_PARTS or one in by_size[:_ROWS]):
         peak = peaks[output]
         where = f"{peak.t:.5g} s" + ("" if peak.xi is None else f", xi/l = {peak.xi:.3f}")
         value = f"{peak.value + 0.0:.5g}" + ("" if peak.unit == "1" else f" {peak.unit}")
         rows.append((output.part, what(output, solution.table), value, where))
     more = (
-        f"<p>and {len(plain) - len(rows)} more; view() shows all</p>"
-        if len(plain) > len(rows)
+        f"<p>and {len(peaks) - len(rows)} more; view() shows all</p>"
+        if len(peaks) > len(rows)
         else ""
     )
     return html_table(("part", "quantity", "peak", "at"), rows) + more if rows else ""

@@ -70,9 +70,11 @@ def is_of(sweep: Sweep, scene: Scene) -> bool:
     """Return whether a sweep is of a scene: its parts are those that were swept, and, if the same
     code wrote them, its expressions too.
     """
-    swept = sweep.description
-    values = swept.values
-    if values.keys() != scene.parameters.keys() or template(scene).at([*values.values()]) != swept:
+    values = sweep.description.values
+    if (
+        values.keys() != scene.parameters.keys()
+        or template(scene).at([*values.values()]) != sweep.description
+    ):
         return False
     known = identity_of(scene, _wanted(sweep))
     return (
@@ -139,10 +141,12 @@ def _page(sweep: Sweep, scene: Scene | None, command: str) -> str:
         "arrays": arrays.places,
         "numbers": arrays.block(),
     }
-    others = [viewer(live=True)] if scene is not None else []
-    scripts = [script(name) for name in SWEEP_SCRIPTS]
     return assembled(
-        f"{sweep.case}: a sweep", content, scripts, wasm=scene is not None, others=others
+        f"{sweep.case}: a sweep",
+        content,
+        [script(name) for name in SWEEP_SCRIPTS],
+        wasm=scene is not None,
+        others=[viewer(live=True)] if scene is not None else [],
     )
 
 
@@ -200,7 +204,7 @@ def _wanted(sweep: Sweep) -> Wanted:
 
 def _names(wanted: Wanted) -> list[str]:
     """The names of outputs that were wanted."""
-    found = [name for name in _FLAGS if getattr(wanted, name)]
-    return found + [
-        f"{kind}:{part}" for group, kind in _GROUPS.items() for part in getattr(wanted, group)
+    return [
+        *(name for name in _FLAGS if getattr(wanted, name)),
+        *(f"{kind}:{part}" for group, kind in _GROUPS.items() for part in getattr(wanted, group)),
     ]

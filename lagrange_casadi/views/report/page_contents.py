@@ -195,8 +195,8 @@ def series_of(
         values, places = solution.extremes(output)
         along = None if places is None else arrays.add(places[chosen])
         of = map(str, solution.made_of(output)) if places is None else ()
-        number = arrays.add(values[chosen], *of)
-        yield _series(output, table, solution.unit(output), number, places=along)
+        unit = solution.unit(output)
+        yield _series(output, table, unit, arrays.add(values[chosen], *of), places=along)
     for slope in derivatives(solution, solution.sensitivities):
         if slope.values.ndim == 1 and slope.output.group in _CHARTED:
             by = f"{what(slope.output, table) or slope.output.part}, by {slope.name.split(':')[1]}"
@@ -210,8 +210,8 @@ def series_of(
                 what=by,
             )
     for output, values in held_outputs(solution.holding).items():
-        number = arrays.add(values[chosen])
-        yield _series(output, table, solution.unit(output), number, group="holding")
+        unit = solution.unit(output)
+        yield _series(output, table, unit, arrays.add(values[chosen]), group="holding")
     for output, values in _residuals(solution):
         yield _series(output, table, "1", arrays.add(values[chosen]))
 
@@ -237,9 +237,6 @@ def _rows(solution: Solution) -> Iterator[dict[str, Json]]:
             yield row | {"open": True} | dict.fromkeys(nothing)
             continue
         statistics = solution.statistics(output)
-        mean, rms = (
-            None if mean is None else finite(mean) for mean in (statistics.mean, statistics.rms)
-        )
         yield {
             **row,
             "open": False,
@@ -247,8 +244,8 @@ def _rows(solution: Solution) -> Iterator[dict[str, Json]]:
             "error": error_of(solution, output),
             "smallest": marked(statistics.smallest),
             "largest": marked(statistics.largest),
-            "mean": mean,
-            "rms": rms,
+            "mean": finite(statistics.mean),
+            "rms": finite(statistics.rms),
         }
 
 

@@ -15,7 +15,6 @@ import numpy.typing as npt
 
 from ...base.arrays import Json
 from ...base.quantities import Output
-from ...base.tables import Table
 from ...results.solution import Solution
 from .array_block import Arrays
 from .words import what
@@ -58,40 +57,54 @@ def section_entries(
             }
             for load in law.distributed_loads
         ]
-        forces = []
-        for name in table.forces:
-            output = Output("section", link, name)
-            made = _made(name, table, columns, distributed, (of_force, of_moment))
-            words = {"name": name, "what": what(output, table), "unit": solution.unit(output)}
-            forces.append(words | {"open": not solution.determined(output)} | made)
         yield {
             "link": link,
             "length": law.length,
             "slack": law.slack,
             "xi": arrays.add(xi),
-            "forces": forces,
+            "forces": [
+                _force(
+                    solution,
+                    Output("section", link, name),
+                    columns,
+                    distributed,
+                    (of_force, of_moment),
+                )
+                for name in table.forces
+            ],
             "loads": loads,
         }
 
 
-def _made(
-    name: str,
-    table: Table,
+def _force(
+    solution: Solution,
+    output: Output,
     columns: Mapping[str, int],
     distributed: Sequence[Mapping[str, Sequence[int]]],
     rows: tuple[Sequence[int], Sequence[int]],
 ) -> dict[str, Any]:
-    """Terms of a force, or its ``parts``, the forces whose size it is; any other is a sum of
-    ``terms`` and of loads.
+    """A section force, with ``parts``, the forces whose size it is; any other is a sum of ``terms``
+    and of loads.
 
     A term is the number of a coefficient's array (t,), that of a function along the link (xi,), and
     a sign. ``acting`` is the member of what acts at stations that goes into it; of a moment with an
     ``arm`` of 1 or -1 so is that ``across``, times its distance.
     """
-    terms = table.sections.get(name)
-    made: dict[str, Any] = {"parts": (), "terms": (), "acting": "", "across": "", "arm": 0}
+    table = solution.table
+    terms = table.sections.get(output.member)
+    made: dict[str, Any] = {
+        "name": output.member,
+        "what": what(output, table),
+        "unit": solution.unit(output),
+        "open": not solution.determined(output),
+        "parts": (),
+        "terms": (),
+        "acting": "",
+        "across": "",
+        "arm": 0,
+    }
     if terms is None:
-        return made | {"parts": table.parts("section", name)}
+        return made | {"parts": table.parts("section", output.member)}
     plain, sign = rows[1 if terms.arm else 0], terms.arm or 1
     own = [columns[coefficient] for coefficient in terms.coefficients]
     summed = [*zip(own, plain, [1, *(sign for _ in own[1:])], strict=False)]

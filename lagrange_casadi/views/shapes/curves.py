@@ -116,13 +116,12 @@ def belt(
     share = np.linspace(-1.0, 1.0, 31)
     here = np.pi + (np.pi - lean) * share
     there = (lean - np.pi) * share if crossed else lean * share
-    angles = [(first, one, here), (second, two, there)]
     return np.concatenate(
         [
             middle[:, None]
             + radius
             * (np.cos(at)[..., None] * along[:, None] + np.sin(at)[..., None] * across[:, None])
-            for middle, radius, at in angles
+            for middle, radius, at in ((first, one, here), (second, two, there))
         ],
         axis=1,
     )

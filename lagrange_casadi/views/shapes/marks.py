@@ -70,8 +70,7 @@ def load_marks(
             parts = ((load.stiffness, "N/m"), (load.damping, "N s/m"))
             there = [f"{_text(x)} {unit}" for x, unit in parts if not ca.SX(x).is_zero()]
             words = ", ".join(there) if load.closed is None else "gas spring"
-            middle = (ends[0] + ends[1]) / 2
-            yield Name(middle[:, None], f"{name}: {words}", colour=LOAD)
+            yield Name(np.mean(ends, axis=0)[:, None], f"{name}: {words}", colour=LOAD)
             continue
         law = Template.of(LoadLaw.of(mechanism, load), mechanism.symbols).at(p)
         places = [_measured(entry, poses) for entry in law.entries]
@@ -150,8 +149,7 @@ def _comb(load: LineLoad, poses: Poses, numbers: Array, size: float) -> Iterator
     yield Line(tails, LOAD, 1.4, level=AXES)
     expressions = [x for power in components for x in power if not ca.SX(x).is_zero()]
     if all(ca.SX(x).is_constant() for x in expressions):
-        ends = dict.fromkeys(f"{np.linalg.norm(acts[k]):.4g}" for k in (0, -1))
-        words = " to ".join(ends)
+        words = " to ".join(dict.fromkeys(f"{np.linalg.norm(acts[k]):.4g}" for k in (0, -1)))
     else:
         words = _text(ca.vertcat(*expressions))
     yield Name(tails[:, _TEETH // 2, None], f"{load.name}: {words} N/m", colour=LOAD)

@@ -98,8 +98,15 @@ def picture(
     painted = written(placed, unit * _DOWN, ((0.0, height - below), (width, 0.0)))
     for k, line in enumerate(lines, 1 - len(lines)):
         painted.append(_words(12.0 * unit, height + (_LINE * k - 12.0) * unit, line))
-    frames = max(len(thing.points) for thing in painted)
-    return Picture(title, width, height, unit, frames, closed, tuple(painted))
+    return Picture(
+        title,
+        width,
+        height,
+        unit,
+        frames=max(len(thing.points) for thing in painted),
+        closed=closed,
+        things=tuple(painted),
+    )
 
 
 def sheet(title: str, pictures: Sequence[Picture], across: int, lines: Sequence[str]) -> Picture:

@@ -69,13 +69,17 @@ def drawing(
         return Symbol(kind, poses.place(spot)[:, None], level=level)
 
     for spot in description.paths.values():
-        way = Line(whole.place(spot)[None], PATH, 1.4, level=WAYS)
-        found += [way, symbol("point", spot, POINTS)]
+        found += [
+            Line(whole.place(spot)[None], PATH, 1.4, level=WAYS),
+            symbol("point", spot, POINTS),
+        ]
     for load in description.loads.values():
         if load.kind == "spring":
             start, stop = (poses.place(end) for end in load.points)
-            lines = between(start, stop, _COIL * size, load)
-            found += [Line(line, _METAL, 1.5, level=SPRINGS) for line in lines]
+            found += [
+                Line(line, _METAL, 1.5, level=SPRINGS)
+                for line in between(start, stop, _COIL * size, load)
+            ]
     found += [line for _, line in carried(poses, whole, size)]
     for joint in description.joints.values():
         ground = [end for end in joint.ends if end.body == "ground"]

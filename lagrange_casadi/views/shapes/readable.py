@@ -44,11 +44,7 @@ class Scale:
         it is.
         """
         if self.factor != 1.0:
-            axis.set_major_formatter(self.label)
-
-    def label(self, value: float, _: object = None) -> str:
-        """The number at a tick."""
-        return number(self.factor * value, 10)
+            axis.set_major_formatter(lambda value, _: number(self.factor * value, 10))
 
 
 def number(value: float, digits: int = 4) -> str:

@@ -88,9 +88,8 @@ def named_spots(description: Description) -> dict[str, Place]:
     and of declared points.
     """
     inner = description.bends
-    joints = {name: joint.child for name, joint in description.joints.items()}
-    named = {name: spot for name, spot in joints.items() if name not in inner}
-    return {**named, **description.paths}
+    joints = description.joints.items()
+    return {name: one.child for name, one in joints if name not in inner} | dict(description.paths)
 
 
 def spots_of(description: Description) -> list[Place]:

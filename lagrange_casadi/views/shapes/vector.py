@@ -28,11 +28,13 @@ def svg(picture: Picture, seconds: float = 0.0, *, paper: bool = True) -> str:
         f'font-family="sans-serif" font-size="{LETTER * picture.unit:.4g}" stroke-linecap="round"'
         ' stroke-linejoin="round"'
     )
-    head = (
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{wide}" height="{high}" viewBox="0 0'
-        f' {wide} {high}" {style}>'
-    )
-    lines = [head, f"<title>{_text(picture.title)}</title>"]
+    lines = [
+        (
+            f'<svg xmlns="http://www.w3.org/2000/svg" width="{wide}" height="{high}" viewBox="0 0'
+            f' {wide} {high}" {style}>'
+        ),
+        f"<title>{_text(picture.title)}</title>",
+    ]
     if paper:
         lines.append(f'<rect width="{wide}" height="{high}" fill="{PAPER}"/>')
     for thing in picture.things:
