@@ -2,6 +2,7 @@
 where closed forms put them.
 """
 
+import itertools
 import math
 import re
 import xml.etree.ElementTree as ElementTree
@@ -171,7 +172,7 @@ def test_no_rod_is_behind_its_barrel_where_nothing_is_driven():
     "case", ["delta", "excavator", "quick_return", "roller_cam", "sleigh", "v6"]
 )
 def test_drawings_of_cases_stay_on_their_sheets(case):
-    """All names are there, and nothing is beside the sheet."""
+    """All names are there, none lies on another, and nothing is beside the sheet."""
     scene = load_case(case).scene
     drawing, described = scene.draw(), scene.mechanism
     assert not drawing.gaps
@@ -180,4 +181,10 @@ def test_drawings_of_cases_stay_on_their_sheets(case):
     for points in curves(drawing):
         assert points.min() >= -30.0
         assert (points.max(axis=0) <= [wide + 30.0, high + 30.0]).all()
+    places = [
+        (*map(float, re.findall(r"[\d.]+", one.get("transform"))), 0.6 * 13.0 * len(one.text))
+        for one in ElementTree.fromstring(drawing.svg).iter(f"{SVG}text")
+    ]
+    for (x, y, width), (x2, y2, width2) in itertools.combinations(places, 2):
+        assert abs(y2 - y) > 13.0 or x2 > x + width or x > x2 + width2
     assert drawing.svg in scene._repr_html_()

@@ -14,6 +14,9 @@ from ...base.arrays import Array
 _REACHES, _DIRECTIONS = (6.0, 10.0, 15.0, 21.0, 28.0, 38.0, 50.0, 70.0), 16
 """Distances of a name from its point [pt], and number of directions, that are tried."""
 
+_FARTHER = (*_REACHES, 90.0, 115.0, 150.0)
+"""Distances that are tried where all of these places are on other names [pt]."""
+
 _OVERLAP, _HIDDEN, _OUTSIDE, _FAR = 1e4, 6.0, 1e4, 1.0
 """Costs of a name's place: on another name, on a part of the picture, beyond the edge; and for each
 point [pt] of distance.
@@ -34,9 +37,12 @@ def placed(
         np.hypot(*np.moveaxis(anchors[:, None] - anchors[None], 2, 0)) < _REACHES[-1], axis=1
     )
     for k in np.lexsort((np.arange(len(anchors)), -sizes[:, 0], -near)):
-        corners = _around(anchors[k], sizes[k])
-        close = np.all(np.abs(things - anchors[k]) < _REACHES[-1] + sizes[k] + 1.0, axis=1)
-        costs = _costs(corners, k, anchors, sizes, things[close], found, boxes[k])
+        for reaches in (_REACHES, _FARTHER):
+            corners = _around(anchors[k], sizes[k], reaches)
+            close = np.all(np.abs(things - anchors[k]) < reaches[-1] + sizes[k] + 1.0, axis=1)
+            costs = _costs(corners, k, anchors, sizes, things[close], found, boxes[k])
+            if costs.min() < _OVERLAP:
+                break
         found[k] = corners[int(np.argmin(costs))]
     return found
 
@@ -47,13 +53,13 @@ def apart(corners: Array, size: Array, anchor: Array) -> Array:
     return np.asarray(np.hypot(*np.moveaxis(nearest - anchor, -1, 0)))
 
 
-def _around(anchor: Array, size: Array) -> Array:
-    """Lower left corners (n, 2) of a name all around its point, near ones first, and of these to
-    the upper right.
+def _around(anchor: Array, size: Array, distances: Sequence[float]) -> Array:
+    """Lower left corners (n, 2) of a name all around its point at some distances, near ones first,
+    and of these to the upper right.
     """
     angles = math.pi / 4 + np.linspace(0.0, math.tau, _DIRECTIONS, endpoint=False)
     ways = np.column_stack([np.cos(angles), np.sin(angles)])
-    reaches = np.array(_REACHES)[:, None, None]
+    reaches = np.array(distances)[:, None, None]
     return np.asarray(anchor + reaches * ways + (ways - 1.0) * size / 2).reshape(-1, 2)
 
 
