@@ -8,7 +8,6 @@ from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
-from ..base.files import writing
 from ..studies.case import load_case
 from ..studies.optimise import Optimum
 from ..studies.optimise import optimise as search
@@ -88,11 +87,10 @@ def optimise(
             signal.ITIMER_REAL, 0.0
         )  # the interrupt has arrived, and is repeated no more
     scene = loaded.scene
-    with writing(figure) as picture:
-        if isinstance(found, Optimum):
-            draw_optimum(scene, found, picture, figure.suffix)
-        else:
-            draw_front(scene, found, picture, figure.suffix)
+    if isinstance(found, Optimum):
+        draw_optimum(scene, found, figure)
+    else:
+        draw_front(scene, found, figure)
     lines = optimum_lines(found) if isinstance(found, Optimum) else front_lines(found)
     echo(*lines, f"wrote {out} and {figure}")
     return 0 if found.feasible and found.converged and not found.stopped else 1

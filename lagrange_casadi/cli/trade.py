@@ -60,10 +60,10 @@ def trade(
             bar.update()
 
         found = measure(loaded.scene, progress=progress, **given)
-    with writing(out) as numbers, writing(figure) as picture:
+    with writing(out) as numbers:
         numbers.write(f"{json.dumps(found.as_dict(), indent=1)}\n".encode())
         numbers.flush()
-        draw_trade(found, picture, figure.suffix)
+        draw_trade(found, figure)
     _print(found)
     echo(f"wrote {out} and {figure}")
     if accuracy is not None:

@@ -5,7 +5,8 @@ the front of two terms.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, BinaryIO
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from ...model.scene import Scene
 from ...studies.evaluate import evaluate
 from ...studies.optimise.front import Front
 from ...studies.optimise.optimum import Optimum
-from ..shapes.picture_files import one_at_a_time, save
+from ..shapes.picture_files import one_at_a_time, put_figure
 from .mechanism_figure import draw_into
 
 if TYPE_CHECKING:
@@ -24,7 +25,7 @@ _TEXT = 40
 
 
 @one_at_a_time({"axes.grid": True, "grid.color": "0.93"})
-def draw_optimum(scene: Scene, optimum: Optimum, file: BinaryIO, ending: str) -> None:
+def draw_optimum(scene: Scene, optimum: Optimum, path: Path) -> None:
     """Write the picture into a file; its kind follows from the ending of the name."""
     from matplotlib.figure import Figure
     from matplotlib.ticker import MaxNLocator
@@ -63,11 +64,11 @@ def draw_optimum(scene: Scene, optimum: Optimum, file: BinaryIO, ending: str) ->
         lines.append(f"{what:<{_TEXT}} {value:>11.5g} {words:<6} {multiplier:>11.4g}")
     table.text(0.0, 0.98, "\n".join(lines), va="top", fontsize=8, family="monospace")
     table.set_title("limits: value, whether active, multiplier", loc="left")
-    save(figure, file, ending)
+    put_figure(figure, path)
 
 
 @one_at_a_time({"axes.grid": True, "grid.color": "0.93"})
-def draw_front(scene: Scene, front: Front, file: BinaryIO, ending: str) -> None:
+def draw_front(scene: Scene, front: Front, path: Path) -> None:
     """Write the picture into a file; its kind follows from the ending of the name."""
     from matplotlib.figure import Figure
 
@@ -99,7 +100,7 @@ def draw_front(scene: Scene, front: Front, file: BinaryIO, ending: str) -> None:
         axes = figure.add_subplot(below[0, column])
         optimum = front.points[k].optimum
         _draw_design(axes, scene, optimum.parameters, f"{k + 1}: ", optimum, 9)
-    save(figure, file, ending)
+    put_figure(figure, path)
 
 
 def _plot_dots(axes: Axes, x: Array, y: Array, holds: Flags, size: int) -> None:

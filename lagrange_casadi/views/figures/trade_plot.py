@@ -4,17 +4,17 @@ beats joined.
 
 from __future__ import annotations
 
-from typing import BinaryIO
+from pathlib import Path
 
 from ...studies.trade import Trade
-from ..shapes.picture_files import one_at_a_time, save, subplots
+from ..shapes.picture_files import one_at_a_time, put_figure, subplots
 
 _OFFSETS = ((0, 6), (0, -14), (0, 17), (0, -25))
 _LEAST = 1e-17
 
 
 @one_at_a_time({"axes.grid": True, "grid.color": "0.9"})
-def draw_trade(trade: Trade, file: BinaryIO, ending: str) -> None:
+def draw_trade(trade: Trade, path: Path) -> None:
     """Write the picture into a file; its kind follows from the ending of the name."""
     figure, (axes, key) = subplots((12.0, 6.5), 1, 2, width_ratios=(3, 2))
     front = trade.front
@@ -55,4 +55,4 @@ def draw_trade(trade: Trade, file: BinaryIO, ending: str) -> None:
     key.set_title(
         "red: nothing is faster and more accurate", fontsize=9, color="tab:red", loc="left"
     )
-    save(figure, file, ending)
+    put_figure(figure, path)
