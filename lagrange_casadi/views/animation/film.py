@@ -95,8 +95,7 @@ def write_animation(
                 f"animation {target}: a .glb has no section forces; they are in"
                 f" {', '.join(ENDINGS[:-1])}"
             )
-        frames = max(2, round(film.rate * film.seconds))
-        data = glb(solution, frames, film.seconds, forces=film.forces)
+        data = glb(solution, _frames(film), film.seconds, forces=film.forces)
     elif ending == ".svg":
         data = svg(picture_of(solution, film), film.seconds).encode()
     else:
@@ -112,7 +111,7 @@ def picture_of(solution: Solution, film: Film) -> Picture:
     Raises :class:`.DeclarationError` for forces that the solution lacks.
     """
     whole = Poses.of(solution)
-    shown, closed = frames_of(solution, whole, max(2, round(film.rate * film.seconds)))
+    shown, closed = frames_of(solution, whole, _frames(film))
     description = solution.description
     joints = {
         name: spot
@@ -133,3 +132,8 @@ def picture_of(solution: Solution, film: Film) -> Picture:
         words=words,
         closed=closed,
     )
+
+
+def _frames(film: Film) -> int:
+    """The number of frames of a cycle at most."""
+    return max(2, round(film.rate * film.seconds))

@@ -231,13 +231,11 @@ def _solids(shape: Shape, poses: Poses, girth: float) -> Iterator[Mesh]:
             yield cylinder(np.array(start), np.array(stop), girth)
     for corners in shape.plates:
         yield prism(np.array(corners), 1.2 * girth)
-    axis = disc_axis(poses, shape)
+    axis, centre = disc_axis(poses, shape), np.array(shape.centre or (0.0, 0.0, 0.0))
     if axis is not None:
-        centre = np.array(shape.centre)
         yield cylinder(centre - 0.6 * girth * axis, centre + 0.6 * girth * axis, shape.disc)
     elif not (shape.axis or shape.arms or shape.plates):
-        place = np.array(shape.centre or (0.0, 0.0, 0.0))
-        yield block(place, np.eye(3), [5 * girth, 4 * girth, 4 * girth])
+        yield block(centre, np.eye(3), [5 * girth, 4 * girth, 4 * girth])
 
 
 def _pin(joint: JointNumbers, poses: Poses, girth: float) -> Mesh:
