@@ -408,7 +408,7 @@ class Histories:
             The value with its sign, its time and its ratio xi/l.
         """
         values, places = self.extremes(name)
-        i = int(largest(values))
+        i = largest(values)
         xi = None if places is None else float(places[i])
         over = None if self.over is None else float(self.over.values[i])
         return Peak(str(name), float(values[i]), self.unit(name), float(self.t[i]), xi, over=over)

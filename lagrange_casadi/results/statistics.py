@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from ..base.arrays import Array, Operand
+from ..base.arrays import Array
 from ..base.brief import Brief
-from .vector_sizes import largest
+from .vector_sizes import highest
 
 
 @dataclass(frozen=True)
@@ -49,8 +50,7 @@ class Statistics(Brief):
         counts = counted(values)
         weights = shares(t, counts)
         there = values if counts.all() else np.where(counts, values, 0.0)
-        chosen = (*_ends(values, values), largest(values))
-        ends = (Extreme(float(values[i]), float(t[i])) for i in map(int, chosen))
+        ends = _ends(t, np.broadcast_to(values, (3, t.size)))
         return cls(name, unit, float(there @ weights), float(np.sqrt(there**2 @ weights)), *ends)
 
     @classmethod
@@ -60,22 +60,15 @@ class Statistics(Brief):
 
         Places and values are (3, t).
         """
-        chosen = (*_ends(values[0], values[1]), largest(values[2]))
-        ends = (
-            Extreme(float(values[k, i]), float(t[i]), float(places[k, i]))
-            for k, i in enumerate(map(int, chosen))
-        )
-        return cls(name, unit, None, None, *ends)
+        return cls(name, unit, None, None, *_ends(t, values, places))
 
 
-def _ends(low: Array, high: Array) -> tuple[Operand, Operand]:
-    """Places of the smallest and largest values; NaN is neither."""
-    ends = np.argmin(low), np.argmax(high)
-    if not (np.isnan(low[ends[0]]) or np.isnan(high[ends[1]])):  # either is the place of a NaN
-        return ends
-    return np.argmin(np.where(np.isnan(low), np.inf, low)), np.argmax(
-        np.where(np.isnan(high), -np.inf, high)
-    )
+def _ends(t: Array, values: Array, places: Array | None = None) -> Iterator[Extreme]:
+    """The smallest, the largest and the value largest in size, each of a row of values (3, t)."""
+    sizes = -values[0], values[1], np.abs(values[2])
+    for k, i in enumerate(map(highest, sizes)):
+        xi = None if places is None else float(places[k, i])
+        yield Extreme(float(values[k, i]), float(t[i]), xi)
 
 
 def counted(values: Array) -> npt.NDArray[np.bool_]:

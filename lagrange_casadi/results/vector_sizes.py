@@ -15,14 +15,18 @@ def size_of(components: Iterable[Array]) -> Array:
     return np.asarray(functools.reduce(np.hypot, components))
 
 
-def largest(values: Array, axis: int | None = None) -> Array:
-    """The place of the value that is largest in size, as of ``np.argmax``; of what is no number
-    only where nothing else is.
+def highest(values: Array) -> int:
+    """The place of the largest value, as of ``np.argmax``; of what is no number only where nothing
+    else is.
     """
-    sizes = np.abs(values)
-    if axis is None and not np.isnan(sizes.flat[place := np.argmax(sizes)]):  # else a NaN is there
-        return np.asarray(place)
-    return np.asarray(np.argmax(np.where(np.isnan(sizes), -1.0, sizes), axis=axis))
+    if not np.isnan(values.flat[place := np.argmax(values)]):  # else a NaN is there
+        return int(place)
+    return int(np.argmax(np.where(np.isnan(values), -np.inf, values)))
+
+
+def largest(values: Array) -> int:
+    """The place of the value that is largest in size, as :func:`highest` finds it."""
+    return highest(np.abs(values))
 
 
 def most(values: Array) -> float:

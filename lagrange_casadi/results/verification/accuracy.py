@@ -202,7 +202,7 @@ def _chosen(program: Program, evaluated: Evaluated) -> tuple[Array, float, Arith
     if most < moving.size:
         dead = [k for kind in _DEAD for k in program.checks(kind).values()]
         chosen += [int(np.argmin(out[k])) for k in dead]
-        chosen += [int(largest(row)) for row in out] if long else []
+        chosen += [largest(row) for row in out] if long else []
     some = np.unique(chosen)
     factor = _ALLOWED if some.size == moving.size else _UNSEEN
     return some[moving[some]], factor, long_doubles() if long else elementwise()
