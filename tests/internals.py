@@ -18,13 +18,14 @@ from lagrange_casadi.engine.instants import backends, cycle_table, grids
 from lagrange_casadi.engine.instants.backends import run
 from lagrange_casadi.engine.instants.evaluation_method import EvaluationMethod, Provenance
 from lagrange_casadi.engine.instants.refusing import refusal as refusal_refusal
+from lagrange_casadi.engine.strains import moduli_of
 from lagrange_casadi.interop.formats import case_of
 from lagrange_casadi.model import sampled_laws
 from lagrange_casadi.model.even_points import points
 from lagrange_casadi.model.kinks import Smooth
 from lagrange_casadi.model.scene import Wanted
 from lagrange_casadi.model.stated import Stated
-from lagrange_casadi.results.elastic.compliance import Compliance, nodes
+from lagrange_casadi.results.elastic.compliance import nodes, strains_along
 from lagrange_casadi.results.elastic.deflection import deflection
 from lagrange_casadi.results.sensitivity.slopes import Slopes
 from lagrange_casadi.results.store import opening

@@ -27,11 +27,9 @@ from ..errors import (
 from ..model.beams.profiles import Profile
 from ..model.declared_parts import Parameter
 from ..model.description import Description
-from ..model.end_conditions import ends_of
 from ..model.scene import Scene
 from ..model.times import Over, Times
-from ..results.elastic.compliance import Compliance
-from ..results.elastic.deflection import Against, Deflection
+from ..results.elastic.deflection import Deflection
 from ..results.solution import Solution
 from ..results.strength.member import Member
 from ..results.strength.safety import Safety, Verdict, as_column, rated
@@ -283,8 +281,7 @@ class _Search:
         found = rated(other, column, **self.criteria, enough=enough)
         if self.deflection is None or found.factor < enough:
             return found
-        against: Against = "base" if "free" in ends_of(solution.description, name) else "ends"
-        peak = Deflection(Compliance.of(other, f"deflection of '{name}'"), against).peak()
+        peak = Deflection.of(other, solution.description).peak()
         allowed = self.deflection * member.law.length
         where = (
             f"{abs(peak.value) * 1e3:.4g} of {allowed * 1e3:.4g} mm at t = {peak.t:.5g} s, xi/l ="

@@ -9,7 +9,7 @@ evaluations, with a force as large as the machine's own, and without.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -18,12 +18,13 @@ from ..base.arguments import public
 from ..base.arrays import Array
 from ..base.brief import Brief
 from ..engine.model_data import template
+from ..engine.strains import moduli_of
 from ..errors import DeclarationError
 from ..model.declared_parts import Body, Point
 from ..model.pushed import with_push
 from ..model.scene import Scene
 from ..model.times import Over, Times
-from ..results.elastic.compliance import Compliance, nodes
+from ..results.elastic.compliance import nodes, strains_along
 from ..results.solution import Solution
 from ..results.strength.member import Member
 from .evaluate import evaluate
@@ -104,24 +105,20 @@ def tool_deflection(
     plain = solved(parameters=parameters)
     # A force elsewhere pulls a bar, and bends none.
     members = {link: Member.of(plain, link, spun=link != body) for link in links}
-    beams = {
-        link: Compliance.of(member, f"tool_deflection: link '{link}'")
+    moduli = {
+        link: moduli_of(member.beam, f"tool_deflection: link '{link}'", space=member.space)
         for link, member in members.items()
     }
     push = _size(plain, links)
     by_link = {link: np.zeros((plain.t.size, len(pushes))) for link in links}
     for k, name in enumerate(pushes):
         unit = solved(parameters={**(parameters or {}), name: push})
-        for link, beam in beams.items():
-            u, weights = nodes(beam.member)
-            section = beam.member.at(u)
-            more = (
-                np.stack([unit.section(link).law.at(force, u) for force in beam.member.forces])
-                - section
-            )
-            by_link[link][:, k] = (
-                np.sum(beam.strains(section, u) * more * weights, axis=(0, 2)) / push
-            )
+        for link, member in members.items():
+            u, weights = nodes(member)
+            section = member.at(u)
+            more = replace(member, law=unit.section(link).law).at(u) - section
+            strains = strains_along(member, moduli[link], section, u)
+            by_link[link][:, k] = np.sum(strains * more * weights, axis=(0, 2)) / push
     return ToolDeflection(plain.t, by_link)
 
 

@@ -1,7 +1,7 @@
 """Mechanisms that are over-constrained, of links that give way."""
 
 import numpy as np
-from internals import Compliance, Member, nodes
+from internals import Member, moduli_of, nodes, strains_along
 
 from lagrange_casadi import Mechanism, Scene, beams
 from lagrange_casadi.motion import harmonic
@@ -19,10 +19,11 @@ def work(first, second, links):
     """
     total, size = 0.0, 0.0
     for link in links:
-        beam = Compliance.of(Member.of(first, link, spun=True), "test")
-        u, weights = nodes(beam.member)
+        member = Member.of(first, link, spun=True)
+        moduli = moduli_of(member.beam, "test", space=member.space)
+        u, weights = nodes(member)
         forces = [Member.of(one, link, spun=True).at(u) for one in (first, second)]
-        parts = [force * beam.strains(forces[1], u) * weights for force in forces]
+        parts = [force * strains_along(member, moduli, forces[1], u) * weights for force in forces]
         total = total + parts[0].sum(axis=(0, 2))
         size = size + np.abs(parts[1]).sum(axis=(0, 2))
     return total, size

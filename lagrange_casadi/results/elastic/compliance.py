@@ -4,43 +4,24 @@ and where they are summed.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ...base.arrays import Array
-from ...base.brief import Brief
-from ...engine.strains import Moduli, moduli_of, strains
+from ...engine.strains import Moduli, strains
 from ..strength.member import Member
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Compliance(Brief):
-    """A link of a solution as an elastic beam, by the moduli of its material [Pa]."""
-
-    member: Member
-    moduli: Moduli
-
-    @classmethod
-    def of(cls, member: Member, what: str) -> Compliance:
-        """A link as an elastic beam.
-
-        Raises :class:`.DeclarationError` where its material has no elasticity, or its cross-section
-        in space no torsion constant, which ``what`` needs.
-        """
-        return cls(member, moduli_of(member.beam, what, space=member.space))
-
-    def strains(self, forces: Array, u: Array) -> Array:
-        """The strains of section forces (forces, t, n) at ratios (t, n): in the order of the
-        forces.
-        """
-        found = np.empty_like(forces)
-        for here, properties in self.member.properties(u):
-            forces_here = dict(zip(self.member.forces, forces[:, here], strict=True))
-            each = strains(properties, forces_here, self.moduli)
-            for k, name in enumerate(self.member.forces):
-                found[k, here] = each[name]
-        return found
+def strains_along(member: Member, moduli: Moduli, forces: Array, u: Array) -> Array:
+    """The strains of section forces (forces, t, n) of a link with ``moduli`` [Pa] at ratios (t, n):
+    in the order of the forces.
+    """
+    found = np.empty_like(forces)
+    for here, properties in member.properties(u):
+        forces_here = dict(zip(member.forces, forces[:, here], strict=True))
+        each = strains(properties, forces_here, moduli)
+        for k, name in enumerate(member.forces):
+            found[k, here] = each[name]
+    return found
 
 
 def nodes(member: Member) -> tuple[Array, Array]:

@@ -20,13 +20,15 @@ import numpy as np
 from ...base.arguments import Numeric, public
 from ...base.arrays import Array
 from ...base.bernstein import interpolated, nodes, product, raised, slope, value, zeros
+from ...engine.strains import Moduli, moduli_of
 from ...errors import DeclarationError, check_known
+from ...model.description import Description
 from ...model.end_conditions import ends_of
 from ..histories import Histories
 from ..strength.all_parts import reason, strong_of
 from ..strength.member import Member
 from ..vector_sizes import largest
-from .compliance import Compliance
+from .compliance import strains_along
 
 Against = Literal["ends", "base"]
 
@@ -67,13 +69,22 @@ class Deflection:
     :class:`.UnknownNameError` for any other.
     """
 
-    compliance: Compliance
+    member: Member
+    moduli: Moduli
     against: Against
 
-    @property
-    def member(self) -> Member:
-        """The link."""
-        return self.compliance.member
+    @classmethod
+    def of(
+        cls, member: Member, description: Description, against: Against | None = None
+    ) -> Deflection:
+        """The deflection of a link, by default from where its joints hold it.
+
+        Raises :class:`.DeclarationError` where its material has no elasticity, or its cross-section
+        in space no torsion constant.
+        """
+        moduli = moduli_of(member.beam, f"deflection of '{member.link}'", space=member.space)
+        by_joints: Against = "base" if "free" in ends_of(description, member.link) else "ends"
+        return cls(member, moduli, against or by_joints)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -144,7 +155,7 @@ class Deflection:
         is constant.
         """
         values, places = self.largest()
-        i = int(largest(values))
+        i = largest(values)
         return DeflectionPeak(float(values[i]), float(self.member.t[i]), float(places[i]))
 
     @cached_property
@@ -153,7 +164,7 @@ class Deflection:
         member = self.member
         low, width = member.edges[:, :-1, None], np.diff(member.edges, axis=1)[:, :, None]
         u = (low + width * nodes(member.strain_degree)).reshape(member.t.size, -1)
-        strains = self.compliance.strains(member.at(u), u)
+        strains = strains_along(member, self.moduli, member.at(u), u)
         strains = strains.reshape(len(member.forces), *width.shape[:2], -1)
         ordinates = interpolated(np.moveaxis(strains, 3, 0))
         return {name: ordinates[:, k] for k, name in enumerate(member.forces)}
@@ -232,10 +243,7 @@ def deflection(solution: Histories, link: str, against: Against | None = None) -
         raise DeclarationError(
             f"deflection of '{link}': expected against='ends' or 'base', got {against!r}"
         )
-    compliance = Compliance.of(Member.of(solution, link), f"deflection of '{link}'")
-    return Deflection(
-        compliance, against or ("base" if "free" in ends_of(solution.description, link) else "ends")
-    )
+    return Deflection.of(Member.of(solution, link), solution.description, against)
 
 
 def bending_of(solution: Histories) -> tuple[str, ...]:

@@ -18,13 +18,13 @@ import numpy as np
 from ...base.arguments import public
 from ...base.arrays import Array
 from ...base.brief import Brief
+from ...engine.strains import moduli_of
 from ...errors import DeclarationError
 from ...model.description import BodyNumbers
 from ...model.end_conditions import ENDS, Ends, ends_of
 from ..histories import Histories
 from ..strength.member import Member
 from .bending_modes import Mode, first_mode
-from .compliance import Compliance
 
 ENOUGH = 0.1
 """Relative error of bending up to which rigid links are enough."""
@@ -118,11 +118,12 @@ def vibration(solution: Histories, link: str, ends: Ends | None = None) -> Vibra
             f"vibration of '{link}': expected how base and tip are held, two of {', '.join(ENDS)},"
             f" got {ends!r}"
         )
-    compliance = Compliance.of(Member.of(solution, link), f"vibration of '{link}'")
+    member = Member.of(solution, link)
+    elasticity, _ = moduli_of(member.beam, f"vibration of '{link}'", space=member.space)
     held = ends or ends_of(solution.description, link)
     body = solution.description.bodies[link]
-    many = 2 if compliance.member.space else 1
-    planes = [_plane(compliance, body, held, number) for number in range(many)]
+    many = 2 if member.space else 1
+    planes = [_plane(member, elasticity, body, held, number) for number in range(many)]
     modes, forces = zip(*planes, strict=True)
     softest, t = min(modes, key=lambda mode: mode.upper), solution.t
     lower = None if softest.lower is None else softest.lower / math.tau
@@ -148,18 +149,18 @@ def swinging(solution: Histories) -> Iterator[str]:
 
 
 def _plane(
-    compliance: Compliance, body: BodyNumbers, ends: Ends, number: int
+    member: Member, elasticity: float, body: BodyNumbers, ends: Ends, number: int
 ) -> tuple[Mode, Array]:
     """The first mode in a plane of bending; and its load, (t,): the sum of bending moments times
     curvature, as large as moments are.
     """
-    member, (length, density) = compliance.member, body.length_and_density
+    length, density = body.length_and_density
     breaks = tuple(sorted({*member.beam.course.breaks, *density.breaks}))
-    middle = _stiffness(compliance, np.array([0.5]))[..., 0]
+    middle = _stiffness(member, elasticity, np.array([0.5]))[..., 0]
     axis = np.linalg.eigh(middle)[1][:, number]
 
     def stiffness(u: Array) -> Array:
-        found = _stiffness(compliance, u.ravel())
+        found = _stiffness(member, elasticity, u.ravel())
         return np.asarray(np.einsum("i,ijn,j->n", axis, found, axis)).reshape(u.shape)
 
     mode = first_mode(stiffness, lambda u: density.at(u) / length, length, breaks, ends)
@@ -169,16 +170,16 @@ def _plane(
     return mode, np.asarray(moments @ (mode.weights * mode.curvature))
 
 
-def _stiffness(compliance: Compliance, u: Array) -> Array:
+def _stiffness(member: Member, elasticity: float, u: Array) -> Array:
     """Bending stiffness at ratios (n,): in the plane (1, 1, n), in space of the curvatures about y
     and z, (2, 2, n).
     """
-    many = 2 if compliance.member.space else 1
+    many = 2 if member.space else 1
     found = np.empty((many**2, u.size))
-    for here, p in compliance.member.properties(u):
+    for here, p in member.properties(u):
         plane = (p.iz - p.iyz**2 / p.iy,)
         for k, value in enumerate((p.iy, -p.iyz, -p.iyz, p.iz) if many > 1 else plane):
-            found[k, here] = compliance.moduli[0] * value
+            found[k, here] = elasticity * value
     return found.reshape(many, many, -1)
 
 
