@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -105,18 +106,9 @@ def used(amplitude: Array, mean: Array, material: Material, criterion: str = "go
     """Utilisation of a material by amplitude and mean, one over :func:`factor`; of numbers, arrays
     or expressions.
     """
-    return _use(material, criterion)(amplitude, mean)
-
-
-def _use(material: Material, criterion: str) -> Callable[[Operand, Operand], Operand]:
-    """The function of amplitude and mean that gives the utilisation of a material."""
     endurance, strength = strengths(material, criterion)
-
-    def use(amplitude: Operand, mean: Operand) -> Operand:
-        a, m = amplitude / endurance, larger(mean, 0.0) / strength
-        return (a + (a * a + 4.0 * m * m) ** 0.5) / 2 if criterion == _SQUARED else a + m
-
-    return use
+    a, m = amplitude / endurance, larger(mean, 0.0) / strength
+    return (a + (a * a + 4.0 * m * m) ** 0.5) / 2 if criterion == _SQUARED else a + m
 
 
 def lacking(material: Material, criterion: str = "goodman") -> str:
@@ -322,7 +314,7 @@ def use_score(material: Material, criterion: str = "goodman") -> Score:
     """
     endurance, strength = strengths(material, criterion)
     exact = strength >= (2.0 if criterion == _SQUARED else 1.0) * endurance
-    swing = _use(material, criterion)
+    swing = partial(used, material=material, criterion=criterion)
 
     def of(values: Array) -> float:
         found = loaded(values)
@@ -334,7 +326,7 @@ def use_score(material: Material, criterion: str = "goodman") -> Score:
 def damage_score(material: Material, criterion: str = "goodman") -> Score:
     """The damage by Miner's sum; where there is none, minus one over the largest amplitude.
 
-    Raises what :func:`strengths` does.
+    It raises what :func:`strengths` does when it is asked.
     """
 
     def score(amplitude: Array, mean: Array, times: Array | float, axis: int | tuple[()]) -> Array:
@@ -352,7 +344,7 @@ def damage_score(material: Material, criterion: str = "goodman") -> Score:
         times = stresses.shape[-1] / 2 + 1
         return _bound(lambda amplitude, mean: score(amplitude, mean, times, ()), stresses)
 
-    return Score(of, bound, _use(material, criterion))
+    return Score(of, bound, partial(used, material=material, criterion=criterion))
 
 
 def _bound(
