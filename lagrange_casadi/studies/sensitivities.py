@@ -72,7 +72,7 @@ class Sensitivities:
     @property
     def parameters(self) -> tuple[str, ...]:
         """The names of the parameters."""
-        return tuple(self.slopes.program.data.parameters)
+        return tuple(self.slopes.points.program.data.parameters)
 
     def array(self, name: str, parameter: str) -> Array:
         """Return the derivative of a quantity by a parameter.
@@ -205,7 +205,7 @@ class Sensitivities:
         units, scales = self.continuous.scales(outputs)
         nothing = faint(values, np.array(scales)[units])
         moving = MovingPeaks(
-            self.slopes, Ends(self.slopes.program.laws, None, self.solution.t, self.p)
+            self.slopes, Ends(self.slopes.points.program.laws, None, self.solution.t, self.p)
         )
         changes = moving.gradient(chosen, (values, t, xi), nothing)
         tied = moving.ties(chosen, values, changes, others) & ~nothing

@@ -276,7 +276,9 @@ class MovingPeaks:
         """
         switches, first = self.slopes.points.switches, len(self.slopes.points.quantities)
         times, at, back = np.unique(t, return_index=True, return_inverse=True)
-        knots = np.array([knot for knots in self.slopes.program.laws.knots for knot in knots])
+        knots = np.array(
+            [knot for knots in self.slopes.points.program.laws.knots for knot in knots]
+        )
         found = np.full((times.size, self.p.size), np.nan)
         which = np.full(times.size, -1, np.intc)
         if switches:

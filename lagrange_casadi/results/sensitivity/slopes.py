@@ -4,10 +4,10 @@ by CasADi's virtual machine.
 
 from __future__ import annotations
 
+import functools
 import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -150,12 +150,7 @@ class Slopes(Brief):
         points = PointFunction.of(program, quantities, sharpness)
         return cls(points, method, Batch.of(points.function, method), Loops.of(program, method))
 
-    @property
-    def program(self) -> Program:
-        """Program whose quantities they are."""
-        return self.points.program
-
-    @cached_property
+    @functools.cached_property
     def numbers(self) -> Mapping[Output, int]:
         """The number of each quantity."""
         return {quantity: k for k, quantity in enumerate(self.points.quantities)}
@@ -184,7 +179,8 @@ class Slopes(Brief):
                 name: (rows[here] if each else rows, each) for name, (rows, each) in given.items()
             }
             local[codegen.CHOSEN] = np.zeros(here.size, np.intc), 1
-            found[here] = self._alone(k).at(here.size, local)
+            alone = _alone(self.points.program, self.points.quantities[k])
+            found[here] = Batch(alone.function).at(here.size, local)
         return AtPoints(found[:, 0], found[:, 1:])
 
     def bends(
@@ -213,17 +209,11 @@ class Slopes(Brief):
     def _second(self) -> Batch:
         return Batch.of(self.points.further(), self.method)
 
-    def _alone(self, number: int) -> Batch:
-        """The function of one quantity alone, which nothing else has a part in."""
-        if number not in self._single:
-            own = self.points.quantities[number : number + 1]
-            self._single[number] = Batch(PointFunction.of(self.program, own).function)
-        return self._single[number]
 
-    @symbolic_property
-    def _single(self) -> dict[int, Batch]:
-        """Functions of single quantities, by their numbers, as far as they were asked for."""
-        return {}
+@functools.lru_cache(maxsize=64)
+def _alone(program: Program, quantity: Output) -> PointFunction:
+    """The function of one quantity alone, which nothing else has a part in."""
+    return PointFunction.of(program, [quantity])
 
 
 def _given(
