@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, get_args
 
@@ -26,8 +26,32 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+def _sections(*links: str) -> Iterable[str]:
+    """Full names of all section forces of links."""
+    return (str(Output("section", link, force)) for link in links for force in PLANE.forces)
+
+
+_NEEDED: dict[str, Callable[..., Iterable[str]]] = {
+    "quantity": lambda quantity: [quantity],
+    "quantities": lambda quantities: quantities,
+    "link": _sections,
+    "links": lambda links: _sections(*links),
+    "joints": lambda joints: (
+        f"reaction:{one}:{force}" for one in joints for force in ("fx", "fy")
+    ),
+}
+"""Full names of the quantities that a spec draws by one of its fields."""
+
+
 class _Drawn:
     """A spec, which can be drawn."""
+
+    def needs(self) -> tuple[str, ...]:
+        """Full names of the quantities it draws; the poses of all bodies besides, if it draws
+        these.
+        """
+        fields = [(_NEEDED[name], value) for name, value in vars(self).items() if name in _NEEDED]
+        return tuple(one for named, value in fields for one in named(value))
 
     @public
     def draw(self, solution: Solution, si: bool = False) -> Figure:
@@ -44,10 +68,6 @@ class _OfLink(_Drawn):
 
     name: str
     link: str
-
-    def needs(self) -> tuple[str, ...]:
-        """Full names of the quantities it draws."""
-        return tuple(str(Output("section", self.link, force)) for force in PLANE.forces)
 
 
 @public
@@ -68,10 +88,6 @@ class TimePlot(_Drawn, Brief):
     factor: Finite = 1.0
     note: str = ""
 
-    def needs(self) -> tuple[str, ...]:
-        """Full names of the quantities it draws."""
-        return self.quantities
-
 
 @public
 @dataclass(frozen=True, repr=False)
@@ -85,10 +101,6 @@ class SpanPlot(_Drawn, Brief):
     title: str = ""
     factor: Finite = 1.0
     note: str = ""
-
-    def needs(self) -> tuple[str, ...]:
-        """Full names of the quantities it draws."""
-        return (self.quantity,)
 
 
 @public
@@ -117,10 +129,6 @@ class SectionDiagrams(_Drawn):
     name: str
     links: tuple[str, ...]
 
-    def needs(self) -> tuple[str, ...]:
-        """Full names of the quantities it draws."""
-        return tuple(name for link in self.links for name in SectionMaps(self.name, link).needs())
-
 
 @public
 @dataclass(frozen=True)
@@ -132,12 +140,6 @@ class PolarPlots(_Drawn):
     kind: ClassVar[str] = "polar"
     name: str
     joints: tuple[str, ...]
-
-    def needs(self) -> tuple[str, ...]:
-        """Full names of the quantities it draws."""
-        return tuple(
-            f"reaction:{joint}:{member}" for joint in self.joints for member in ("fx", "fy")
-        )
 
 
 @public
@@ -158,10 +160,6 @@ class MechanismDrawing(_Drawn):
     azimuth: float = AZIMUTH
     elevation: float = ELEVATION
     overlay: bool = False
-
-    def needs(self) -> tuple[str, ...]:
-        """Full names of the quantities it draws; the poses of all bodies besides."""
-        return ()
 
 
 @public
@@ -185,11 +183,6 @@ class UtilisationPlot(_Drawn):
     name: str
     links: tuple[str, ...]
     joints: tuple[str, ...] = ()
-
-    def needs(self) -> tuple[str, ...]:
-        """Full names of the quantities it draws."""
-        sections = SectionDiagrams(self.name, self.links).needs()
-        return (*sections, *PolarPlots(self.name, self.joints).needs())
 
 
 @public
