@@ -19,6 +19,7 @@ friction is then bound by a circle or a ball.
 from __future__ import annotations
 
 import itertools
+from collections.abc import Callable
 from typing import Any
 
 import casadi as ca
@@ -26,7 +27,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..base.arguments import public
-from ..base.arrays import Array
+from ..base.arrays import Array, Flags
 from ..base.quantities import Check, Output
 from ..engine.derive import derived
 from ..engine.friction import SLIP
@@ -112,6 +113,13 @@ def held_at_rest(scene: Scene, histories: Histories) -> dict[str, Holding]:
     return ranges
 
 
+_FAULTS: dict[str, tuple[Callable[[Array], Flags], str]] = {
+    "bend": (lambda bends: bends > _BENDS, "slides, and depends on those at rest"),
+    "jam": (lambda margins: ~(margins > _JAMS), "may jam"),
+    "slip": (lambda slips: ~(slips <= SLIP["double"]), "may jam"),
+}
+"""Checks of a friction: where it is at fault, and what it does."""
+
 _Reasons = list[tuple[Any, str]]
 """Instants (t,) at which a range is not available, and the reasons."""
 
@@ -158,15 +166,7 @@ def _tried(held: HeldEfforts, inputs: list[ca.DM]) -> tuple[Array, _Reasons]:
         found.append(columns(signs))
     tried = np.array(found)
     for (kind, name), k in checks.items():
-        if kind == "bend":
-            why.append(
-                (
-                    (tried[:, k] > _BENDS).any(axis=0),
-                    f"friction '{name}' slides, and depends on those at rest",
-                )
-            )
-        elif kind == "jam":
-            why.append((~(tried[:, k] > _JAMS).all(axis=0), f"friction '{name}' may jam"))
-        elif kind == "slip":
-            why.append((~(tried[:, k] <= SLIP["double"]).all(axis=0), f"friction '{name}' may jam"))
+        if kind in _FAULTS:
+            wrong, words = _FAULTS[kind]
+            why.append((wrong(tried[:, k]).any(axis=0), f"friction '{name}' {words}"))
     return tried, why

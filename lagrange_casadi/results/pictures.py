@@ -17,7 +17,7 @@ from ..errors import DeclarationError
 _KINDS = {".gif": "image/gif", ".svg": "image/svg+xml", ".mp4": "video/mp4"}
 """Kinds that browsers show."""
 
-_WIDTHS, _MOST, _SHORTEST = (80, 3840), 3000, 0.1
+_WIDTHS, _MOST, _SHORTEST, _FASTEST = (80, 3840), 3000, 0.1, 50
 
 
 @public
@@ -40,26 +40,24 @@ class Film:
 
     def __post_init__(self) -> None:
         low, high = _WIDTHS
-        if not low <= self.width <= high or self.width % 2:
-            raise DeclarationError(
-                f"width: expected an even number of pixels from {low} to {high}, got {self.width!r}"
-            )
-        for name, value, unit in (
-            ("rate", self.rate, "frames a second"),
-            ("seconds", self.seconds, "seconds a cycle"),
+        width, rate, seconds = self.width, self.rate, self.seconds
+        for name, value, fits, expected in (
+            (
+                "width",
+                width,
+                low <= width <= high and not width % 2,
+                f"an even number of pixels from {low} to {high}",
+            ),
+            ("rate", rate, 0.0 < rate < math.inf, "frames a second above 0"),
+            ("seconds", seconds, 0.0 < seconds < math.inf, "seconds a cycle above 0"),
+            ("seconds", seconds, seconds >= _SHORTEST, f"{_SHORTEST} seconds a cycle at least"),
+            ("rate", rate, rate <= _FASTEST, f"{_FASTEST} frames a second at most"),
         ):
-            if not 0.0 < value < math.inf:
-                raise DeclarationError(f"{name}: expected {unit} above 0, got {value!r}")
-        if self.seconds < _SHORTEST:
+            if not fits:
+                raise DeclarationError(f"{name}: expected {expected}, got {value!r}")
+        if rate * seconds > _MOST:
             raise DeclarationError(
-                f"seconds: expected {_SHORTEST} seconds a cycle at least, got {self.seconds!r}"
-            )
-        if self.rate > 50:
-            raise DeclarationError(f"rate: expected 50 frames a second at most, got {self.rate!r}")
-        if self.rate * self.seconds > _MOST:
-            raise DeclarationError(
-                f"rate and seconds: expected {_MOST} frames at most, got"
-                f" {self.rate * self.seconds:.6g}"
+                f"rate and seconds: expected {_MOST} frames at most, got {rate * seconds:.6g}"
             )
 
 
