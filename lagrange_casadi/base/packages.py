@@ -1,4 +1,4 @@
-"""Packages that are optional: each is an extra of this one."""
+"""Packages that are optional: most are an extra of this one."""
 
 from __future__ import annotations
 
@@ -7,11 +7,10 @@ import importlib.util
 from ..errors import LagrangeCasadiError
 
 
-def check_installed(package: str, what: str, extra: str) -> None:
+def check_installed(package: str, what: str, extra: str = "") -> None:
     """Raise :class:`LagrangeCasadiError` where a package is missing, which ``what`` needs; its
-    module is called as it is, in small letters.
+    module is called as it is, in small letters. Without an ``extra`` it is installed by itself.
     """
     if importlib.util.find_spec(package.lower()) is None:
-        raise LagrangeCasadiError(
-            f"{what} needs {package}; install it with: pip install 'lagrange_casadi[{extra}]'"
-        )
+        wanted = f"'lagrange_casadi[{extra}]'" if extra else package
+        raise LagrangeCasadiError(f"{what} needs {package}; install it with: pip install {wanted}")

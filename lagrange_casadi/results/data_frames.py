@@ -8,8 +8,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from ..base.arrays import Array
+from ..base.packages import check_installed
 from ..base.table_writers import head
-from ..errors import LagrangeCasadiError
 from .derivatives import Derivatives, Series, derivatives
 from .histories import Histories
 
@@ -26,12 +26,9 @@ def dataset(histories: Histories, sensitivities: Derivatives) -> xarray.Dataset:
 
     Raises :class:`.LagrangeCasadiError` without xarray.
     """
-    try:
-        import xarray
-    except ImportError:
-        raise LagrangeCasadiError(
-            "to_xarray needs xarray; install it with: pip install xarray"
-        ) from None
+    check_installed("xarray", "to_xarray")
+    import xarray
+
     data = {
         one.name: (one.output.quantity.axes, one.values, {"units": one.unit} | one.attributes)
         for one in _everything(histories, sensitivities)
@@ -54,12 +51,9 @@ def frame(histories: Histories, sensitivities: Derivatives) -> pandas.DataFrame:
 
     Raises :class:`.LagrangeCasadiError` without pandas.
     """
-    try:
-        import pandas
-    except ImportError:
-        raise LagrangeCasadiError(
-            "to_pandas needs pandas; install it with: pip install pandas"
-        ) from None
+    check_installed("pandas", "to_pandas")
+    import pandas
+
     return pandas.DataFrame(
         columns(histories, sensitivities), index=pandas.Index(histories.t, name=TIME)
     )

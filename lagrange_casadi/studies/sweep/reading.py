@@ -19,9 +19,9 @@ import numpy.typing as npt
 
 from ...base.arguments import LATER, Outputs, public, texts
 from ...base.methods import method
+from ...base.packages import check_installed
 from ...errors import (
     DeclarationError,
-    LagrangeCasadiError,
     PathError,
     StoreError,
     UnknownNameError,
@@ -428,12 +428,9 @@ class Sweep:
         LagrangeCasadiError
             If xarray is not installed.
         """
-        try:
-            import xarray
-        except ImportError:
-            raise LagrangeCasadiError(
-                "to_xarray needs xarray; install it with: pip install xarray"
-            ) from None
+        check_installed("xarray", "to_xarray")
+        import xarray
+
         kept = [self.column(name) for name in (self.columns if names is None else names_in(names))]
         over = {axis for column in kept for axis in column.axes}
         units = dict.fromkeys(self.dimensions, "1") | dict(self.parameters)
