@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, replace
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, cast
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, ClassVar, Literal, cast
 
 import numpy as np
 
@@ -222,9 +222,3 @@ class Solution(Histories):
             If pandas is not installed.
         """
         return frame(self, self.sensitivities)
-
-
-def solution_of(histories: Histories, **evidence: Any) -> Solution:
-    """The solution of histories; ``evidence`` are its other fields."""
-    given = {entry.name: getattr(histories, entry.name) for entry in fields(Histories)}
-    return Solution(**given, **evidence)

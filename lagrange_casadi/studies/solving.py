@@ -4,6 +4,8 @@ with the evidence that it is right.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..base.quantities import Output
@@ -23,11 +25,10 @@ from ..model.scene_arguments import Elastic
 from ..model.times import checked_span, instants_of
 from ..model.wanted_names import by_parameters
 from ..results.derivatives import Derivatives
-from ..results.histories import Histories
 from ..results.holding import held_at_rest
 from ..results.ordering import in_order
 from ..results.sensitivity.series import series_slopes
-from ..results.solution import Solution, solution_of
+from ..results.solution import Solution
 from ..results.verification.certificate import failure, tolerance
 from ..results.verification.evidence import verified
 from .request import Request
@@ -85,7 +86,7 @@ def solve(
     within = phases(program, out, instants.t, p) if certificate else {}
     unknown = {output: np.full(instants.t.size, np.nan) for output in indeterminate}
     description = program.described(p, out)
-    histories = Histories(
+    histories = Solution(
         case=data.name,
         t=instants.t,
         xi=points(ratios),
@@ -99,7 +100,7 @@ def solve(
         verified(program, evaluated, histories, p, within, unbalanced) if certificate else ({}, {})
     )
     by = by_parameters(data.parameters, names)
-    solution = solution_of(
+    solution = replace(
         histories,
         certificate=residuals,
         errors=errors,

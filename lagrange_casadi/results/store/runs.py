@@ -31,7 +31,7 @@ from ...model.times import DriveAxis
 from ...model.wanted_names import SENSITIVITY
 from ..histories import Histories
 from ..ordering import in_order
-from ..solution import Solution, solution_of
+from ..solution import Solution
 from ..verification.certificate import certify
 from ..verification.reported import COARSE, TOLERANCE, blur
 from .attributes import (
@@ -306,7 +306,7 @@ def _read(file: h5py.File) -> Solution:
             errors[str(output)] = number(dataset.attrs, "error_estimate")
         if output.quantity.axes == ("t",) and output.group not in ("certificate", "holding"):
             outputs[output] = numbers(dataset, t.shape)
-    histories = Histories(
+    histories = Solution(
         t=t,
         xi=xi,
         outputs=in_order(outputs, description),
@@ -326,7 +326,7 @@ def _read(file: h5py.File) -> Solution:
         "sensitivities": slopes_of(datasets, histories),
         "holding": _held(file, histories, reasons),
     }
-    return solution_of(histories, **evidence)
+    return replace(histories, **evidence)
 
 
 def _held(file: h5py.File, histories: Histories, reasons: Mapping[str, str]) -> dict[str, Holding]:
