@@ -10,7 +10,6 @@ from functools import cached_property
 from ..base.arrays import Array
 from ..base.brief import Brief
 from ..errors import NoComponentError, check_known
-from .pieces import Rows
 from .section_laws import SectionLaw
 from .vector_sizes import size_of
 
@@ -174,8 +173,4 @@ class Section:
 
     def _grid(self, force: str) -> Array:
         check_known("section force", [force], self.law.table.forces)
-        return self.law.on_grid(force, self._basis)
-
-    @cached_property
-    def _basis(self) -> Rows:
-        return self.law.basis(self.xi)
+        return self.law.on_grid(force, self.xi)

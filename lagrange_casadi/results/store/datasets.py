@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import cached_property
 
 import h5py
 import numpy as np
@@ -16,7 +15,6 @@ from ...base.quantities import Output
 from ...engine.instants.beyond_equilibrium import held_outputs
 from ..derivatives import derivatives
 from ..histories import Histories
-from ..pieces import Rows
 from ..section_laws import SectionLaw
 from ..solution import Solution
 from .dataset_words import place_of, say, unlike, without_scale
@@ -57,11 +55,7 @@ class Grid:
         return self.law.coefficients["n0"].size, self.xi.size
 
     def __getitem__(self, rows: slice) -> Array:
-        return self.law.during(rows).on_grid(self.force, self._basis)
-
-    @cached_property
-    def _basis(self) -> Rows:
-        return self.law.basis(self.xi)
+        return self.law.during(rows).on_grid(self.force, self.xi)
 
 
 @dataclass(frozen=True, eq=False)
