@@ -259,17 +259,11 @@ def _reaction_sizes(solution: Histories, joint: str) -> tuple[Array, Array]:
             f"the reaction of joint '{joint}' is statically indeterminate, so its strength is not"
             " evaluated"
         )
-    if solution.description.space:
-        # In space reactions are given on the joint's own axes too, of which the first is the one it
-        # turns about.
-        nothing = np.zeros_like(solution.t)
-        u, v, w = (
-            solution.outputs.get(Output("reaction", joint, f"f{axis}"), nothing) for axis in "uvw"
-        )
-        across, along = np.hypot(v, w), np.abs(u)
-    else:
-        found = solution.reaction(joint)
-        across, along = np.hypot(found.fx, found.fy), np.zeros_like(found.fx)
+    # In space reactions are given on the joint's own axes too, of which the first is the one it
+    # turns about; in the plane that is z, along which there is no force.
+    axes, nothing = "uvw" if solution.description.space else "zxy", np.zeros_like(solution.t)
+    u, v, w = (solution.outputs.get(Output("reaction", joint, f"f{x}"), nothing) for x in axes)
+    across, along = np.hypot(v, w), np.abs(u)
     if not (counts := counted(np.stack([across, along]))).any():
         raise DeclarationError(
             f"joint '{joint}': friction is at rest at all instants, so its strength is"

@@ -27,13 +27,10 @@ class StressCycle(NamedTuple):
 
 def reversals(history: Array) -> Array:
     """The indices at which a history turns, its ends among them; of equal neighbours the first."""
-    moved = np.flatnonzero(np.diff(history) != 0.0)
-    if not moved.size:
-        return np.zeros(1, int)
-    kept = np.append(0, moved + 1)
+    kept = np.append(0, np.flatnonzero(np.diff(history) != 0.0) + 1)
     rising = np.diff(history[kept]) > 0.0
     turning_points = np.flatnonzero(rising[1:] != rising[:-1]) + 1
-    return np.concatenate([kept[:1], kept[turning_points], kept[-1:]])
+    return np.unique([kept[0], *kept[turning_points], kept[-1]])
 
 
 @public
