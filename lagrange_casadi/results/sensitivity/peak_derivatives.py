@@ -80,9 +80,6 @@ class PeakKind(enum.IntEnum):
     """The base or the tip of the link; in time the quantity is stationary there."""
 
 
-_SMOOTH, _END, _SWITCH, _UNKNOWN, _LINK_END = map(int, PeakKind)
-
-
 class PeakSlopes(NamedTuple):
     """Derivatives of q peaks by all parameters, (q, parameters), and the kind of each one's place,
     (q,).
@@ -161,17 +158,17 @@ class MovingPeaks:
             here, lacking, z, _ = self._found(chosen, (value, times, xi), going | nothing)
         steep = (np.abs(here[:, 0]) * self.step > _STEEP * np.abs(value)) & ~(going | nothing)
         at_end = (xi <= SAME_PLACE) | (xi >= 1.0 - SAME_PLACE)
-        kinds = np.where(at_end, _LINK_END, _SMOOTH).astype(np.int8)
-        kinds[going] = _END
+        kinds = np.where(at_end, PeakKind.LINK_END, PeakKind.SMOOTH).astype(np.int8)
+        kinds[going] = PeakKind.END
         moved, switch = np.zeros((t.size, self.p.size)), np.full(t.size, -1, np.intc)
         moved[at_last], moved[at_first] = self.ends.slopes[::-1]
         if steep.any():
             moved[steep], switch[steep] = self._switching(t[steep], z[steep])
-            kinds[steep] = _SWITCH
+            kinds[steep] = PeakKind.SWITCH
             unknown |= steep & np.isnan(moved).any(axis=1)
             going |= steep
         total = here[:, 2:] + np.where(going[:, None], here[:, :1] * moved, lacking)
-        total[unknown], kinds[unknown] = np.nan, _UNKNOWN
+        total[unknown], kinds[unknown] = np.nan, PeakKind.UNKNOWN
         return PeakSlopes(total, kinds, moved, switch, times)
 
     def _found(
@@ -317,7 +314,7 @@ class MovingPeaks:
         if not sound.any() or not self.p.size:
             return np.full((t.size, self.p.size, self.p.size), np.nan)
         first, last = self.instants[[0, -1]]
-        smooth = np.isin(first_order.kinds, (_SMOOTH, _LINK_END))
+        smooth = np.isin(first_order.kinds, (PeakKind.SMOOTH, PeakKind.LINK_END))
         inside = (xi > SAME_PLACE) & (xi < 1.0 - SAME_PLACE)
         free_t, free_xi = smooth & (self.step > 0.0) & ~nothing, inside & ~nothing
         # The search knows a place to the root of its rounding: one step of Newton's method leads
@@ -361,7 +358,7 @@ class MovingPeaks:
         """
         first, last = self.instants[[0, -1]]
         found = np.zeros((first_order.t.size, self.p.size, self.p.size))
-        at_end = first_order.kinds == _END
+        at_end = first_order.kinds == PeakKind.END
         sooner = first_order.t[at_end] - first <= last - first_order.t[at_end]
         found[at_end] = np.where(sooner[:, None, None], *self.ends.bends)
         some = np.flatnonzero(first_order.switch >= 0)

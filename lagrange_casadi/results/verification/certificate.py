@@ -149,7 +149,6 @@ def reported_of(histories: Histories, phases: Mapping[Output, Array]) -> Reporte
         laws={link: replace(law, slack=max(_EDGE, law.slack)) for link, law in laws.items()},
         lines="xyz" if description.space else "xy",
         turns="xyz" if description.space else "z",
-        two_force_links=description.bars,
         unmeasured=frozenset(description.unmeasured),
         precision=precision_of(histories),
     )

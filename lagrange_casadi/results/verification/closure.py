@@ -108,7 +108,7 @@ def _of_poses(placed: Placed) -> Iterator[Array]:
         yield off * declared.size
         yield most(resolve(axes, axes) - reported.ground) * declared.size
         yield size(cross(x, y) - z) * declared.size
-        if name in reported.two_force_links and name in declared.beside:
+        if name in declared.bars and name in declared.beside:
             beside = reported.straight(declared.beside[name])
             yield np.where(dot(beside, y) >= 0.0, np.abs(dot(beside, z)), 1.0) * declared.size
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -61,9 +61,8 @@ class Reported:
 
     ``phases`` are angles up to whole turns that are known more closely than they are reported.
     ``laws`` are the laws of links with sections. There are places and forces along ``lines``, and
-    turns and couples about ``turns``: "xyz", in a plane "xy" and "z". ``two_force_links`` are links
-    whose spin about their own axis is taken to be none. ``unmeasured`` are coordinates that are not
-    reported, or not used.
+    turns and couples about ``turns``: "xyz", in a plane "xy" and "z". ``unmeasured`` are
+    coordinates that are not reported, or not used.
     """
 
     t: Array
@@ -72,7 +71,6 @@ class Reported:
     laws: Mapping[str, SectionLaw]
     lines: str
     turns: str
-    two_force_links: Collection[str]
     unmeasured: frozenset[str]
     precision: Precision
 

@@ -130,7 +130,7 @@ class _Unplaced:
                 points, _, spins = placed.missed(name)
                 found += [points[1:], spins]
         for name in self.names:
-            if name in placed.reported.two_force_links:
+            if name in placed.declared.bars:
                 along = trial[name].axes[0]
                 found.append(np.array([[dot(along, one)] for one in trial[name].spin]))
         for equation in placed.stated.equations:

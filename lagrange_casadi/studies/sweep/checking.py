@@ -12,9 +12,9 @@ import numpy as np
 from ...base.status import Status
 from ...errors import one_line
 from ...model.even_points import points
-from ...results.store.attributes import described
+from ...results.store.attributes import check_attributes, described
 from ...results.store.dataset_words import unlike, unlike_conventions, without_scale
-from ...results.store.untrusted import check_chunks, parsed, reported_as, structured
+from ...results.store.untrusted import check_chunks, reported_as, structured
 from ..checkpoint import Checkpoint
 from .axes import are_described, counted, grouped, size_of
 from .design_blocks import designs_in, slabs
@@ -120,12 +120,7 @@ def _check_asked(file: h5py.File, sweep: Sweep) -> Iterator[str]:
     asked for.
     """
     identity: Mapping[str, Any] = sweep.identity
-    description = sweep.description
-    if (
-        parsed(file.attrs["parameters"], Mapping[str, float], "parameters") != description.values
-        or sweep.case != description.name
-    ):
-        yield "case or parameters: differ from those of the mechanism"
+    yield from check_attributes(file.attrs, sweep.description)
     values = {name: file["grid"][name][()] for name in sweep.parameters}
     if not are_described(identity["grid"], values):
         yield "grid: differs from the plan"
