@@ -103,8 +103,11 @@ class Template(Graphs, Generic[Tree]):
         return _filler(self.content) or (lambda _: self.content)
 
     def each(self, content: Part, p: Array) -> Part:
-        """Return a part of the content with numbers (n,) for parameters ``p`` (n, parameters)."""
-        return _filled(content, self.numbers(p.T).full())
+        """Return a part of the content with numbers (n,) for parameters ``p`` (n, parameters), or
+        with a number for ``p`` (parameters,).
+        """
+        numbers = self.numbers(p.T).full()
+        return _filled(content, numbers if p.ndim > 1 else numbers.ravel().tolist())
 
     def placed(self, content: Part, p: Expression) -> Part:
         """Return a part of the content with expressions of parameters ``p``, and with numbers for

@@ -14,7 +14,7 @@ cell and 1 at its base's end: nothing cancels near the tip. Instants are the las
 from __future__ import annotations
 
 import functools
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -34,13 +34,12 @@ _FEW = 1 << 12
 
 @dataclass(frozen=True, eq=False)
 class Rows:
-    """Functions of a :class:`Basis` at ratios ``u``, a row each, (terms, u...), or of n designs
-    (terms, n, u).
+    """Functions of a :class:`Basis` at ratios ``u``, of forces and of moments: a row each, (terms,
+    u...), or of n designs (terms, n, u).
     """
 
     u: Array
-    force: Functions
-    moment: Functions
+    functions: tuple[Functions, Functions]
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,15 +47,14 @@ class Basis:
     """Functions along links of n designs of which section forces are combined: ordinates (degree +
     1, terms, n, cells) in cells between ``breaks`` (n, cells + 1).
 
-    ``force``: forces by a unit at the tip, by p and l u p, and by powers of each load along the
-    link. ``moment``: moments by a unit at the tip, and by each of ``force``. ``slopes`` are the
-    derivatives of both by x, which are known and no differences. Numbers of one link, not of
-    designs, are ``single``.
+    The first of ``ordinates`` are of forces: by a unit at the tip, by p and l u p, and by powers of
+    each load along the link. The second are of moments: by a unit at the tip, and by each of the
+    first. ``slopes`` are the derivatives of both by x, which are known and no differences. Numbers
+    of one link, not of designs, are ``single``.
     """
 
     breaks: Array
-    force: Array
-    moment: Array
+    ordinates: tuple[Array, Array]
     slopes: tuple[Array, Array]
     single: bool
 
@@ -99,7 +97,8 @@ class Basis:
         rates = np.stack(acts, axis=1) * np.stack(widths)
         force = _integrals(rates)
         bending = l * wide * force
-        return cls(breaks, force, _integrals(bending), (rates, bending), np.ndim(length) == 0)
+        moment = _integrals(bending)
+        return cls(breaks, (force, moment), (rates, bending), np.ndim(length) == 0)
 
     def along(self, ordinates: Array) -> Array:
         """Ordinates (degree + 1, n, cells) with cells before designs, and an axis for instants;
@@ -120,17 +119,18 @@ class Basis:
         cell = (self.breaks[:, None, 1:-1] <= ratios[:, None]).sum(axis=-1)
         base, tip = self.breaks[design, cell], self.breaks[design, cell + 1]
         x = (tip - ratios) / np.where(tip > base, tip - base, 1.0)
-        found = [value(c[:, :, design, cell], x[None, None])[0] for c in (self.force, self.moment)]
+        found = [value(c[:, :, design, cell], x[None, None])[0] for c in self.ordinates]
         if self.single:
             found = [rows.reshape(len(rows), *u.shape) for rows in found]
-        return Rows(u, *map(Functions, found))
+        force, moment = map(Functions, found)
+        return Rows(u, (force, moment))
 
 
 @functools.lru_cache(maxsize=64)
 def _kept(basis: Basis, u: bytes) -> Rows:
     """Functions along a link at few ratios."""
     found = basis.rows(np.frombuffer(u))
-    for functions in (found.force, found.moment):
+    for functions in found.functions:
         functions.rows.setflags(write=False)  # shared by all who ask for them
     return found
 
@@ -240,18 +240,13 @@ class Pieces:
             found.append(c)
         return found
 
-    def extreme(self) -> tuple[Array, Array]:
-        """The ratio at which the force is largest in size, and its value, each (t,)."""
-        u, values = (rows.reshape(-1, rows.shape[-1]) for rows in self._candidates()[:2])
-        return _highest(np.abs(values), u, values)
-
-    def reached(self) -> tuple[Array, Array]:
-        """Ratios at which the force is smallest, largest, and largest in size, and its values: (3,
-        t).
+    def reached(self, sizes: Sequence[Callable[[Array], Array]]) -> tuple[Array, Array]:
+        """Ratios at which each of some ``sizes`` of the force is largest, and its values there:
+        (sizes, t).
         """
         u, values = (rows.reshape(-1, rows.shape[-1]) for rows in self._candidates()[:2])
-        best = [_highest(sizes, u, values) for sizes in (-values, values, np.abs(values))]
-        return np.stack([place for place, _ in best]), np.stack([found for _, found in best])
+        best = [_highest(size(values), u, values) for size in sizes]
+        return np.array([place for place, _ in best]), np.array([found for _, found in best])
 
     def curves(self) -> tuple[Array, Array]:
         """Ratios among which the force is largest in size at every instant, and its values there,

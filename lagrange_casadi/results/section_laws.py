@@ -20,6 +20,7 @@ from ..base.brief import Brief
 from ..base.quantities import Output, parts_along
 from ..base.tables import PLANE, SPACE, Table
 from ..engine.instants import grids
+from ..engine.model_data import ModelData
 from ..engine.section_function import SIDES, Side, edge
 from ..model.limits import END
 from ..model.link_density import NumericDensity
@@ -178,23 +179,22 @@ class SectionLaw(Brief):
         """The ratio at which a force is largest in size, and the force there, at every instant,
         both of shape (t,).
         """
-        return self._by_blocks(force, Pieces.extreme)
+        places, values = self.reached(force, [np.abs])
+        return places[0], values[0]
 
-    def reached(self, force: str) -> tuple[Array, Array]:
-        """Places along a link at which a force is smallest, largest, and largest in size, and its
-        values: (3, t).
-        """
-        return self._by_blocks(force, Pieces.reached)
-
-    def _by_blocks(
-        self, force: str, sought: Callable[[Pieces], tuple[Array, Array]]
+    def reached(
+        self,
+        force: str,
+        sizes: Sequence[Callable[[Array], Array]] = (np.negative, np.positive, np.abs),
     ) -> tuple[Array, Array]:
-        """Places and values (..., t) that are ``sought`` of a force over few instants after
-        another, so that they stay at hand.
+        """Places along a link at which a force is smallest, largest, and largest in size, or at
+        which other ``sizes`` of it are largest, and its values: (3, t).
+
+        They are sought over few instants after another, so that these stay at hand.
         """
         height = max(1, _BLOCK // (len(self.functions.breaks[0]) + len(self.loads)))
         starts = range(0, self.coefficients["n0"].size, height)
-        found = [sought(self.during(slice(i, i + height)).pieces(force)) for i in starts]
+        found = [self.during(slice(i, i + height)).pieces(force).reached(sizes) for i in starts]
         places, values = (np.concatenate(rows, axis=-1) for rows in zip(*found, strict=True))
         return places, values
 
@@ -215,11 +215,11 @@ class SectionLaw(Brief):
         cells = basis.breaks.shape[1] - 1, *first.column.shape
         if not others:
             return Component(first.column, np.zeros((1, *cells)), np.zeros((1, *cells)), steps)
-        degree = len(basis.moment if first.moment else basis.force) - 1
+        degree = len(basis.ordinates[first.moment]) - 1
         ordinates, slope = np.zeros((degree + 1, *cells)), np.zeros((degree, *cells))
         for term in others:
-            rows = basis.moment if term.moment else basis.force
-            ordinates += raised(basis.along(rows[:, term.row]), degree) * term.column
+            rows = basis.ordinates[term.moment][:, term.row]
+            ordinates += raised(basis.along(rows), degree) * term.column
             rates = basis.slopes[term.moment][:, term.row - 1]
             slope += raised(basis.along(rates), degree - 1) * term.column
         return Component(first.column, ordinates, slope, steps)
@@ -232,7 +232,7 @@ class SectionLaw(Brief):
         """Terms of a force, or of all that it is the size of, one after another."""
         if force in self._kept:
             columns, moment = self._kept[force]
-            return columns, rows.moment if moment else rows.force
+            return columns, rows.functions[moment]
         parts = self._parts(force)
         terms = [self._terms(part) for part in parts]
         columns = grids.Columns(
@@ -246,7 +246,7 @@ class SectionLaw(Brief):
         own = {id(values) for values in self.coefficients.values()}
         if all(id(row) in own for row in columns.arrays):
             self._kept[force] = columns, moment
-        return columns, rows.moment if moment else rows.force
+        return columns, rows.functions[moment]
 
     @cached_property
     def _kept(self) -> dict[str, tuple[grids.Columns, bool]]:
@@ -304,8 +304,7 @@ class Term:
 
     def of(self, rows: Rows) -> Array:
         """The function at ratios."""
-        found: Array = (rows.moment if self.moment else rows.force).rows[self.row]
-        return found
+        return np.asarray(rows.functions[self.moment].rows[self.row])
 
 
 def law_of(
@@ -337,6 +336,25 @@ def law_of(
         tuple(distributed_load(name, ends.get(name, {}), of) for name, of in terms.items()),
         END["single" if precision == "single" else "double"],
     )
+
+
+def law_for(
+    data: ModelData,
+    link: str,
+    outputs: Mapping[Output, Array],
+    p: Array,
+    precision: str = "double",
+) -> SectionLaw:
+    """The law of a link by outputs (t,), as of :func:`law_of`, for parameters ``p`` (parameters,).
+
+    Or the laws of n designs (n, parameters): outputs and the laws' members are (n, t), length and
+    density (n, 1).
+    """
+    content = data.content.bodies[link].length_and_density
+    length, density = data.template.each(content, p)
+    if p.ndim > 1:
+        length = np.zeros((len(p), 1)) + np.reshape(length, (-1, 1))
+    return law_of(link, outputs, length, density, precision)
 
 
 def made_of(outputs: Iterable[Output], link: str, force: str, table: Table = PLANE) -> list[Output]:

@@ -6,7 +6,6 @@ import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -25,7 +24,7 @@ from ...model.beams.beam import Beam
 from ...model.beams.properties import Properties
 from ..histories import Histories
 from ..pieces import Pieces
-from ..section_laws import SectionLaw, law_of
+from ..section_laws import SectionLaw, law_for
 from ..statistics import counted
 
 _DEGREE, _NARROW = 12, 2.0**-12
@@ -205,13 +204,10 @@ class Member(Brief):
         """A link of n designs with parameters ``p`` (n, parameters), by ``outputs``, each (n, t),
         among which are those that its law is made of: as accurate as fatigue needs.
         """
-        body = data.template.each(data.content.bodies[link], p)
-        assert body.beam is not None
-        size, density = body.length_and_density
-        length: Any = np.zeros((len(p), 1)) + np.reshape(size, (-1, 1))
-        law = law_of(link, outputs, length, density)
+        beam = data.template.each(data.content.beams[link], p)
         t = np.arange(next(iter(outputs.values())).shape[-1], dtype=float)
-        return cls(link, body.beam, law, t, np.zeros(0), data.space, CLOSE)
+        law = law_for(data, link, outputs, p)
+        return cls(link, beam, law, t, np.zeros(0), data.space, CLOSE)
 
     @cached_property
     def counts(self) -> npt.NDArray[np.bool_]:
@@ -293,7 +289,7 @@ class Member(Brief):
     @property
     def degree(self) -> int:
         """The degree along the link of its section forces, between two marks."""
-        return len(self.law.functions.moment) - 1
+        return len(self.law.functions.ordinates[1]) - 1
 
     @cached_property
     def edges(self) -> Array:

@@ -9,18 +9,16 @@ from __future__ import annotations
 
 import json
 import zlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
-import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
 from ...base.arrays import Array, Json, Operand
 from ...base.quantities import Output, parts_along
-from ...base.scalars import column
 from ...base.status import Status
 from ...base.tables import table_of
 from ...base.vocabulary import Keep
@@ -31,7 +29,7 @@ from ...errors import DeclarationError
 from ...model.even_points import EvenPoints, points
 from ...model.times import Timing
 from ...model.wanted_names import SENSITIVITY
-from ...results.section_laws import SectionLaw, law_of
+from ...results.section_laws import law_for
 from ...results.statistics import of_counted
 from ..designs.energy import DriveEnergy
 from ..designs.engine import DesignEngine
@@ -354,7 +352,7 @@ class _Batch:
         assert series is not None
         largest, whole = [], []
         for link in harvest._links:
-            law = _law_of_designs(harvest.data, link, engine.provenance.precision)
+            law = partial(law_for, harvest.data, link, precision=engine.provenance.precision)
             numbers = {Output.of(name): k for k, name in enumerate(engine.columns)}
             rows = parts_along(numbers, link)
             with np.errstate(all="ignore"):  # of designs that have no result
@@ -375,24 +373,3 @@ class _Batch:
     def _valid(self) -> npt.NDArray[np.bool_]:
         """True for designs with a result."""
         return np.asarray(self.outcome.status == Status.OK)
-
-
-def _law_of_designs(
-    data: ModelData, link: str, precision: str
-) -> Callable[[Mapping[Output, Array], Array], SectionLaw]:
-    """``law(members, p)`` of a link, from its coefficients and loads, (t,), evaluated in a
-    precision, of a design (parameters,): its length and density are derived once for all designs.
-
-    Or the laws of n designs: members are (n, t), length and density (n, 1).
-    """
-    size, whole = data.mass_properties(link, data.symbols)
-    every = column([size, *(c for cell in whole.cells for c in cell)])
-    numbers = ca.Function("matter", [data.symbols], [ca.densify(every)])
-
-    def law(members: Mapping[Output, Array], p: Array) -> SectionLaw:
-        found: Any = numbers(p.T).full()
-        length, *rest = found[..., None] if p.ndim > 1 else found.ravel().tolist()
-        cells = iter(rest)
-        return law_of(link, members, length, whole.at(lambda _: next(cells), length), precision)
-
-    return law

@@ -30,14 +30,13 @@ def section_entries(
     xi = np.linspace(0.0, 1.0, RATIOS)
     for link in solution.links_with_sections:
         law, table = solution.section(link).law, solution.table
-        basis = law.basis(xi)
 
         def added(output: Output, chosen: npt.NDArray[np.intp] = chosen) -> int:
             return arrays.add(solution.outputs[output][chosen], str(output))
 
         columns = {name: added(Output("law", link, name)) for name in law.coefficients}
         of_force, of_moment = (
-            [arrays.add(row) for row in rows] for rows in (basis.force.rows, basis.moment.rows)
+            [arrays.add(row) for row in of.rows] for of in law.basis(xi).functions
         )
         loads = [
             {"name": load.name}
