@@ -7,6 +7,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy as np
+
 from ..base.arrays import Array
 from ..base.brief import Brief
 from ..errors import NoComponentError, check_known
@@ -168,8 +170,7 @@ class Section:
 
     def array(self, force: str) -> Array:
         """A force by its name (t, xi)."""
-        found: Array = getattr(self, force)
-        return found
+        return np.asarray(getattr(self, force))
 
     def _grid(self, force: str) -> Array:
         check_known("section force", [force], self.law.table.forces)

@@ -238,7 +238,8 @@ def trade(
         nodes = (
             ""
             if evaluated.cycle is None
-            else f"{evaluated.cycle.nodes} nodes, {evaluated.cycle.nbytes / 1000:.3g} kB"
+            else f"{evaluated.cycle.nodes} nodes,"
+            f" {evaluated.cycle.coefficients.nbytes / 1000:.3g} kB"
         )
         counts = evaluated.stages.instructions(method.newton or 1)
         found[method] = (counts, *truth.errors(program, evaluated), nodes)

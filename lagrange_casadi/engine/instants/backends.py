@@ -264,8 +264,7 @@ class Interpreter:
 
     def columns(self, t: Array, p: Array, z: Array) -> Array:
         """Columns (columns, t) at times, where iterated coordinates are ``z``."""
-        found: Array = self.stages.instant(*self.stages.drive(t[None], p), z, p).full()
-        return found
+        return np.asarray(self.stages.instant(*self.stages.drive(t[None], p), z, p).full())
 
     def close(self, t: Array, p: Array, z: Array) -> None:
         """Close iterated loops at times (t,), each from its own column of ``z`` (k, t), which is

@@ -107,11 +107,6 @@ class CycleTable:
     errors: Array
 
     @property
-    def period(self) -> float:
-        """The period [rad]."""
-        return math.tau * self.turns
-
-    @property
     def nodes(self) -> int:
         """Number of tabulated angles of a period."""
         return int(self.coefficients.shape[0]) - _MORE
@@ -120,11 +115,6 @@ class CycleTable:
     def error(self) -> float:
         """The largest of ``errors``."""
         return float(self.errors.max(initial=0.0))
-
-    @property
-    def nbytes(self) -> int:
-        """The size of the coefficients."""
-        return int(self.coefficients.nbytes)
 
     @property
     def dtype(self) -> np.dtype[np.generic]:
@@ -136,7 +126,8 @@ class CycleTable:
         period.
         """
         table = replace(self, coefficients=self.coefficients.astype(np.float32))
-        angle = (self.period / (2 * self.nodes) * np.arange(2 * self.nodes)).astype(np.float32)
+        period, halves = math.tau * self.turns, 2 * self.nodes
+        angle = (period / halves * np.arange(halves)).astype(np.float32)
         worst = np.zeros(len(self.columns))
         for signs in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
             rate, acceleration = (

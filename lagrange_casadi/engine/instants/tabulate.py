@@ -173,9 +173,8 @@ def _reach(terms: Array, rate: float, acceleration: float) -> Array:
     rate and acceleration.
     """
     constant, by_rate, by_square, by_acceleration = terms
-    found: Array = (
+    return np.asarray(
         np.abs(constant + rate**2 * by_square)
         + rate * np.abs(by_rate)
         + acceleration * np.abs(by_acceleration)
     )
-    return found

@@ -63,15 +63,14 @@ def attributes_to_write(solution: Solution, figures: str, grids: Sequence[str]) 
     found["versions"] = json.dumps(dict(provenance.versions))
     stated = {key: getattr(provenance, name) for key, name in _PROVENANCE.items()}
     found |= stated | {"figures": figures}
-    fields, _ = read_attributes(found)
+    fields = read_attributes(found)
     for fault in check_attributes(found, fields["description"]):
         raise ValueError(fault)
     return found
 
 
-def read_attributes(attributes: Attributes) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Fields of :class:`.Histories`, and other fields of a :class:`Solution`, that attributes of
-    its file state; ``holding`` are reasons.
+def read_attributes(attributes: Attributes) -> dict[str, Any]:
+    """Fields of a :class:`Solution` that attributes of its file state; ``holding`` are reasons.
 
     Raises ``ValueError``, ``TypeError`` or ``KeyError`` for attributes that are not written.
     """
@@ -89,7 +88,6 @@ def read_attributes(attributes: Attributes) -> tuple[dict[str, Any], dict[str, A
         "description": description,
         "provenance": Provenance(**words, versions=stated("versions", Mapping[str, str])),
         "indeterminate": tuple(map(Output.of, stated("undetermined", _NAMES))),
-    }, {
         "errors": stated("error_estimates", Mapping[str, float], "{}"),
         "tolerance": number(attributes, "certificate_tolerance"),
         "elasticity": Elasticity(tuple(map(Output.of, completed)), reasons),

@@ -285,8 +285,8 @@ def _check_drive_axis(solution: Solution) -> Iterator[str]:
 
 def _read(file: h5py.File) -> Solution:
     check_links(file)
-    stated, evidence = read_attributes(file.attrs)
-    description, errors, reasons = stated["description"], evidence["errors"], evidence["holding"]
+    stated = read_attributes(file.attrs)
+    description, errors, reasons = stated["description"], stated["errors"], stated.pop("holding")
     t, xi = (numbers(file[axis]) for axis in AXES)
     if t.ndim != 1 or xi.ndim != 1 or not t.size or not xi.size:
         raise ValueError(f"t and xi have the shapes {t.shape} and {xi.shape}")
@@ -321,12 +321,12 @@ def _read(file: h5py.File) -> Solution:
         if not whole or len(law.density.breaks) != len(law.density.cells) + 1:
             raise ValueError(f"the law or the density of '{link}' is incomplete")
     residuals = file.get("certificate", {})
-    evidence |= {
-        "certificate": {name: numbers(residuals[name], t.shape) for name in residuals},
-        "sensitivities": slopes_of(datasets, histories),
-        "holding": _held(file, histories, reasons),
-    }
-    return replace(histories, **evidence)
+    return replace(
+        histories,
+        certificate={name: numbers(residuals[name], t.shape) for name in residuals},
+        sensitivities=slopes_of(datasets, histories),
+        holding=_held(file, histories, reasons),
+    )
 
 
 def _held(file: h5py.File, histories: Histories, reasons: Mapping[str, str]) -> dict[str, Holding]:

@@ -49,7 +49,7 @@ def reference(
 
     with mp.workdps(DIGITS):
         # A turn is meant, not the double that is nearest to it.
-        plain = arithmetic()
+        plain = Arithmetic(mp.mpf, _operations(mp))
         known = replace(
             plain, constant=lambda value: 2 * mp.pi if value == math.tau else plain.constant(value)
         )
@@ -71,13 +71,6 @@ def reference(
             (out,) = interpret(program.instant, [[time], *driven, guess, values], following(known))
             rows.append(out)
     return rows
-
-
-def arithmetic() -> Arithmetic:
-    """Mpmath's numbers of the digits that are set when they are computed."""
-    from mpmath import mp
-
-    return Arithmetic(mp.mpf, _operations(mp))
 
 
 @functools.cache
