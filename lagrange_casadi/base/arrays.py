@@ -5,6 +5,7 @@ time, cut.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import fields, is_dataclass, replace
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -33,8 +34,8 @@ Instants: TypeAlias = slice | list[int] | npt.NDArray[np.generic]
 
 
 def during(value: Operand, instants: Instants) -> Operand:
-    """A value at some of the instants: all arrays over time that it is, or that its mappings and
-    rows hold, or that it cuts by a method of this name. Anything else stays.
+    """A value at some of the instants: all arrays over time that it is, or that mappings, rows and
+    dataclasses hold, or that it cuts by a method of this name. Anything else stays.
     """
     if isinstance(value, np.ndarray):
         return value[instants]
@@ -42,7 +43,12 @@ def during(value: Operand, instants: Instants) -> Operand:
         return {key: during(one, instants) for key, one in value.items()}
     if isinstance(value, tuple | list):
         return tuple(during(one, instants) for one in value)
-    return value.during(instants) if hasattr(value, "during") else value
+    if hasattr(value, "during"):
+        return value.during(instants)
+    if is_dataclass(value):
+        held = {entry.name: getattr(value, entry.name) for entry in fields(value)}
+        return replace(value, **during(held, instants))  # type: ignore[type-var]
+    return value
 
 
 def every(size: int, most: int) -> slice:

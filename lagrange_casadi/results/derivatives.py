@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..base.arrays import Array, Instants, during
+from ..base.arrays import Array
 from ..base.quantities import Output, quotient
 from ..errors import check_known
 from ..model.wanted_names import SENSITIVITY
@@ -58,10 +58,6 @@ class Derivatives:
                         f"the derivative of {output} by {name} is not finite at {many} of {len(x)}"
                         " instants"
                     )
-
-    def during(self, instants: Instants) -> Derivatives:
-        """Derivatives at some of the instants."""
-        return Derivatives(during(self.by, instants))
 
 
 @dataclass(frozen=True, eq=False)

@@ -82,8 +82,8 @@ class Histories:
     _known_as: ClassVar[str] = "a Solution"
     """Words of messages: users have no histories without evidence."""
 
-    _over_time: ClassVar[tuple[str, ...]] = ("outputs",)
-    """The fields that have a value at every instant, beside ``t`` and ``over``."""
+    _over_time: ClassVar[tuple[str, ...]] = ("t", "over", "outputs")
+    """The fields that have a value at every instant."""
 
     @cached_property
     def table(self) -> Table:
@@ -280,9 +280,8 @@ class Histories:
                 "during: expected a slice, or True or False for each instant, got"
                 f" {shown(instants)}"
             )
-        over = self.over and replace(self.over, values=self.over.values[instants])
-        cut = during({name: getattr(self, name) for name in self._over_time}, instants)
-        return replace(self, t=self.t[instants], over=over, **cut)
+        cut = {name: getattr(self, name) for name in self._over_time}
+        return replace(self, **during(cut, instants))
 
     def determined(self, name: str | Output) -> bool:
         """Return whether equilibrium determines a quantity, at all instants.

@@ -147,10 +147,11 @@ def _tried(held: HeldEfforts, inputs: list[ca.DM]) -> tuple[Array, _Reasons]:
     first = columns(signs)
     checks = {(c.kind, str(c.part)): k for k, c in enumerate(held.columns) if isinstance(c, Check)}
     rests = {name: first[k] > 0.5 for (kind, name), k in checks.items() if kind == "rest"}
-    why: _Reasons = []
-    for name, rest in rests.items():
-        if name in held.every_way:
-            why.append((rest, f"friction '{name}' may hold its joint in more than one direction"))
+    why: _Reasons = [
+        (rest, f"friction '{name}' may hold its joint in more than one direction")
+        for name, rest in rests.items()
+        if name in held.every_way
+    ]
     resting = [held.frictions.index(name) for name, rest in rests.items() if rest.any()]
     if len(resting) > _MOST:
         return first[None], [

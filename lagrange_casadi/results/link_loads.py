@@ -7,29 +7,15 @@ See :mod:`.engine.section_function`.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from typing import TypeVar
+from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.arrays import Array, Instants, during
-
-_AnyLoad = TypeVar("_AnyLoad", bound="_Load")
+from ..base.arrays import Array
 
 
 @dataclass(frozen=True, eq=False)
-class _Load:
-    """Load on a link, by its name."""
-
-    name: str
-
-    def during(self: _AnyLoad, instants: Instants) -> _AnyLoad:
-        """Load at some of the instants."""
-        return replace(self, **during(vars(self), instants))
-
-
-@dataclass(frozen=True, eq=False)
-class DistributedLoad(_Load):
+class DistributedLoad:
     """A load along a link up to ``end``, a ratio xi/l, on ``width`` of the link, both (t,) and the
     same at all instants.
 
@@ -38,6 +24,7 @@ class DistributedLoad(_Load):
     slices does is one too, of couples ``cx``, ``cy``, ``cz`` [N].
     """
 
+    name: str
     width: Array
     end: Array
     terms: Mapping[str, tuple[Array, ...]]
@@ -71,7 +58,7 @@ def distributed_load(
 
 
 @dataclass(frozen=True, eq=False)
-class PointLoad(_Load):
+class PointLoad:
     """Action on a link at a load point, whose ``station`` is the ratio xi/l, (t,): it moves where
     something slides along the link.
 
@@ -80,5 +67,6 @@ class PointLoad(_Load):
     ``mx``, ``my``, ``mz``.
     """
 
+    name: str
     station: Array
     acts: Mapping[str, Array]

@@ -198,11 +198,6 @@ class SectionLaw(Brief):
         places, values = (np.concatenate(rows, axis=-1) for rows in zip(*found, strict=True))
         return places, values
 
-    def curves(self, force: str) -> tuple[Array, Array]:
-        """Ratios and values (t, k) of :meth:`.Pieces.curves`."""
-        places, values = self.pieces(force).curves()
-        return places.T, values.T
-
     def pieces(self, force: str) -> Pieces:
         """A force as polynomials along the link."""
         components = [self._component(part) for part in self._parts(force)]

@@ -50,10 +50,9 @@ class SectionForce:
     density: NumericDensity
 
     def curves(self, columns: Array) -> tuple[Array, Array]:
-        """Ratios and values, each (curves, t): see :meth:`.SectionLaw.curves`."""
+        """Ratios and values, each (curves, t): see :meth:`.Pieces.curves`."""
         outputs = {output: columns[k] for output, k in self.columns.items()}
-        places, values = law_of(self.link, outputs, self.length, self.density).curves(self.force)
-        return places.T, values.T
+        return law_of(self.link, outputs, self.length, self.density).pieces(self.force).curves()
 
 
 Quantity: TypeAlias = "tuple[int, ...] | Along"

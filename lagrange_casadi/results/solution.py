@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, ClassVar, Literal, cast
+from typing import TYPE_CHECKING, Literal, cast
 
 import numpy as np
 
@@ -49,7 +49,7 @@ class Solution(Histories):
     sensitivities: Derivatives = field(default_factory=Derivatives)
     holding: Mapping[str, Holding] = field(default_factory=dict)
 
-    _over_time: ClassVar[tuple[str, ...]] = ("outputs", "certificate", "sensitivities", "holding")
+    _over_time = (*Histories._over_time, "certificate", "sensitivities", "holding")
 
     @property
     def failed(self) -> dict[str, float]:

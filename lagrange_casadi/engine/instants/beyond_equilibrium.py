@@ -5,11 +5,11 @@ friction helps to hold the mechanism.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from ...base.arrays import Array, Instants
+from ...base.arrays import Array
 from ...base.quantities import Output
 
 
@@ -63,10 +63,6 @@ class Holding:
     def worst(self) -> Array:
         """The one of both that is larger in size, (t,)."""
         return np.where(np.abs(self.least) > np.abs(self.largest), self.least, self.largest)
-
-    def during(self, instants: Instants) -> Holding:
-        """Ranges at some of the instants."""
-        return replace(self, least=self.least[instants], largest=self.largest[instants])
 
 
 def held_outputs(held: Mapping[str, Holding]) -> dict[Output, Array]:

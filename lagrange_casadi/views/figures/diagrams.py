@@ -77,10 +77,10 @@ def marks(law: SectionLaw, force: str) -> list[Mark]:
     """Values of a section force at the only instant of a law: at both ends, on both sides of what
     acts between them, and where it turns.
     """
-    places, _ = law.curves(force)
+    places, _ = law.pieces(force).curves()
     found: list[Mark] = []
     # Nothing is to be seen where the density alone changes.
-    for xi in sorted({round(float(x), 12) for x in places[0]} - {*law.density.breaks[1:-1]}):
+    for xi in sorted({round(float(x), 12) for x in places[:, 0]} - {*law.density.breaks[1:-1]}):
         base, tip = (float(law.at(force, np.array([[xi]]), side)[0, 0]) for side in _SIDES)
         found.append(Mark(xi, "base", base))
         if abs(tip - base) > _SAME * max(abs(base), abs(tip)):

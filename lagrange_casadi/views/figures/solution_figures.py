@@ -259,10 +259,9 @@ def _maps(spec: SectionMaps, solution: Solution, si: bool) -> Figure:
     instants, ratios = (every(size, PIXELS) for size in (solution.t.size, solution.xi.size))
     law, xi = solution.section(spec.link).law.during(instants), solution.xi[ratios]
     places, along = _along(solution)
-    basis = law.basis(xi)
     figure, plots = subplots((8.0 * across, 2.8 * down), down, across, sharex=True)
     for axes, name in zip(plots, names, strict=False):
-        values, peak = law.on_grid(name.member, basis), solution.peak(name)
+        values, peak = law.on_grid(name.member, xi), solution.peak(name)
         nothing = vanishes(solution, name)
         if nothing:
             values, peak = np.zeros_like(values), replace(peak, value=0.0)
