@@ -74,28 +74,26 @@ class SectionLaw(Brief):
         """
         return self.functions.at(np.asarray(xi, dtype=float))
 
-    def on_grid(self, force: str, xi: Array | Rows) -> Array:
+    def on_grid(self, force: str, xi: Array) -> Array:
         """A force at every instant and every ratio ``xi``, of shape (t, xi); at a station, on its
         tip side.
 
-        Where several forces are wanted, a :meth:`basis` of the ratios serves all. One thread a core
-        shares a grid that is worth it; the bits do not depend on it. Raises :class:`SizeError`
-        where there is less memory than that.
+        One thread a core shares a grid that is worth it; the bits do not depend on it. Raises
+        :class:`SizeError` where there is less memory than that.
         """
-        size = (self.coefficients["n0"].size, xi.u.size if isinstance(xi, Rows) else xi.size)
-        out = grids.empty(f"a grid of {force}", size)
+        out = grids.empty(f"a grid of {force}", (self.coefficients["n0"].size, xi.size))
         self.on_grids((force,), xi, out[None])
         return out
 
     def on_grids(
         self,
         forces: Sequence[str],
-        xi: Array | Rows,
+        xi: Array,
         out: Array,
         threads: int | None = None,
     ) -> None:
         """Fill ``out`` (forces, t, xi) with the grids that :meth:`on_grid` gives, by one call."""
-        rows = xi if isinstance(xi, Rows) else self.basis(xi)
+        rows = self.basis(xi)
         grids.fill([self._sum(force, rows) for force in forces], rows.u, out, threads, self.slack)
 
     def largest(self, force: str, rows: Rows) -> Array:

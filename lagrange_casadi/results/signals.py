@@ -100,8 +100,14 @@ class Signals:
             one if isinstance(one, tuple) else one.columns.values() for one in self.quantities
         ]
         sharpness = self.sharpness
-        watches, knots, depends = sharpness.watches, sharpness.knots, sharpness.dependence(columns)
-        curves = Curves(quantities, tuple(units), watches, depends, knots, tuple(scales))
+        curves = Curves(
+            quantities,
+            tuple(units),
+            sharpness.watches,
+            sharpness.dependence(columns),
+            sharpness.knots,
+            tuple(scales),
+        )
         hiding = bent(self.interpreter.program, sharpness, self.t, self.p)
         with np.errstate(all="ignore"):
             return search.peaks(self, curves, self.t, samples, hiding, listed)

@@ -14,7 +14,7 @@ from ...model.description import Description
 from ..solution import Solution
 from .dataset_words import conventions
 from .specs import Spec, parse_specs
-from .untrusted import number, parsed, read_json, shown, structured
+from .untrusted import number, parsed, shown, structured
 
 Attributes: TypeAlias = Mapping[str, Any]
 """Texts and numbers of a file, by name."""
@@ -79,7 +79,7 @@ def read_attributes(attributes: Attributes) -> dict[str, Any]:
         text = attributes[key] if otherwise is None else attributes.get(key, otherwise)
         return parsed(text, kind, key)
 
-    description = described(read_json(attributes["mechanism"], "mechanism"))
+    description: Description = stated("mechanism", Description)
     description.check_places()
     words = {name: shown(attributes[key]) for key, name in _PROVENANCE.items()}
     completed, reasons = (stated(key, _NAMES, "[]") for key in ("by_elasticity", "open_because"))

@@ -48,15 +48,11 @@ def parsed(text: str | bytes, kind: Any, what: str = "JSON") -> Any:
 
     Raises ``ValueError`` for what is not JSON, and as :func:`structured` does.
     """
-    return structured(kind, read_json(text, what), what)
-
-
-def read_json(text: str | bytes, what: str) -> Any:
-    """JSON of any form. Raises ``ValueError`` for what is not JSON."""
     try:
-        return json.loads(text)
+        value = json.loads(text)
     except (ValueError, TypeError, RecursionError):
         raise ValueError(f"{what} is not JSON") from None
+    return structured(kind, value, what)
 
 
 def structured(kind: Any, value: Any, place: str) -> Any:

@@ -15,7 +15,6 @@ from ...results.store.untrusted import (
     check_dataset,
     check_links,
     parsed,
-    read_json,
     shown,
     structured,
 )
@@ -44,7 +43,7 @@ def contents(file: h5py.File) -> dict[str, Any]:
     """
     check_links(file)
     attributes = file.attrs
-    identity: Any = {key: read_json(attributes[key], key) for key in WORDS} | {
+    identity: Any = {key: parsed(attributes[key], Any, key) for key in WORDS} | {
         key: _plain(attributes[key]) for key in _NAMED
     }
     structured(Identity, identity, "attributes")
