@@ -26,8 +26,9 @@ _SHARE = 1 / 32
 """Fraction of the distance by which the coordinate changes in a step."""
 
 _FIRST, _LEAST = 1e-12, 1e-20
-"""First step from where a law rests with neither rate nor acceleration, which tell no time of its
-own: a fraction of the time there, and seconds at the least. Steps double until the law moves.
+"""First step from where a law rests with neither rate nor acceleration, from which no time of its
+own follows: a fraction of the time there, and seconds at the least. Steps double until the law
+moves.
 """
 
 _STEPS = 5000
