@@ -43,8 +43,14 @@ def declaration(scene: Scene, wanted: Wanted) -> str | None:
         expressions.append(ca.vec(ca.densify(leaf)))
         return {"expression": leaf.shape}
 
+    # What was asked for has expressions among its keys, which differ from process to process.
+    asked = {
+        "measures": [*mechanism.measures.asked.values()],
+        "asked": [*mechanism.asked.values()],
+    }
+    declared_parts = vars(mechanism) | asked
     content = (
-        (type(mechanism).__qualname__, vars(mechanism), mechanism.gravity, mechanism.symbols),
+        (type(mechanism).__qualname__, declared_parts, mechanism.gravity, mechanism.symbols),
         (scene.span, scene.posture, scene.assembly, wanted, list(scene.laws)),
         (scene.weights, scene.elastic),
     )

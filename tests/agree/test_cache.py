@@ -11,6 +11,7 @@ import time
 import casadi as ca
 import numpy as np
 import pytest
+from every_way import DECLARED
 from internals import Wanted, cache, identity_of
 from mechanisms import slider_crank
 from outside import doubled
@@ -252,6 +253,13 @@ def test_every_change_of_a_declaration_has_another_name():
     assert None not in names
     assert len(set(names)) == len(names)
     assert name_of(pendulum()) == names[0]
+
+
+@pytest.mark.parametrize("name", DECLARED)
+def test_the_same_declaration_has_the_same_name(name):
+    first = name_of(DECLARED[name]())
+    assert first is not None
+    assert name_of(DECLARED[name]()) == first
 
 
 DAMAGES = {
