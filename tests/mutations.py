@@ -37,7 +37,7 @@ ROOT, MAPS, EQUIVALENT = TESTS.parent, TESTS / "maps", TESTS / "equivalent.txt"
 PACKAGE = ROOT / "lagrange_casadi"
 
 NUMBERS = (
-    *("base/bernstein.py", "base/compensated.py", "base/frames.py", "base/interpret.py"),
+    *("base/bernstein.py", "base/frames.py", "base/interpret.py", "engine/compensated.py"),
     *("base/ipopt.py", "base/lookups.py", "base/rotation.py"),
     *("base/scalars.py", "base/vectors.py", "model", "engine", "results", "studies/designs"),
     *("studies/peaks_between.py", "studies/forward", "studies/actuators", "studies/identification"),

@@ -20,7 +20,6 @@ from typing import Any, Literal, TypeAlias
 import casadi as ca
 
 from ..base.arrays import Expression
-from ..base.compensated import ROUNDING
 from ..base.quantities import Check, Column, Kinds, Output
 from ..base.scalars import graph
 from ..base.status import Status
@@ -28,6 +27,7 @@ from ..base.tables import MOMENT
 from ..base.vocabulary import Precision
 from ..model.beyond_ends import BEYOND, share_beyond, words_beyond
 from ..model.limits import APART, MISSES
+from .compensated import ROUNDING
 from .friction import SLIP
 from .iteration import NEWTON_LOST
 from .loop_turns import LEAP, REACH

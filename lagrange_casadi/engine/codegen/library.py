@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from ...base.compensated import DTYPES
-from ...base.threads import in_threads
 from ...base.vocabulary import Precision
+from ..compensated import DTYPES
+from ..threads import in_threads
 from .compiler import Compiler, entry_of, loaded, statements
 from .emit import EVALUATE, FOLLOW, INSTANTS
 from .peak_search import Listed, Search, Tables, load_search

@@ -18,8 +18,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.arrays import Array, Flags
-from ...base.compensated import DTYPES
 from ...base.vocabulary import Precision
+from ..compensated import DTYPES
 from ..sharpness import Kind, Watch
 from .calls import Call
 from .compiler import Compiler, entry_of, loaded, start, written

@@ -12,10 +12,10 @@ from typing import Any, get_args
 import numpy as np
 
 from ...base.arrays import Flags
-from ...base.compensated import DTYPES
 from ...base.status import Status
 from ...base.vocabulary import Precision
 from ...model.limits import END
+from ..compensated import DTYPES
 from ..dead_centres import CLOSURES, FAR, POINTS, ROUNDS, TOUCHES
 from ..program import Program
 from ..sharpness import Watch

@@ -23,11 +23,11 @@ import casadi as ca
 import numpy as np
 
 from ...base.arrays import Array, Expression, Operand, spread
-from ...base.compensated import Pair, Pairs
 from ...base.interpret import REMAINDERS, Arithmetic, codes, followable, interpret, numpy_arithmetic
 from ...base.scalars import applied, column, entries, graph
 from ...base.symbolic import Graphs, symbolic
 from ...base.vocabulary import Precision
+from ..compensated import Pair, Pairs
 from ..program import Program
 
 FEW_TURNS = 128.0

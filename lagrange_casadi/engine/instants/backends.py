@@ -16,7 +16,6 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.arrays import Array
-from ...base.compensated import DTYPES
 from ...base.space import cores
 from ...base.status import Status
 from ...base.vocabulary import Backend
@@ -25,6 +24,7 @@ from ...version import __version__
 from .. import codegen
 from ..codegen.emit import NEWTON_STEPS, newton_rule
 from ..codegen.stages import Stages, plain, stages_for
+from ..compensated import DTYPES
 from ..program import Program
 from . import grids
 from .cycle_table import CycleTable

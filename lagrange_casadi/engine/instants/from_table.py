@@ -17,8 +17,8 @@ from ...base.scalars import graph, inputs_of
 from ...base.space import cores
 from ...base.status import Status
 from ...base.symbolic import symbolic
-from ...base.threads import in_threads
 from ..program import Program
+from ..threads import in_threads
 from .backends import Evaluated, run, unevaluated
 from .cycle_table import CycleTable
 from .cycle_terms import TURNS, the_drive

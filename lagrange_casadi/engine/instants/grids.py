@@ -20,12 +20,12 @@ import numpy.typing as npt
 
 from ...base.arrays import Array, during
 from ...base.space import cores, require
-from ...base.threads import in_threads
 from ...errors import CompilerError, DeclarationError, warn
 from ...model.limits import END
 from ..codegen.calls import Call
 from ..codegen.compiler import find_compiler, loaded, written
 from ..section_function import edge
+from ..threads import in_threads
 
 WORTH_COMPILING = 1 << 9
 """Values from which on compiled code fills grids."""

@@ -13,7 +13,6 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.arrays import Array
-from ...base.compensated import DTYPES
 from ...base.interpret import interpret, numpy_arithmetic
 from ...base.status import Status
 from ...base.vocabulary import Precision
@@ -21,6 +20,7 @@ from ...errors import AssemblyError, DeclarationError
 from ...model.beyond_ends import BEYOND
 from ...model.description import Description
 from ..codegen.stages import plain
+from ..compensated import DTYPES
 from ..kinematics import where
 from ..model_data import ModelData
 from ..program import Program

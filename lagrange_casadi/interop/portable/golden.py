@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 
 from ...base.arrays import Array, Operand
-from ...base.compensated import ROUNDING
 from ...base.interpret import Arithmetic, interpret, numpy_arithmetic
 from ...base.quantities import Output, motion_names
 from ...base.vocabulary import Precision
 from ...engine.codegen.stages import compensated
+from ...engine.compensated import ROUNDING
 from ...engine.instants.backends import Evaluated, run
 from ...engine.instants.evaluation_method import EvaluationMethod
 from ...engine.program import Program

@@ -14,10 +14,10 @@ from dataclasses import replace
 import numpy as np
 
 from ...base.arrays import Array, spread
-from ...base.compensated import DTYPES, ROUNDING
 from ...base.interpret import Arithmetic, followable
 from ...base.quantities import Kinds, Output
 from ...engine.codegen.stages import plain
+from ...engine.compensated import DTYPES, ROUNDING
 from ...engine.instants.backends import Evaluated
 from ...engine.instants.cycle_table import CycleTable
 from ...engine.instants.refusing import resting

@@ -16,10 +16,10 @@ import casadi as ca
 import numpy as np
 
 from ...base.arrays import Array, Operand
-from ...base.compensated import ROUNDING, SPLITTER
 from ...base.interpret import REMAINDERS, Arithmetic, followable, interpret, numpy_arithmetic
 from ...base.lookups import Lookup
 from ...engine.codegen.stages import Stages
+from ...engine.compensated import ROUNDING, SPLITTER
 from ...engine.program import Program
 from .reference import closed
 

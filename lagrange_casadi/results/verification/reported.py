@@ -11,9 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.arrays import Array, during
-from ...base.compensated import DTYPES, ROUNDING
 from ...base.quantities import Output
 from ...base.vocabulary import Precision
+from ...engine.compensated import DTYPES, ROUNDING
 from ...model.description import Description, JointNumbers
 from ..histories import Histories
 from ..section_laws import SectionLaw

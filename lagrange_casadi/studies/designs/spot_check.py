@@ -15,8 +15,8 @@ from dataclasses import replace
 import numpy as np
 
 from ...base.arrays import Array, spread
-from ...base.compensated import ROUNDING
 from ...base.quantities import Output
+from ...engine.compensated import ROUNDING
 from ...engine.instants.backends import run
 from ...engine.instants.evaluation_method import EvaluationMethod
 from ...engine.instants.phases import outputs_of, phases

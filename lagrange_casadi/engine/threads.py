@@ -8,7 +8,7 @@ from collections import deque
 from collections.abc import Callable, Iterable
 from concurrent.futures import Future, ThreadPoolExecutor
 
-from .space import MOST_THREADS
+from ..base.space import MOST_THREADS
 
 
 @functools.cache

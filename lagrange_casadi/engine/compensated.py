@@ -20,11 +20,11 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from .arrays import Expression, Operand
-from .interpret import Arithmetic, codes
-from .lookups import Lookup
-from .scalars import added, applied, as_expression, less, product
-from .vocabulary import Precision
+from ..base.arrays import Expression, Operand
+from ..base.interpret import Arithmetic, codes
+from ..base.lookups import Lookup
+from ..base.scalars import added, applied, as_expression, less, product
+from ..base.vocabulary import Precision
 
 DTYPES: dict[Precision, Any] = {"double": np.dtype(np.float64), "single": np.dtype(np.float32)}
 ROUNDING: dict[Precision, float] = {
