@@ -45,8 +45,9 @@ class Command(click.Command):
         return super().invoke(ctx)
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the options in two groups."""
-        shown = [(one.name in _MACHINE, one.get_help_record(ctx)) for one in self.get_params(ctx)]
+        """Write the options in two groups. Arguments are in the usage, and in the text above."""
+        options = [one for one in self.get_params(ctx) if isinstance(one, click.Option)]
+        shown = [(one.name in _MACHINE, one.get_help_record(ctx)) for one in options]
         for title, machine in (("Options", False), ("Computation", True)):
             if records := [record for group, record in shown if record and group == machine]:
                 with formatter.section(title):
