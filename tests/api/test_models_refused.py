@@ -296,6 +296,10 @@ REFUSED = {
         sdf(sdf_link("a"), sdf_joint("J", "world", "a", kind="piston")),
         "<joint name='J'>: unknown type 'piston'; valid: revolute",
     ),
+    "sdf name of the ground": (
+        sdf(sdf_link("world")),
+        "<link name='world'>: the name is that of the ground; expected another one",
+    ),
     "sdf unknown link": (
         sdf(sdf_link("a"), sdf_joint("J", "world", "b")),
         "<child>: unknown link 'b'; valid: world, a",
@@ -502,6 +506,9 @@ REFUSED = {
     ),
     "json unknown joint": (
         own_arm(joints=[HINGE | {"kind": "hinge"}]), "unknown kind 'hinge'; valid: rev"
+    ),
+    "json lead of no screw": (
+        own_arm(joints=[HINGE | {"lead": 0.01}]), "a revolute joint has no lead; only a screw has"
     ),
     "json no kind": (
         own_arm(joints=[HINGE | {"kind": ["weld"]}]), "unknown kind ['weld']; valid: rev"

@@ -212,6 +212,8 @@ def _joint(one: _Object) -> None:
     kind = one.model.known(where, "kind", one.given["kind"], [*MOVES])
     bodies = (_here(one.model, "body", one.word(key)) for key in ("parent", "child"))
     frames, lead = (one.frame("on_parent"), one.frame("on_child")), one.amount("lead", 0.0)
+    if lead and kind != "screw":
+        raise one.model.refuse(one.at("lead"), f"a {kind} joint has no lead; only a screw has")
     one.model.add(Joint, name, one.where, kind, *bodies, *frames, lead)
 
 

@@ -48,6 +48,8 @@ def read(model: Model, text: str) -> None:
     # Axes are on the frame of the model until 1.4, and on that of the joint since.
     on_model = root.stated("version", "1.7") in ("1.0", "1.2", "1.3", "1.4")
     named = line.by_name("link", "frame", "joint")
+    if "world" in named:
+        raise named["world"].refuse("the name is that of the ground; expected another one")
     for one in line.all("frame"):
         one.seen = False  # until something lies on it
     joints = Joints(
