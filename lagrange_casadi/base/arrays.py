@@ -45,9 +45,9 @@ def during(value: Operand, instants: Instants) -> Operand:
         return tuple(during(one, instants) for one in value)
     if hasattr(value, "during"):
         return value.during(instants)
-    if is_dataclass(value):
+    if is_dataclass(value) and not isinstance(value, type):
         held = {entry.name: getattr(value, entry.name) for entry in fields(value)}
-        return replace(value, **during(held, instants))  # type: ignore[type-var]
+        return replace(value, **during(held, instants))
     return value
 
 

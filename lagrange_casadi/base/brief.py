@@ -50,8 +50,9 @@ class Brief:
             if entry.repr
         ]
         text = f"{type(self).__name__}({', '.join(each)})"
-        short = f"{text[: LONGEST - 6].rpartition(', ')[0]}, ...)"
-        return text if len(text) <= LONGEST else short
+        if len(text) > LONGEST:
+            text = f"{text[: LONGEST - 6].rpartition(', ')[0]}, ...)"
+        return text
 
 
 def _brief(value: object) -> str:

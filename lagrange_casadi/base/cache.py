@@ -63,7 +63,9 @@ def limit() -> int:
 
     Raises :class:`DeclarationError` where the variable says no size.
     """
-    text = os.environ.get(VARIABLE, "").strip() or str(LIMIT)
+    text = os.environ.get(VARIABLE, "").strip()
+    if not text:
+        return LIMIT
     found = re.fullmatch(r"([0-9.]+) ?([kMGT]?)B?", text)
     with suppress(ValueError, OverflowError):
         if found:

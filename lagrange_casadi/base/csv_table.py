@@ -375,19 +375,20 @@ def count_sizes(
     turns = for_each(place, columns, "column of counts_per_turn=", counts_per_turn, None)
     sizes = {}
     for name, turn in turns.items():
-        counted, per_turn = units[name] in COUNTS, double(turn) or 0.0
-        if not counted and isinstance(counts_per_turn, Mapping) and name in counts_per_turn:
-            raise DeclarationError(
-                f"{place}: column {columns[name]} is in {units[name] or 'no unit'}; expected"
-                f" counts, of which counts_per_turn= says {turn!r} are a turn"
-            )
-        if counted and not 0.0 < per_turn < math.inf:
+        if units[name] not in COUNTS:
+            if isinstance(counts_per_turn, Mapping) and name in counts_per_turn:
+                raise DeclarationError(
+                    f"{place}: column {columns[name]} is in {units[name] or 'no unit'}; expected"
+                    f" counts, of which counts_per_turn= says {turn!r} are a turn"
+                )
+            continue
+        per_turn = double(turn) or 0.0
+        if not 0.0 < per_turn < math.inf:
             raise DeclarationError(
                 f"{place}: column {columns[name]} is in counts; expected counts_per_turn=, a number"
                 f" above 0, got {turn!r}"
             )
-        if counted:
-            sizes[name] = math.tau / per_turn
+        sizes[name] = math.tau / per_turn
     return sizes
 
 

@@ -48,24 +48,25 @@ def check_writable(target: Path, *, folder: bool = False, hdf5: bool = False) ->
         taken, whole = place.exists(), place.is_dir()
     except OSError as error:
         raise PathError(f"cannot write {target}: {error.strerror}") from None
-    lacking = "is a file" if place.parent.exists() else "does not exist"
-    for wrong, words in (
-        (stream and (hdf5 or stream == SOCKET), f"it is {stream}, not a file"),
-        (not folder and whole, "it is a folder"),
-        (folder and (stream or (taken and not whole)), f"it is {stream or 'a file'}, not a folder"),
-        (stream and not os.access(target, os.W_OK), "it is not writable"),
-        (not stream and not place.parent.is_dir(), f"folder {place.parent} {lacking}"),
-        (
-            not (stream or folder or hdf5) and is_hdf5(place),
-            "it is an HDF5 file; choose another name",
-        ),
-    ):
-        if wrong:
-            raise PathError(f"cannot write {target}: {words}")
+    if stream and (hdf5 or stream == SOCKET):
+        raise PathError(f"cannot write {target}: it is {stream}, not a file")
+    if not folder and whole:
+        raise PathError(f"cannot write {target}: it is a folder")
+    if folder and (stream or (taken and not whole)):
+        raise PathError(f"cannot write {target}: it is {stream or 'a file'}, not a folder")
+    if stream:
+        if not os.access(target, os.W_OK):
+            raise PathError(f"cannot write {target}: it is not writable")
+        return
+    if not place.parent.is_dir():
+        lacking = "is a file" if place.parent.exists() else "does not exist"
+        raise PathError(f"cannot write {target}: folder {place.parent} {lacking}")
+    if not folder and not hdf5 and is_hdf5(place):
+        raise PathError(f"cannot write {target}: it is an HDF5 file; choose another name")
     if hdf5 and place.is_file() and is_locked(place):
         raise BusyError(f"cannot write {target}: another program has it open to write")
     for there in (place.parent, *([place] if whole else [])):
-        if not stream and not os.access(there, os.W_OK):
+        if not os.access(there, os.W_OK):
             raise PathError(f"cannot write {target}: folder {there} is not writable")
 
 
@@ -103,13 +104,15 @@ class PatientFile(io.FileIO):
     failure: OSError | None = None
 
     def write(self, data: Buffer, /) -> int:
-        """Write all of ``data``, unless the file has failed."""
+        """Write all of ``data``, or pass over as much."""
         view, done = memoryview(data).cast("B"), 0
         try:
             while self.failure is None and done < view.nbytes:
                 done += super().write(view[done:])
         except OSError as error:
             self.failure = error
+        if self.failure is not None:
+            self.seek(view.nbytes - done, os.SEEK_CUR)
         return view.nbytes
 
     def truncate(self, size: int | None = None, /) -> int:
@@ -236,7 +239,10 @@ def _lock(file: BinaryIO, *, shared: bool = False, wait: bool = False) -> bool:
 
 def digest(*contents: bytes) -> str:
     """The SHA-256 of contents, one after another."""
-    return hashlib.sha256(b"".join(contents)).hexdigest()
+    found = hashlib.sha256()
+    for content in contents:
+        found.update(content)
+    return found.hexdigest()
 
 
 @contextmanager

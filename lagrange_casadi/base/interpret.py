@@ -109,7 +109,7 @@ def replay(
     the step has several results.
     """
     work: dict[int, Any] = {}
-    outputs: list[list[Any]] = [[None] * function.nnz_out(i) for i in range(function.n_out())]
+    outputs: list[list[Any]] = [[None] * size for size in _sizes(function)]
     for k, step in enumerate(steps(function)):
         if step.operation == ca.OP_INPUT:
             work[step.results[0]] = inputs[step.arguments[0]][step.arguments[1]]
@@ -122,6 +122,12 @@ def replay(
             else:
                 work |= zip(step.results, value, strict=True)
     return outputs
+
+
+@functools.lru_cache(maxsize=64)
+def _sizes(function: ca.Function) -> tuple[int, ...]:
+    """The number of nonzeros of each output."""
+    return tuple(function.nnz_out(i) for i in range(function.n_out()))
 
 
 def interpret(
