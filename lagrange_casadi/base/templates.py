@@ -119,7 +119,8 @@ class Template(Graphs, Generic[Tree]):
 
 def _filled(tree: Part, numbers: _Numbers) -> Part:
     """Return a tree with ``numbers`` for its leaves."""
-    return cast(Part, mapped(tree, lambda leaf: numbers[leaf] if type(leaf) is Leaf else leaf))
+    fill = _filler(tree)
+    return tree if fill is None else cast(Part, fill(numbers))
 
 
 def _filler(tree: Any) -> _Fill | None:

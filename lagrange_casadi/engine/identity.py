@@ -44,13 +44,12 @@ def declaration(scene: Scene, wanted: Wanted) -> str | None:
         return {"expression": leaf.shape}
 
     # What was asked for has expressions among its keys, which differ from process to process.
-    asked = {
+    parts = vars(mechanism) | {
         "measures": [*mechanism.measures.asked.values()],
         "asked": [*mechanism.asked.values()],
     }
-    declared_parts = vars(mechanism) | asked
     content = (
-        (type(mechanism).__qualname__, declared_parts, mechanism.gravity, mechanism.symbols),
+        (type(mechanism).__qualname__, parts, mechanism.gravity, mechanism.symbols),
         (scene.span, scene.posture, scene.assembly, wanted, list(scene.laws)),
         (scene.weights, scene.elastic),
     )
