@@ -93,11 +93,9 @@ def called(function: ca.Function, *columns: Array) -> Array:
     found = np.empty((size, function.numel_out(0)))
     buffer, call = _mapped(function, size).buffer()
     # A buffer has addresses alone: the arrays are kept here while it is called.
-    given = [
-        np.ascontiguousarray(np.r_[of.T, of.T[:1].repeat(size - len(of.T), axis=0)])
-        for of in columns
-    ]
-    for number, rows in enumerate(given):
+    given = [np.empty((size, len(of))) for of in columns]
+    for number, (rows, of) in enumerate(zip(given, columns, strict=True)):
+        rows[: of.shape[1]], rows[of.shape[1] :] = of.T, of.T[:1]
         buffer.set_arg(number, rows.data)
     buffer.set_res(0, found.data)
     call()

@@ -17,7 +17,7 @@ import casadi as ca
 import numpy as np
 
 from .arrays import Array, Expression, Json
-from .scalars import column
+from .scalars import called, column
 from .symbolic import Graphs, symbolic
 
 Tree = TypeVar("Tree")
@@ -95,8 +95,8 @@ class Template(Graphs, Generic[Tree]):
 
     def at(self, p: Sequence[float] | Array) -> Tree:
         """Return the tree of numbers for parameters ``p``."""
-        numbers = self.numbers(np.asarray(p, float)).full().ravel().tolist()
-        return cast(Tree, self._fill(numbers))
+        numbers = called(self.numbers, np.asarray(p, float)[:, None])[:, 0]
+        return cast(Tree, self._fill(numbers.tolist()))
 
     @cached_property
     def _fill(self) -> _Fill:
@@ -130,11 +130,19 @@ def _filler(tree: Any) -> _Fill | None:
     if type(tree) is Leaf:
         return itemgetter(int(tree))
     parts, again = _parts(tree) or ((), tuple)
-    fills = [_filler(part) for part in parts]
-    if not any(fills):
+    fills = {k: fill for k, part in enumerate(parts) if (fill := _filler(part))}
+    if not fills:
         return None
-    pairs = [*zip(parts, fills, strict=True)]
-    return lambda numbers: again([part if fill is None else fill(numbers) for part, fill in pairs])
+    if again is tuple and len(parts) > 1 and all(type(part) is Leaf for part in parts):
+        return itemgetter(*map(int, parts))
+
+    def filled(numbers: _Numbers) -> Any:
+        own = [*parts]
+        for k, fill in fills.items():
+            own[k] = fill(numbers)
+        return again(own)
+
+    return filled
 
 
 _READ: dict[str, Callable[[Any], object]] = {

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..base.arrays import Array, Expression
 from ..base.quantities import Check, Column, Output
-from ..base.scalars import graph, inputs_of
+from ..base.scalars import called, graph, inputs_of
 from ..base.symbolic import Graphs, symbolic, symbolic_property
 from ..base.templates import Leaf, Template, dumps, loads
 from ..base.vocabulary import Precision
@@ -182,7 +182,7 @@ class Program(Graphs):
         """The size of the mechanism [m], beside which a gap is large or small, for parameters
         ``p``.
         """
-        return float(self.data.extent(p))
+        return float(called(self.data.extent, p[:, None])[0, 0])
 
     @cached_property
     def links(self) -> tuple[str, ...]:

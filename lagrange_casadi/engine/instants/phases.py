@@ -66,20 +66,26 @@ def unwind(program: Program, out: Array) -> None:
         out,
         [math.tau * (out[k] - out[k][..., :1]) if whole else _jumps(out[k]) for k, whole in parts],
     )
-    for k, _ in angles:
-        out[k] -= math.tau * np.ceil(out[k][..., :1] / math.tau - 0.5)
+    rows = [k for k, _ in angles]
+    first = np.ceil(out[rows, ..., :1] / math.tau - 0.5)
+    if first.any():
+        for k, whole in zip(rows, first, strict=True):
+            out[k] -= math.tau * whole
 
 
-def add_turns(program: Program, out: Array, turns: Sequence[Array | float]) -> None:
+def add_turns(program: Program, out: Array, turns: Sequence[Array | None]) -> None:
     """Add to the angles that loops set, in the columns ``out`` (columns, ..., t) of a graph, the
-    turns [rad] of their parts.
+    turns [rad] of their parts; None is said for a part without turns.
     """
     for k, signs in program.loop_rows[1]:
         for number, sign in signs:
-            out[k] += sign * turns[number]
+            turn = turns[number]
+            if turn is not None:
+                out[k] += sign * turn
 
 
-def _jumps(angle: Array) -> Array | float:
-    """Addition that lets an angle (..., t) go on where it jumps by a turn."""
-    jumps = not (np.abs(angle[..., 1:] - angle[..., :-1]) < math.pi).all()
-    return np.unwrap(angle) - angle if jumps else 0.0
+def _jumps(angle: Array) -> Array | None:
+    """The turns [rad] that let an angle (..., t) go on where it jumps; None where it never does."""
+    if np.abs(angle[..., 1:] - angle[..., :-1]).max(initial=0.0) < math.pi:
+        return None
+    return np.unwrap(angle) - angle

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from ...base.arrays import Array
 from ...base.interpret import interpret, numpy_arithmetic
+from ...base.scalars import called
 from ...base.status import Status
 from ...base.vocabulary import Precision
 from ...errors import AssemblyError, DeclarationError
@@ -159,23 +160,19 @@ def first_broken(
     ``most`` are the limits, ``beside`` (bounds, t) the values beside checks, ``status`` (t,) that
     of iterated loops.
     """
-    checks, shares = [out[bound.column] for bound in program.bounds], [*map(np.float64, most)]
-
-    def numbers(
-        checks: Iterable[Array], beside: Iterable[Array], status: Array
-    ) -> npt.NDArray[np.intp]:
-        given = [[np.asarray(row, float) for row in checks], shares, [*beside], [status]]
-        (found,) = interpret(program.status, given, numpy_arithmetic())
-        return np.broadcast_to(found[0], status.shape).astype(np.intp)
-
+    checks, limits = out[[bound.column for bound in program.bounds]], np.array(most, float)
     if not status.any():
         # A rule is kept within an interval: if the least and the largest keep it, all do.
         few, near = (
-            [np.array([row.min(), row.max()]) for row in rows] for rows in (checks, [*beside])
+            np.array([rows.min(axis=1), rows.max(axis=1)], float).T for rows in (checks, beside)
         )
-        if not (np.isnan([*few, *near]).any() or numbers(few, near, np.zeros(2)).any()):
-            return np.zeros(status.shape, np.intp)
-    return numbers(checks, beside, status.astype(float))
+        if not np.isnan([few, near]).any():
+            broken = called(program.status, few, limits[:, None], near, np.zeros((1, 2)))
+            if not broken.any():
+                return np.zeros(status.shape, np.intp)
+    given = [[*np.asarray(checks, float)], [*limits], [*beside], [status.astype(float)]]
+    ((found,),) = interpret(program.status, given, numpy_arithmetic())
+    return np.broadcast_to(found, status.shape).astype(np.intp)
 
 
 def _beside(

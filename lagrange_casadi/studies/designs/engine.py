@@ -230,7 +230,9 @@ class DesignEngine:
                 None if times is None else times[some],
             )
         if columns is not None:
-            self.finish(columns, p)
+            # A design without a result may have anything in its columns.
+            with np.errstate(invalid="ignore"):
+                self.finish(columns, p)
         series = None if columns is None else columns[:, [*self.program.outputs.values()]]
         over = None if self.times.law is None else self.times.at_drive(found["peak_t"], p)
         return outcome_of(found, series, over, times)
@@ -260,12 +262,11 @@ class DesignEngine:
         leaves open, and let angles go on.
         """
         program = self.program
-        with np.errstate(invalid="ignore"):
-            if program.indeterminate:
-                for rows, values in zip(out, p, strict=True):
-                    indeterminate = undetermined(program, rows, values, self.method)
-                    rows[[program.outputs[output] for output in indeterminate]] = np.nan
-            unwind(program, out.swapaxes(0, 1))
+        if program.indeterminate:
+            for rows, values in zip(out, p, strict=True):
+                indeterminate = undetermined(program, rows, values, self.method)
+                rows[[program.outputs[output] for output in indeterminate]] = np.nan
+        unwind(program, out.swapaxes(0, 1))
 
     def _results(self, n: int, columns: Array | None) -> Results:
         """Arrays for what is kept of n designs, and the columns that histories are made of."""
