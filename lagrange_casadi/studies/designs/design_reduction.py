@@ -4,6 +4,7 @@ its instants.
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,7 +23,7 @@ from ...engine.instants.evaluation_method import EvaluationMethod
 from ...engine.mobility import load_points_of
 from ...engine.model_data import ModelData
 from ...engine.program import Program
-from ...engine.sharpness import Sharpness
+from ...engine.sharpness import Sharpness, with_watched
 from ...engine.verdicts import Beside
 from ...errors import DeclarationError
 from ...results.section_laws import made_of
@@ -55,7 +56,8 @@ class KeptOutputs:
 
     Quantities are the wanted outputs, without angles that loops set, and sizes of reactions and
     loads; section forces come last. Which of them equilibrium leaves open is
-    decided for each design. ``reduction`` is the same in numbers of columns, as C takes it.
+    decided for each design. ``reduction`` is the same in numbers of columns, as C takes it;
+    ``watched`` is the graph with what ``sharpness`` watches as further columns.
     """
 
     quantities: tuple[Output, ...]
@@ -63,8 +65,10 @@ class KeptOutputs:
     efforts: tuple[Output, ...]
     reduction: Reduction
     sharpness: Sharpness
+    watched: Program
 
     @classmethod
+    @functools.lru_cache(maxsize=32)
     def of(cls, program: Program, method: EvaluationMethod) -> KeptOutputs:
         """Make the reduction of a scene's designs on a method."""
         data, at = program.data, program.outputs
@@ -132,7 +136,8 @@ class KeptOutputs:
             depends=sharpness.dependence(every),
             marks=data.corners.whole,
         )
-        return cls(tuple(names), units, efforts, reduction, sharpness)
+        watched = with_watched(program, sharpness)
+        return cls(tuple(names), units, efforts, reduction, sharpness, watched)
 
 
 def _along(data: ModelData, link: str, at: dict[Output, int], table: Table) -> Along:

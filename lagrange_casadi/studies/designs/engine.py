@@ -9,6 +9,7 @@ it.
 
 from __future__ import annotations
 
+import functools
 import shlex
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -26,6 +27,7 @@ from ...base.symbolic import symbolic_property
 from ...base.vocabulary import Compiled, PeakSearch
 from ...engine import codegen
 from ...engine.codegen.peak_search import TOPS, Listed
+from ...engine.codegen.stages import Stages
 from ...engine.derive import compile_scene
 from ...engine.instants.backends import begun, compiled, provenance
 from ...engine.instants.determinacy import undetermined
@@ -33,7 +35,7 @@ from ...engine.instants.evaluation_method import EvaluationMethod, Provenance, s
 from ...engine.instants.grids import empty
 from ...engine.instants.phases import unwind
 from ...engine.program import Program
-from ...engine.sharpness import bent, with_watched
+from ...engine.sharpness import bent
 from ...errors import DeclarationError, check_known
 from ...model.beyond_ends import BEYOND
 from ...model.scene import Scene
@@ -57,6 +59,21 @@ _PIECE = 1 << 22
 
 _SAMPLES = 32
 """Number of instants at which the peak of a quantity is sought."""
+
+
+@functools.lru_cache(maxsize=32)
+def _library(
+    kept: KeptOutputs,
+    stages: Stages,
+    method: EvaluationMethod,
+    guess: tuple[float, ...],
+    compiler: codegen.Compiler,
+) -> codegen.Library:
+    """The code of designs whose iterated loops begin from a ``guess``."""
+    source = codegen.emit(kept.watched, stages, method.newton, kept.reduction)
+    extra = tuple(shlex.split(method.flags))
+    designs = codegen.Designs.of(kept.reduction, guess, compiler, extra, method.precision)
+    return codegen.load(source, compiler, extra, designs=designs)
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,20 +131,11 @@ class DesignEngine:
         instants, even = times.default
         kept = KeptOutputs.of(program, method)
         require("the instants of a design", (kept.reduction.rows, instants.size))
-        watched = with_watched(program, kept.sharpness)
-        stages = stages_of(watched, method, even, alike=times.common)
-
-        guess: Sequence[float] = program.newton.guess if program.newton else ()
+        stages = stages_of(kept.watched, method, even, alike=times.common)
+        guess = program.newton.guess if program.newton else ()
         if timing.joint:
             guess = begun(program, float(even[0]), tuple(p.tolist()))
-
-        def build(compiler: codegen.Compiler) -> codegen.Library:
-            source = codegen.emit(watched, stages, method.newton, kept.reduction)
-            extra = tuple(shlex.split(method.flags))
-            designs = codegen.Designs.of(kept.reduction, guess, compiler, extra, method.precision)
-            return codegen.load(source, compiler, extra, designs=designs)
-
-        found = compiled(method, build)
+        found = compiled(method, functools.partial(_library, kept, stages, method, guess))
         if found is None:
             raise codegen.no_compiler("designs need a compiler")
         made = provenance(method, found)
