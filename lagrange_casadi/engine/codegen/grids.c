@@ -28,7 +28,8 @@ static void stream(double* out, const double* tile, long long n) {
   for (; i < n; ++i) out[i] = tile[i];
 }
 
-/* Of rows of n values each: the sum of columns[m][i]*basis[m][j] over terms, in this order, or the size of two planes' sums. Compiled
+/* Of rows of n values each: the sum of columns[m][i]*basis[m][j] over terms, in this order, or the size of two planes' sums; the first
+   function is one, and is not read. Compiled
    for numbers of planes and terms that are known, so that a row is written once: roots, or memory, are then all that takes time. A
    row that another one follows goes on to a whole number of LINEs, as functions do: what is too much there that row replaces. */
 static inline __attribute__((always_inline)) void combine(long long many, long long n, const int planes, const int terms,
@@ -42,10 +43,10 @@ static inline __attribute__((always_inline)) void combine(long long many, long l
     double c[8];
     for (m = 0; m < planes*terms; ++m) c[m] = columns[m][i];
     for (j = 0; j < size; ++j) {
-      double x = c[0]*basis[0][j], y;
+      double x = c[0], y;
       for (m = 1; m < terms; ++m) x = x + c[m]*basis[m][j];
       if (planes == 2) {
-        y = c[terms]*basis[0][j];
+        y = c[terms];
         for (m = 1; m < terms; ++m) y = y + c[terms + m]*basis[m][j];
         x = sqrt(x*x + y*y);
       }

@@ -70,7 +70,7 @@ Load = tuple[Array, Array, Array]
 
 @dataclass(frozen=True, eq=False)
 class Functions:
-    """Functions along a link, a row each, (terms, xi)."""
+    """Functions along a link, a row each, (terms, xi); the first is one everywhere."""
 
     rows: Array
 
@@ -149,26 +149,26 @@ def fill(
     n, k = sums[0][0].columns[0].size, u.size
     if out.shape != (len(sums), n, k):
         raise DeclarationError(f"out: expected an array of shape {(n, k)}, got {out.shape[1:]}")
-    plain = out[0].flags.c_contiguous and out.dtype == np.float64
-    most = max([len(columns.columns) for columns, _ in sums])
+    grid, most = out[0], max([len(columns.columns) for columns, _ in sums])
+    plain = grid.flags.c_contiguous and out.dtype == np.float64
     library = _compiled() if plain and out.size >= WORTH_COMPILING and most <= _MOST else None
     if library is None:
         for (columns, functions), rows in zip(sums, out, strict=True):
             _fill_in_blocks(columns, functions.rows, u, rows, slack)
         return
     at = after = None
-    if any(columns.loads for columns, _ in sums):
+    if any([columns.loads for columns, _ in sums]):
         u = np.ascontiguousarray(u, dtype=np.float64)
         beyond = edge(u, slack)
         at, after = u.ctypes.data, beyond.ctypes.data
-    first, streams = out.ctypes.data, int(out[0].nbytes >= _STREAMING)
+    place, apart, streams = out.ctypes.data, out.strides[0], int(grid.nbytes >= _STREAMING)
     calls = (GRID.type * len(sums))()
     for i, (columns, functions) in enumerate(sums):
         calls[i] = columns.call
         call, (rows, basis) = calls[i], functions.padded
         call.k, call.stride, call.basis = k, rows.shape[1], basis
         call.u, call.beyond = at, after
-        call.out, call.streams = first + i * out.strides[0], streams
+        call.out, call.streams = place + i * apart, streams
     entry, shares = library.lagrange_casadi_grids, out.size // _SHARE
     if shares <= 1:
         entry(calls, len(sums), 0, n)
@@ -266,7 +266,7 @@ def _sum_up(
     rows: Array,
     slack: float,
 ) -> None:
-    np.multiply(columns[0][:, None], basis[0], out=rows)
+    rows[:] = columns[0][:, None]
     for column, function in zip(columns[1:], basis[1:], strict=False):
         rows += column[:, None] * function
     for load_point, constant, slope in loads:
