@@ -6,6 +6,7 @@ import itertools
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
 from string import Template
 from typing import Any, get_args
 
@@ -93,7 +94,7 @@ class Reduction:
         """Number of the last columns, which are no outputs."""
         return len(self.watches) + len(self.marks)
 
-    @property
+    @cached_property
     def curves(self) -> list[tuple[int, int, int]]:
         """Quantity of a curve, its link or -1, and its place, see :data:`.peak_search.CURVES`."""
         found = [(q, -1, OFF) for q in range(len(self.quantities))]
@@ -108,12 +109,12 @@ class Reduction:
             first += link.rows
         return found
 
-    @property
+    @cached_property
     def places(self) -> int:
         """Rows of places along links."""
         return sum(link.rows for link in self.links)
 
-    @property
+    @cached_property
     def rows(self) -> int:
         """Rows of one design that are kept while it is evaluated, beside those of times and
         iterated coordinates.
