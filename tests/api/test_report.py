@@ -14,7 +14,7 @@ from commands import command
 from reports import HOSTILE, held, hostile, page, press, snowed, solved
 from strong import slider
 
-from lagrange_casadi import evaluate, load_case, save
+from lagrange_casadi import evaluate, load_case, save, sweep
 from lagrange_casadi.errors import DeclarationError
 
 
@@ -205,3 +205,11 @@ def test_a_page_of_two_designs_holds_both(here):
     found, _ = held(Path("slider_crank_beside.html").read_text())
     values = [[run["parameters"][name][0] for name in "lr"] for run in found["runs"]]
     assert values == [[0.2, 0.08], [0.25, 0.08]]
+
+
+@pytest.mark.parametrize("kind", ["effort", "friction", "load", "motion", "reaction"])
+def test_the_page_of_a_sweep_has_the_mechanism_with_what_was_wanted(kind, here):
+    scene = load_case("screw_lift").scene
+    found = sweep(scene, {"mu": (0.1, 0.12, 2)}, out="lift.h5", wanted=[kind], workers=1)
+    found.report("lift.html", scene)
+    assert rf"{{\"name\":\"{kind}:" in Path("lift.html").read_text()

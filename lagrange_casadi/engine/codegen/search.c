@@ -443,14 +443,13 @@ static void search_lay(search_now* now, lagrange_casadi_search_call* call) {
 
 /* The peak of every quantity of n instants t in equal steps: its value, its time and its place, NaN for what is open, and whether it is
    located. Where way is 1 or -1, the peak of a quantity is the largest of its values times that, else of its size. Where error is not
-   NULL, peaks are those at the instants, and it becomes how much larger quantities may be between them. tops, unless it is NULL,
-   is NAN and becomes for each quantity SEARCH_TOPS local peaks down to a share of the largest: the number of the curve among the quantity's own,
+   NULL, peaks are those at the instants, and it becomes how much larger quantities may be between them. tops, unless it is NULL, is NAN
+   and becomes for each quantity SEARCH_TOPS local peaks down to a share of the largest: the number of the curve among the quantity's own,
    which is NAN where there are no more, time, ratio and value. rows are those of curves, of their places and of what is watched, stride
    values apart, filled up to whole packs by the last instant or NaN; what rests is NaN. most are the largest sizes of curves at the
-   instants. scales, unless it is NULL, says how large others
-   are of each unit, hiding in which steps something is known to hide; it has twice stride values. at evaluates up to so many times
-   together, and may write as many values of each row of its out; unless it returns 0, the search ends. Where room is NULL, nothing is
-   searched, and size becomes how many bytes of it a search takes. */
+   instants. scales, unless it is NULL, says how large others are of each unit, hiding in which steps something is known to hide; it has
+   twice stride values. at evaluates up to so many times together, and may write as many values of each row of its out; unless it returns
+   0, the search ends. Where room is NULL, nothing is searched, and size becomes how many bytes of it a search takes. */
 LAGRANGE_CASADI_EXPORT void lagrange_casadi_search(lagrange_casadi_search_call* call) {
   const lagrange_casadi_curves* curves = call->curves;
   const search_panel all = {call->n, call->stride, call->t, call->rows, call->hiding, call->hiding + call->stride};

@@ -46,6 +46,7 @@ _GROUPS = {
     "reactions": "reaction",
     "multipliers": "multiplier",
     "loads": "load",
+    "frictions": "friction",
     "sections": "section",
     "own": "output",
 }
