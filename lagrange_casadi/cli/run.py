@@ -18,7 +18,7 @@ from ..base.streams import is_standard_output
 from ..base.table_writers import aligned
 from ..base.vocabulary import Backend
 from ..engine.instants.backends import peak_search
-from ..errors import CompilerError, DeclarationError
+from ..errors import CompilerError, DeclarationError, at_most
 from ..model import revolutions
 from ..model.scene import Scene
 from ..model.times import Timing
@@ -319,9 +319,8 @@ def replaced_lines(
         yield f"replaced {' and '.join(what)}"
     older = sorted(set(before) - set(drawn))
     if older:
-        more = f" and {len(older) - _LISTED} more" if len(older) > _LISTED else ""
         redraw = "" if drawn else f"; lagrange-casadi plot {file} --out {folder} draws them anew"
         yield (
             f"note: figures in {folder}/ that are older than {file}:"
-            f" {', '.join(older[:_LISTED])}{more}{redraw}"
+            f" {at_most(older, _LISTED)}{redraw}"
         )

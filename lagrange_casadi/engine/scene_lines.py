@@ -11,6 +11,7 @@ import numpy as np
 from ..base.arrays import Expression
 from ..base.lookups import PREFIX
 from ..base.vectors import nil
+from ..errors import at_most
 from ..model.constraints import Constraint
 from ..model.loads import Force, Friction, LineLoad, Load, Torque
 from ..model.motion_inverse import MotionInverse
@@ -115,8 +116,7 @@ def _moves(scene: Scene, joint: str) -> Iterator[str]:
     for what in ("acceleration", "jerk"):
         places = [f"{jump.t:.6g} s {jump.where}" for jump in table.jumps if jump.what == what]
         if places:
-            more = f" and {len(places) - _MOST_JUMPS} more" if len(places) > _MOST_JUMPS else ""
-            yield f"    the {what} jumps at {', '.join(places[:_MOST_JUMPS])}{more}"
+            yield f"    the {what} jumps at {at_most(places, _MOST_JUMPS)}"
 
 
 def _course(scene: Scene, joint: str) -> str:

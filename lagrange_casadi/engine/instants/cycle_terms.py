@@ -21,7 +21,7 @@ from ...base.arrays import Array
 from ...base.quantities import Check, Column
 from ...base.symbolic import symbolic
 from ...base.tables import ANGLE, FORCE, LENGTH, MOMENT
-from ...errors import DeclarationError
+from ...errors import DeclarationError, at_most
 from ..dead_centres import POINTS
 from ..iteration import CLOSED
 from ..kinematics import describe_coordinate, where
@@ -452,5 +452,4 @@ def _kind(program: Program, column: Column) -> str | Column:
 def _listed(columns: Collection[Column]) -> str:
     """Some columns for a reader, outputs before what is none."""
     ordered = sorted(columns, key=lambda column: isinstance(column, Check))
-    more = f" and {len(ordered) - _NAMED} more" if len(ordered) > _NAMED else ""
-    return ", ".join(f"'{name}'" for name in ordered[:_NAMED]) + more
+    return at_most([f"'{name}'" for name in ordered], _NAMED)

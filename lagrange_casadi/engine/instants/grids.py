@@ -157,7 +157,7 @@ def fill(
             _fill_in_blocks(columns, functions.rows, u, rows, slack)
         return
     at = after = None
-    if any([columns.loads for columns, _ in sums]):
+    if any(columns.loads for columns, _ in sums):
         u = np.ascontiguousarray(u, dtype=np.float64)
         beyond = edge(u, slack)
         at, after = u.ctypes.data, beyond.ctypes.data

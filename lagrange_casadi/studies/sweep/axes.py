@@ -25,6 +25,7 @@ from ...errors import (
     NumberError,
     ParameterError,
     UnknownNameError,
+    at_most,
     shown,
 )
 from ...model.declared_parts import Parameter
@@ -166,7 +167,9 @@ class Values:
 
     def outside(self, low: float, high: float) -> str:
         """The values that leave a range, in words."""
-        return _named([f"{value:.10g}" for value in self.values if not low <= value <= high])
+        return at_most(
+            [f"{value:.10g}" for value in self.values if not low <= value <= high], _SHOWN
+        )
 
     @cached_property
     def _array(self) -> Array:
@@ -302,7 +305,7 @@ class Listed(Brief):
         """The values of a parameter that leave a range, in words, each with its place."""
         values = self.rows[:, self.names.index(name)]
         rows = np.flatnonzero(~((values >= low) & (values <= high)))
-        return _named([f"{values[row]:.10g} in {self._where(int(row))}" for row in rows])
+        return at_most([f"{values[row]:.10g} in {self._where(int(row))}" for row in rows], _SHOWN)
 
     def _where(self, row: int) -> str:
         return f"design {row}" if self.lines is None else f"line {self.lines[row]}"
@@ -461,11 +464,6 @@ def _length(words: str) -> int:
     if found := re.match(r"([\d ]+) (designs?|values)\b", words):
         return int(found[1].replace(" ", ""))
     return int(words.split(":")[2]) if ":" in words else words.count(",") + 1
-
-
-def _named(words: Sequence[str]) -> str:
-    more = f" and {len(words) - _SHOWN} more" if len(words) > _SHOWN else ""
-    return ", ".join(words[:_SHOWN]) + more
 
 
 def _axis(name: str, given: AxisLike) -> Axis:

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...base.arrays import Array, Instants, during
 from ...base.quantities import Output
-from ...errors import DeclarationError
+from ...errors import DeclarationError, at_most
 from ...model.description import Description, Place, Triple
 from ...results.solution import Solution
 from ...results.views import Pose
@@ -87,9 +87,7 @@ def require_poses(solution: Solution, what: str = "a report") -> None:
         if Output("pose", body, "x") not in solution.outputs
     ]
     if lacking:
-        bodies = ", ".join(f"'{body}'" for body in lacking[:3]) + (
-            f" and {len(lacking) - 3} more" if len(lacking) > 3 else ""
-        )
+        bodies = at_most([f"'{body}'" for body in lacking], 3)
         raise DeclarationError(
             f"{solution.case}: {what} shows the mechanism in motion, and there is no motion of"
             f" {bodies}; want motion too"
