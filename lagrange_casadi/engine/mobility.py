@@ -140,8 +140,9 @@ def internal_forces(
             for name, multiplier in tying.items()
             if name not in want.multipliers
         }
+    links = multibody.mechanism.links
     for name in want.sections:
-        columns |= _section_law(multibody, name, found, drives)
+        columns |= _section_law(multibody, links[name], found, drives)
     losses = {}
     for name, friction in frictions_of(multibody.mechanism).items():
         supported_there = found[friction.joint.name].ground
@@ -205,12 +206,12 @@ class Reaction:
 
 
 def _section_law(
-    multibody: Multibody, name: str, found: Mapping[str, Reaction], drives: Expression
+    multibody: Multibody, link: Link, found: Mapping[str, Reaction], drives: Expression
 ) -> dict[Column, Expression]:
     """The coefficients of a link's law: of its material from the section mobility, of the tip and
     stations from what acts there.
     """
-    link, space = multibody.mechanism.links[name], multibody.mechanism.space
+    name, space = link.name, multibody.mechanism.space
     table = table_of(space)
     slopes = _material(multibody, name)
     tip = Action()

@@ -241,7 +241,8 @@ class Description(Brief):
         it, if others were declared.
         """
         rows = {name: row.replaces for name, row in mechanism.rows.items()}
-        moved = [name for name in mechanism.coordinates if name in driven]
+        coordinates = mechanism.coordinates
+        moved = [name for name in coordinates if name in driven]
         given = dict.fromkeys([*moved, *(driven if drives else ())])
         usual = [name for name in moved if name not in rows.values()]
         return cls(
@@ -258,10 +259,8 @@ class Description(Brief):
             motors={name: _drive(one) for name, one in mechanism.drives.items()},
             rows=rows,
             constraints=tuple(mechanism.constraints),
-            driven={name: kind_of(mechanism, name) for name in given},
-            drives=tuple(
-                name for name in (drives or usual) if not drives or name in mechanism.coordinates
-            ),
+            driven={name: kind_of(coordinates.get(name), name) for name in given},
+            drives=tuple(name for name in (drives or usual) if not drives or name in coordinates),
             outputs={name: output.unit for name, output in mechanism.outputs.items()},
             paths={name: _numbers(path.point.on_body) for name, path in mechanism.paths.items()},
             outlines={

@@ -16,7 +16,7 @@ from ..base.tables import ANGLE, LENGTH
 from ..base.vectors import AXES
 from ..errors import DeclarationError, UnknownNameError, check_kind
 from .declared_parts import Body, Link, Point, PointMass, RigidMass
-from .joints import Joint
+from .joints import Axis, Joint
 from .mechanism import Mechanism
 from .motion_laws import Motion
 
@@ -77,7 +77,7 @@ def laws_of(
             check_kind(f"motion of {what} '{name}'", law, "a law of lagrange_casadi.motion", Motion)
         found |= zip(names, given, strict=True)
     for name, law in found.items():
-        unit = ANGLE if kind_of(mechanism, name) == "angle" else LENGTH
+        unit = ANGLE if kind_of(coordinates.get(name), name) == "angle" else LENGTH
         if law.unit not in ("", unit):
             raise DeclarationError(
                 f"motion of '{name}': the law is in {law.unit}, but the coordinate is in {unit}"
@@ -85,9 +85,8 @@ def laws_of(
     return found
 
 
-def kind_of(mechanism: Mechanism, coordinate: str) -> Literal["angle", "slide"]:
-    """The kind of a coordinate whose motion is given, of a joint or a guide."""
-    known = mechanism.coordinates.get(coordinate)
+def kind_of(known: tuple[Joint, Axis] | None, coordinate: str) -> Literal["angle", "slide"]:
+    """The kind of a coordinate whose motion is given: of a joint that is known, or of a guide."""
     return known[1].kind if known else "angle" if coordinate.endswith(".angle") else "slide"
 
 

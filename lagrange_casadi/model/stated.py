@@ -200,7 +200,11 @@ class Stated:
         Friction has a law of its own.
         """
         m, constraints, rows = mechanism, mechanism.constraints, mechanism.rows
-        moved = {name: _moved(m, name) for name in motions}
+        coordinates = m.coordinates
+        moved = {
+            name: _Measured(Entry("coordinate", name)) if name in coordinates else _guided(m, name)
+            for name in motions
+        }
         found = cls(
             equations=(
                 *(
@@ -250,10 +254,8 @@ def _measured(mechanism: Mechanism) -> Iterator[_Measured]:
         yield from map(_Measured, entries, measure.places, measure.rates)
 
 
-def _moved(mechanism: Mechanism, coordinate: str) -> _Measured:
-    """Coordinate that a motion moves: of a joint, or, for a guide, of a point or of a body."""
-    if coordinate in mechanism.coordinates:
-        return _Measured(Entry("coordinate", coordinate))
+def _guided(mechanism: Mechanism, coordinate: str) -> _Measured:
+    """Coordinate that the motion of a guide moves, of a point or of a body."""
     name, _, what = coordinate.rpartition(".")
     if what == "angle":
         return _Measured(Entry("direction", name))
