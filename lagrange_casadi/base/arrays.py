@@ -60,4 +60,5 @@ def spread(size: int, most: int) -> npt.NDArray[np.intp]:
     """The numbers of so many things, or of at most so many of them that are evenly spread, the
     first and the last among them.
     """
-    return np.linspace(0, size - 1, min(size, most)).astype(np.intp)
+    many = min(size, most)
+    return np.arange(many) * (size - 1) // max(many - 1, 1)

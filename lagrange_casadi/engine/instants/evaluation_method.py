@@ -100,7 +100,7 @@ class EvaluationMethod:
             )
         check_kind("flags", self.flags, "options of a compiler", str)
         try:
-            words = shlex.split(self.flags)
+            words = shlex.split(self.flags) if self.flags else []
             if "\0" in self.flags:
                 raise ValueError("they hold a null character")
         except ValueError as error:
