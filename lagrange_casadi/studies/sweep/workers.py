@@ -13,6 +13,7 @@ from collections.abc import Callable, Generator, Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
 from dataclasses import dataclass, fields
 from itertools import islice
+from queue import SimpleQueue
 from typing import Any, Protocol, runtime_checkable
 
 from ...base.arrays import Array, Json
@@ -32,6 +33,9 @@ _PULSE, _PATIENCE = 0.1, 0.7
 """Seconds after which whoever waits hears that nothing came, and in which blocks that are under way
 may still end.
 """
+
+_Task = tuple[Future[Any], Callable[[], Any]]
+"""A future, and the call that it is of."""
 
 _AHEAD = 128
 """Blocks that an executor is given at a time: for as many workers as it may have."""
@@ -60,30 +64,40 @@ def by_threads(count: int | None, plan: Plan, queue: Queue) -> Blocks:
     """
     most = memory() / max(1, plan.harvest.engine.capacity)
     many = max(1, int(min(count or cores(), most)))
-    free = threading.Semaphore(many)
+    given: SimpleQueue[_Task | None] = SimpleQueue()
 
-    def submit(start: int, stop: int) -> Future[list[bytes]]:
-        return _aside(free, plan.harvest.chunks, plan.block(start, stop), plan.capacity)
-
-    yield from handed(submit, queue, many + 1)
-
-
-def _aside(free: threading.Semaphore, call: Callable[..., Any], *arguments: object) -> Future[Any]:
-    """The future of a call by a thread of its own, once it is ``free``. Python does not wait for
-    such a thread at its end, as it does for those of its own executors: a block may take hours.
-    """
-    future: Future[Any] = Future()
+    def submit(start: int, stop: int) -> Future[Any]:
+        future: Future[Any] = Future()
+        block = plan.block(start, stop)
+        given.put((future, lambda: plan.harvest.chunks(block, plan.capacity)))
+        return future
 
     def work() -> None:
-        with free:
-            if future.set_running_or_notify_cancel():
-                try:
-                    future.set_result(call(*arguments))
-                except BaseException as error:
-                    future.set_exception(error)
+        while _carried_out(given.get()):
+            pass
 
-    threading.Thread(target=work, daemon=True).start()
-    return future
+    # Python does not wait for such threads at its end, as it does for those of its own executors: a
+    # block may take hours.
+    for _ in range(many):
+        threading.Thread(target=work, daemon=True).start()
+    try:
+        yield from handed(submit, queue, many + 1)
+    finally:
+        for _ in range(many):
+            given.put(None)
+
+
+def _carried_out(task: _Task | None) -> bool:
+    """Whether there was a task: its future is then what its call came to. Nothing of it is kept."""
+    if task is None:
+        return False
+    future, call = task
+    if future.set_running_or_notify_cancel():
+        try:
+            future.set_result(call())
+        except BaseException as error:
+            future.set_exception(error)
+    return True
 
 
 def by_executor(executor: Executor, count: int | None, plan: Plan, queue: Queue) -> Blocks:
