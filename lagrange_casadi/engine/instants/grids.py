@@ -13,7 +13,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -156,19 +156,20 @@ def fill(
         for (columns, functions), rows in zip(sums, out, strict=True):
             _fill_in_blocks(columns, functions.rows, u, rows, slack)
         return
-    at = after = None
-    if any(columns.loads for columns, _ in sums):
-        u = np.ascontiguousarray(u, dtype=np.float64)
-        beyond = edge(u, slack)
-        at, after = u.ctypes.data, beyond.ctypes.data
+    ratios: Array | None = None
+    beyond: Any = None
     place, apart, streams = out.ctypes.data, out.strides[0], int(grid.nbytes >= _STREAMING)
     calls = (GRID.type * len(sums))()
     for i, (columns, functions) in enumerate(sums):
         calls[i] = columns.call
         call, (rows, basis) = calls[i], functions.padded
         call.k, call.stride, call.basis = k, rows.shape[1], basis
-        call.u, call.beyond = at, after
         call.out, call.streams = place + i * apart, streams
+        if columns.loads:
+            if ratios is None:
+                ratios = np.ascontiguousarray(u, dtype=np.float64)
+                beyond = edge(ratios, slack)
+            call.u, call.beyond = ratios.ctypes.data, beyond.ctypes.data
     entry, shares = library.lagrange_casadi_grids, out.size // _SHARE
     if shares <= 1:
         entry(calls, len(sums), 0, n)
