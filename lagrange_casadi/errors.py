@@ -85,12 +85,6 @@ def listed(names: Iterable[str], empty: str = "none", room: int = _FEW) -> str:
     return (", ".join(begun) or empty) + (f" and {len(left)} more" if left else "")
 
 
-def at_most(words: Sequence[str], most: int) -> str:
-    """The first words with commas between, and how many more there are."""
-    left = len(words) - most
-    return ", ".join(words[:most]) + (f" and {left} more" if left > 0 else "")
-
-
 def warn(words: str, category: type[Warning] = UserWarning) -> None:
     """Warn of something: at the line of the user's that led to it, however many functions of this
     package are between.

@@ -4,6 +4,7 @@ time, cut.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, is_dataclass, replace
 from typing import Any, TypeAlias
@@ -27,6 +28,11 @@ Operand: TypeAlias = Any
 
 Json: TypeAlias = str | float | Sequence["Json"] | Mapping[str, "Json"] | None
 """A value that JSON holds."""
+
+
+def as_json(content: object) -> Any:
+    """Return what a file of JSON with some content is read as: rows are lists."""
+    return json.loads(json.dumps(content))
 
 
 Instants: TypeAlias = slice | list[int] | npt.NDArray[np.generic]

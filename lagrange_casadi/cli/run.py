@@ -18,7 +18,7 @@ from ..base.streams import is_standard_output
 from ..base.table_writers import aligned
 from ..base.vocabulary import Backend
 from ..engine.instants.backends import peak_search
-from ..errors import CompilerError, DeclarationError, at_most
+from ..errors import CompilerError, DeclarationError, listed
 from ..model import revolutions
 from ..model.scene import Scene
 from ..model.times import Timing
@@ -292,9 +292,6 @@ def _line(name: str, change: Changes, by: tuple[str, ...]) -> str:
     )
 
 
-_LISTED = 6
-
-
 def figures_in(folder: Path | None) -> set[str]:
     """The names of the pictures in a folder; none where there is no folder, or none that can be
     read.
@@ -320,7 +317,4 @@ def replaced_lines(
     older = sorted(set(before) - set(drawn))
     if older:
         redraw = "" if drawn else f"; lagrange-casadi plot {file} --out {folder} draws them anew"
-        yield (
-            f"note: figures in {folder}/ that are older than {file}:"
-            f" {at_most(older, _LISTED)}{redraw}"
-        )
+        yield (f"note: figures in {folder}/ that are older than {file}: {listed(older)}{redraw}")

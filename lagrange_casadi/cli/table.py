@@ -11,7 +11,7 @@ from typing import Any
 
 from ..base.streams import is_standard_output
 from ..base.table_writers import aligned, head
-from ..errors import NoDesignError
+from ..errors import NoDesignError, listed
 from ..studies.sweep import Sweep, chosen
 from ..studies.sweep import best as find
 from ..studies.sweep.axes import DESIGN, counted, grouped
@@ -21,7 +21,7 @@ from .echo import echo
 from .options import table_file
 
 _WIDE = 6
-_LISTED = 6
+_ROOM = 160
 _WIDTH = 10
 
 
@@ -155,19 +155,14 @@ def _mention_others(sweep: Sweep, shown: Sequence[str]) -> None:
     others = [kept for kept in sweep.columns.values() if kept.name not in shown]
     for axes in dict.fromkeys(kept.axes for kept in others):
         names = [kept.name for kept in others if kept.axes == axes]
-        more = (
-            f" and {len(names) - _LISTED} more (`lagrange-casadi info {sweep.path}` lists them)"
-            if len(names) > _LISTED
-            else ""
-        )
         over, rows = (
             (f" over {in_words(axes)}", f", a row for every {' and '.join(axes)}")
             if axes
             else ("", "")
         )
         echo(
-            f"note: --column NAME shows other columns{over}{rows}:"
-            f" {', '.join(names[:_LISTED])}{more}",
+            f"note: --column NAME shows other columns{over}{rows}: {listed(names, room=_ROOM)}"
+            f" (`lagrange-casadi info {sweep.path}` lists all)",
             err=True,
         )
 

@@ -11,7 +11,7 @@ import numpy as np
 from ..base.arrays import Expression
 from ..base.lookups import PREFIX
 from ..base.vectors import nil
-from ..errors import at_most
+from ..errors import listed
 from ..model.constraints import Constraint
 from ..model.loads import Force, Friction, LineLoad, Load, Torque
 from ..model.motion_inverse import MotionInverse
@@ -19,7 +19,7 @@ from ..model.motion_laws import Motion
 from ..model.scene import Scene
 from .kinematics import describe_coordinate
 
-_LONG, _SAMPLES, _MOST_JUMPS = 200, 1001, 8
+_LONG, _SAMPLES, _JUMPS = 200, 1001, 250
 
 
 def scene_lines(scene: Scene) -> Iterator[str]:
@@ -116,7 +116,7 @@ def _moves(scene: Scene, joint: str) -> Iterator[str]:
     for what in ("acceleration", "jerk"):
         places = [f"{jump.t:.6g} s {jump.where}" for jump in table.jumps if jump.what == what]
         if places:
-            yield f"    the {what} jumps at {at_most(places, _MOST_JUMPS)}"
+            yield f"    the {what} jumps at {listed(places, room=_JUMPS)}"
 
 
 def _course(scene: Scene, joint: str) -> str:

@@ -321,11 +321,14 @@ class Description(Brief):
     @cached_property
     def extent(self) -> float:
         """The size of the mechanism, and how far from the origin it stands [m]."""
-        points = [end for joint in self.joints.values() for end in joint.ends]
-        points += [place for load in self.loads.values() for place in load.points]
-        return self.size + max(
-            (abs(x) for place in points if place.body == "ground" for x in place.at), default=0.0
-        )
+        grounded = (place.at for place in self.acted_at if place.body == "ground")
+        return self.size + max((abs(x) for at in grounded for x in at), default=0.0)
+
+    @property
+    def acted_at(self) -> list[Place]:
+        """The places at which joints and loads act on bodies."""
+        ends = (end for joint in self.joints.values() for end in joint.ends)
+        return [*ends, *(place for load in self.loads.values() for place in load.points)]
 
     @cached_property
     def coordinates(self) -> dict[str, CoordinateKind]:

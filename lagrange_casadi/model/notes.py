@@ -140,11 +140,8 @@ def _is_carrier(description: Description, link: str) -> bool:
     """Return whether a link has no mass, and all joins and loads at one place: then its direction
     has no effect.
     """
-    ends = [end for joint in description.joints.values() for end in joint.ends]
-    loaded = [point for load in description.loads.values() for point in load.points]
-    places = [
-        point for point in [*ends, *loaded, *description.paths.values()] if point.body == link
-    ]
+    every = (*description.acted_at, *description.paths.values())
+    places = [place for place in every if place.body == link]
     return description.bodies[link].mass == 0.0 and all(place == places[0] for place in places)
 
 

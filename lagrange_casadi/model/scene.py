@@ -125,6 +125,19 @@ class Wanted:
         return cls("effort" in chosen, "motion" in chosen, *map(parts, _KINDS), *strength)
 
     @property
+    def names(self) -> list[str]:
+        """The names of outputs that are wanted, but for those of strength."""
+        parts = (self.reactions, self.multipliers, self.loads, self.frictions, self.sections)
+        return [
+            *(name for name in ("effort", "motion") if getattr(self, name)),
+            *(
+                f"{kind}:{part}"
+                for kind, of in zip(_KINDS, (*parts, self.own), strict=True)
+                for part in of
+            ),
+        ]
+
+    @property
     def forces(self) -> bool:
         """True if any force from equilibrium is wanted."""
         return bool(

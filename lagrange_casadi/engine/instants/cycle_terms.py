@@ -21,7 +21,7 @@ from ...base.arrays import Array
 from ...base.quantities import Check, Column
 from ...base.symbolic import symbolic
 from ...base.tables import ANGLE, FORCE, LENGTH, MOMENT
-from ...errors import DeclarationError, at_most
+from ...errors import DeclarationError, listed
 from ..dead_centres import POINTS
 from ..iteration import CLOSED
 from ..kinematics import describe_coordinate, where
@@ -53,7 +53,6 @@ _ROUNDING = 16 * 2.0**-52
 """Rounding relative to the largest value of a unit."""
 
 _PROBES = ((1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (0.5, 0.0), (-0.1, 0.1), (1e-3, 0.0))
-_NAMED = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -451,5 +450,4 @@ def _kind(program: Program, column: Column) -> str | Column:
 
 def _listed(columns: Collection[Column]) -> str:
     """Some columns for a reader, outputs before what is none."""
-    ordered = sorted(columns, key=lambda column: isinstance(column, Check))
-    return at_most([f"'{name}'" for name in ordered], _NAMED)
+    return listed(f"'{name}'" for name in sorted(columns, key=lambda one: isinstance(one, Check)))

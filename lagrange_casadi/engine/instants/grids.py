@@ -156,8 +156,7 @@ def fill(
         for (columns, functions), rows in zip(sums, out, strict=True):
             _fill_in_blocks(columns, functions.rows, u, rows, slack)
         return
-    ratios: Array | None = None
-    beyond: Any = None
+    edges: Any = None
     place, apart, streams = out.ctypes.data, out.strides[0], int(grid.nbytes >= _STREAMING)
     calls = (GRID.type * len(sums))()
     for i, (columns, functions) in enumerate(sums):
@@ -166,10 +165,10 @@ def fill(
         call.k, call.stride, call.basis = k, rows.shape[1], basis
         call.out, call.streams = place + i * apart, streams
         if columns.loads:
-            if ratios is None:
-                ratios = np.ascontiguousarray(u, dtype=np.float64)
-                beyond = edge(ratios, slack)
-            call.u, call.beyond = ratios.ctypes.data, beyond.ctypes.data
+            if edges is None:
+                u = np.ascontiguousarray(u, dtype=np.float64)
+                edges = u, edge(u, slack)
+            call.u, call.beyond = (row.ctypes.data for row in edges)
     entry, shares = library.lagrange_casadi_grids, out.size // _SHARE
     if shares <= 1:
         entry(calls, len(sums), 0, n)

@@ -67,10 +67,9 @@ def unwind(program: Program, out: Array) -> None:
         [math.tau * (out[k] - out[k][..., :1]) if whole else _jumps(out[k]) for k, whole in parts],
     )
     rows = [k for k, _ in angles]
-    first = np.ceil(out[rows, ..., :1] / math.tau - 0.5)
-    if first.any():
-        for k, whole in zip(rows, first, strict=True):
-            out[k] -= math.tau * whole
+    whole = np.ceil(out[rows, ..., :1] / math.tau - 0.5)
+    if whole.any():
+        out[rows] -= math.tau * whole
 
 
 def add_turns(program: Program, out: Array, turns: Sequence[Array | None]) -> None:
@@ -79,13 +78,11 @@ def add_turns(program: Program, out: Array, turns: Sequence[Array | None]) -> No
     """
     for k, signs in program.loop_rows[1]:
         for number, sign in signs:
-            turn = turns[number]
-            if turn is not None:
+            if (turn := turns[number]) is not None:
                 out[k] += sign * turn
 
 
 def _jumps(angle: Array) -> Array | None:
     """The turns [rad] that let an angle (..., t) go on where it jumps; None where it never does."""
-    if np.abs(angle[..., 1:] - angle[..., :-1]).max(initial=0.0) < math.pi:
-        return None
-    return np.unwrap(angle) - angle
+    jumps = not np.abs(angle[..., 1:] - angle[..., :-1]).max(initial=0.0) < math.pi
+    return np.unwrap(angle) - angle if jumps else None

@@ -13,7 +13,6 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.arrays import Array
-from ...base.interpret import interpret, numpy_arithmetic
 from ...base.scalars import called
 from ...base.status import Status
 from ...base.vocabulary import Precision
@@ -170,9 +169,8 @@ def first_broken(
             broken = called(program.status, few, limits[:, None], near, np.zeros((1, 2)))
             if not broken.any():
                 return np.zeros(status.shape, np.intp)
-    given = [[*np.asarray(checks, float)], [*limits], [*beside], [status.astype(float)]]
-    ((found,),) = interpret(program.status, given, numpy_arithmetic())
-    return np.broadcast_to(found, status.shape).astype(np.intp)
+    given = (checks, limits[:, None], beside, np.asarray(status, float)[None])
+    return np.asarray(called(program.status, *given)[0], np.intp)
 
 
 def _beside(

@@ -136,8 +136,9 @@ class KeptOutputs:
             depends=sharpness.dependence(every),
             marks=data.corners.whole,
         )
-        watched = with_watched(program, sharpness)
-        return cls(tuple(names), units, efforts, reduction, sharpness, watched)
+        return cls(
+            tuple(names), units, efforts, reduction, sharpness, with_watched(program, sharpness)
+        )
 
 
 def _along(data: ModelData, link: str, at: dict[Output, int], table: Table) -> Along:

@@ -109,7 +109,6 @@ class DesignEngine:
         """
         method = method or EvaluationMethod()
         program = compile_scene(scene, wanted)
-        method.check(program)
         scene.checked(scene.values())
         return cls.compiled(program, timing or scene.timing(t), method, peaks)
 
@@ -124,6 +123,7 @@ class DesignEngine:
         """Compile a graph for designs at instants that are asked for."""
         check_known("backend of designs", [method.backend], get_args(Compiled))
         check_known("choice of peaks", [str(peaks)], get_args(PeakSearch))
+        method.check(program)
         sampled = peaks == "sampled"
         data = program.data
         times, p = DesignTimes(data.laws, data.values(data.defaults), timing), data.defaults

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import json
 import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
-from ...base.arrays import Array, Json, Operand
+from ...base.arrays import Array, Json, Operand, as_json
 from ...base.numerals import real
 from ...base.units import in_unit
 from ...base.vocabulary import Compiled
@@ -258,8 +257,7 @@ class Question:
             },
             "transmission": self.transmission,
         }
-        plain: dict[str, Any] = json.loads(json.dumps(content))
-        return plain
+        return cast(dict[str, Any], as_json(content))
 
 
 _LEAST = re.compile(

@@ -25,7 +25,7 @@ from ...errors import (
     NumberError,
     ParameterError,
     UnknownNameError,
-    at_most,
+    listed,
     shown,
 )
 from ...model.declared_parts import Parameter
@@ -40,7 +40,7 @@ DESIGN = "design"
 RESULTS = (DESIGN, "status", "t", "xi")
 """Heads of a table's columns that are no parameters, beside those with a colon."""
 
-_SHOWN = 20
+_SHOWN, _ROOM = 20, 200
 
 
 @public
@@ -167,8 +167,8 @@ class Values:
 
     def outside(self, low: float, high: float) -> str:
         """The values that leave a range, in words."""
-        return at_most(
-            [f"{value:.10g}" for value in self.values if not low <= value <= high], _SHOWN
+        return listed(
+            (f"{value:.10g}" for value in self.values if not low <= value <= high), "", _ROOM
         )
 
     @cached_property
@@ -305,7 +305,7 @@ class Listed(Brief):
         """The values of a parameter that leave a range, in words, each with its place."""
         values = self.rows[:, self.names.index(name)]
         rows = np.flatnonzero(~((values >= low) & (values <= high)))
-        return at_most([f"{values[row]:.10g} in {self._where(int(row))}" for row in rows], _SHOWN)
+        return listed((f"{values[row]:.10g} in {self._where(int(row))}" for row in rows), "", _ROOM)
 
     def _where(self, row: int) -> str:
         return f"design {row}" if self.lines is None else f"line {self.lines[row]}"

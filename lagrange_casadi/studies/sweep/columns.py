@@ -7,17 +7,16 @@ A column's full name is ``kind:quantity`` (``peak:section:rod:bending``, ``peak_
 
 from __future__ import annotations
 
-import json
 import zlib
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property, partial
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import numpy.typing as npt
 
-from ...base.arrays import Array, Json, Operand
+from ...base.arrays import Array, Json, Operand, as_json
 from ...base.quantities import Output, parts_along
 from ...base.status import Status
 from ...base.tables import table_of
@@ -129,8 +128,7 @@ class Harvest:
             "keep": self.keep,
             "scene": program.identity or "cannot be identified",
         }
-        content: dict[str, Json] = json.loads(json.dumps(words))
-        return content
+        return cast(dict[str, Json], as_json(words))
 
     @cached_property
     def columns(self) -> tuple[Column, ...]:

@@ -4,14 +4,13 @@ from other sweeps.
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, TypedDict
+from typing import Any, TypedDict, cast
 
-from ...base.arrays import Array, spread
+from ...base.arrays import Array, as_json, spread
 from ...base.space import in_words, require
 from ...base.vocabulary import KEEPS, Keep, PeakSearch, Precision
 from ...engine.derive import compile_scene, derived
@@ -128,7 +127,6 @@ class Plan:
             raise DeclarationError(
                 "peaks: safety, life and sensitivity need exact ones; leave them out of wanted="
             )
-        method.check(program)
         scene.checked(scene.values())
         whole = compile_scene(scene, wanted_whole(program.outputs), parameters=assembly)
         engine = DesignEngine.compiled(program, timing, method, peaks)
@@ -205,8 +203,7 @@ class Plan:
             "mechanism": self.harvest.data.at(list(self.values.values())).plain(),
             "grid": self.designs.describe(),
         }
-        content: Identity = json.loads(json.dumps(words))
-        return content
+        return cast(Identity, as_json(words))
 
 
 def _assembly(

@@ -34,9 +34,6 @@ _PULSE, _PATIENCE = 0.1, 0.7
 may still end.
 """
 
-_Task = tuple[Future[Any], Callable[[], Any]]
-"""A future, and the call that it is of."""
-
 _AHEAD = 128
 """Blocks that an executor is given at a time: for as many workers as it may have."""
 
@@ -62,19 +59,18 @@ def by_threads(count: int | None, plan: Plan, queue: Queue) -> Blocks:
     """Evaluate a queue by threads of this process, by default one a core, each at a block of its
     own; fewer where memory does not hold as many.
     """
-    most = memory() / max(1, plan.harvest.engine.capacity)
-    many = max(1, int(min(count or cores(), most)))
-    given: SimpleQueue[_Task | None] = SimpleQueue()
+    many = max(1, int(min(count or cores(), memory() / max(1, plan.harvest.engine.capacity))))
+    given: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
 
     def submit(start: int, stop: int) -> Future[Any]:
-        future: Future[Any] = Future()
-        block = plan.block(start, stop)
-        given.put((future, lambda: plan.harvest.chunks(block, plan.capacity)))
+        future, block = Future[Any](), plan.block(start, stop)
+        given.put(functools.partial(_carry_out, future, plan.harvest.chunks, block, plan.capacity))
         return future
 
     def work() -> None:
-        while _carried_out(given.get()):
-            pass
+        for task in iter(given.get, None):
+            task()
+            del task  # else what it came to stays until there is another one
 
     # Python does not wait for such threads at its end, as it does for those of its own executors: a
     # block may take hours.
@@ -87,17 +83,13 @@ def by_threads(count: int | None, plan: Plan, queue: Queue) -> Blocks:
             given.put(None)
 
 
-def _carried_out(task: _Task | None) -> bool:
-    """Whether there was a task: its future is then what its call came to. Nothing of it is kept."""
-    if task is None:
-        return False
-    future, call = task
+def _carry_out(future: Future[Any], call: Callable[..., Any], *arguments: object) -> None:
+    """Let a future be what a call comes to."""
     if future.set_running_or_notify_cancel():
         try:
-            future.set_result(call())
+            future.set_result(call(*arguments))
         except BaseException as error:
             future.set_exception(error)
-    return True
 
 
 def by_executor(executor: Executor, count: int | None, plan: Plan, queue: Queue) -> Blocks:

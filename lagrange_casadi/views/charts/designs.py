@@ -14,7 +14,7 @@ import numpy as np
 
 from ...base.arrays import Array
 from ...base.tables import table_of
-from ...errors import NoDesignError
+from ...errors import NoDesignError, listed
 from ...studies.sweep.axes import DESIGN
 from ...studies.sweep.best import best, chosen, size
 from ...studies.sweep.reading import Sweep
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_KEYED, _NAMED, _OFTEN, _GOLDEN = 5, 3, 3, (5.0**0.5 - 1.0) / 2.0
+_KEYED, _ROOM, _OFTEN, _GOLDEN = 5, 100, 3, (5.0**0.5 - 1.0) / 2.0
 _LETTERS = 104
 """Letters of 7 points across a page."""
 
@@ -221,8 +221,7 @@ def _differing(columns: Sequence[str], cut: Cut) -> tuple[dict[str, Array], str]
             same.append(f"{label(cut.sweep, column)} = {found[0]:.4g}")
         elif found.size:
             shown[column] = values
-    more = f"; and {len(same) - _NAMED} more" if len(same) > _NAMED else ""
-    words = f": {'; '.join(same[:_NAMED])}{more}"
+    words = f": {listed(same, room=_ROOM)}"
     if not shown:
         where = ", ".join(filter(None, ("the same for all drawn", cut.notes)))
         raise NoDesignError(where + words if same else _none(cut.notes))

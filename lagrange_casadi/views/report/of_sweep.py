@@ -6,7 +6,6 @@ The mechanism is a live page within the page: it evaluates the design that is ch
 
 from __future__ import annotations
 
-import json
 import math
 import os
 from pathlib import Path
@@ -14,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ...base.arrays import Array
+from ...base.arrays import Array, as_json
 from ...base.units import vocabulary
 from ...engine.derive import compile_scene
 from ...engine.identity import identity_of, sources
@@ -40,17 +39,6 @@ MOST = 300_000
 
 _LEAST = 500
 """Designs that it shows at least, where there are so many."""
-
-_FLAGS = ("effort", "motion")
-_GROUPS = {
-    "reactions": "reaction",
-    "multipliers": "multiplier",
-    "loads": "load",
-    "frictions": "friction",
-    "sections": "section",
-    "own": "output",
-}
-"""Groups of outputs that were wanted, with how the name of one begins."""
 
 _NO_SCENE = "For the mechanism in motion, make the page with the case that was swept."
 
@@ -178,9 +166,9 @@ def _frame(sweep: Sweep, scene: Scene, front: list[int], command: str) -> str:
     if first is None:
         raise DeclarationError(f"{sweep.path}: no design has a result: there is nothing to show")
     asked, design = sweep.identity["t"], sweep.design(first)
-    wanted = with_motion(_names(_wanted(sweep)))
+    wanted = with_motion(_wanted(sweep).names)
     program = compile_scene(scene, wanted, parameters=design)
-    own = json.loads(json.dumps(scene.timing().words(program.data.symbols)))
+    own = as_json(scene.timing().words(program.data.symbols))
     words: dict[str, Any] = {}
     if own != asked:
         if any(isinstance(bound, str) for bound in (*asked[:2], *asked[4:])):
@@ -201,11 +189,3 @@ def _wanted(sweep: Sweep) -> Wanted:
     with reported_as("the outputs of the sweep", sweep.path):
         found: Wanted = structured(Wanted, content, "wanted")
     return found
-
-
-def _names(wanted: Wanted) -> list[str]:
-    """The names of outputs that were wanted."""
-    return [
-        *(name for name in _FLAGS if getattr(wanted, name)),
-        *(f"{kind}:{part}" for group, kind in _GROUPS.items() for part in getattr(wanted, group)),
-    ]

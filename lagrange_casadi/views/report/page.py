@@ -208,10 +208,9 @@ def scene_report(
     """Evaluate a scene and write its page: see :meth:`.Scene.report`."""
     scene.wants(wanted)
     asked = with_motion(scene.wanted if wanted is None else wanted)
-    run = run_of(scene.name)
-    alive = Live.of(scene, scene.timing(), asked, run, parameters) if live else None
-    elastic = False if live else None
-    write_report(evaluate(scene, parameters=parameters, wanted=asked, elastic=elastic), path, alive)
+    alive = Live.of(scene, scene.timing(), asked, run_of(scene.name), parameters) if live else None
+    found = evaluate(scene, parameters=parameters, wanted=asked, elastic=False if live else None)
+    write_report(found, path, alive)
 
 
 def with_motion(wanted: Sequence[str]) -> list[str]:

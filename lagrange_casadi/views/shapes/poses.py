@@ -10,7 +10,7 @@ import numpy as np
 
 from ...base.arrays import Array, Instants, during
 from ...base.quantities import Output
-from ...errors import DeclarationError, at_most
+from ...errors import DeclarationError, listed
 from ...model.description import Description, Place, Triple
 from ...results.solution import Solution
 from ...results.views import Pose
@@ -82,15 +82,14 @@ def require_poses(solution: Solution, what: str = "a report") -> None:
     show it.
     """
     lacking = [
-        body
+        f"'{body}'"
         for body in solution.description.bodies
         if Output("pose", body, "x") not in solution.outputs
     ]
     if lacking:
-        bodies = at_most([f"'{body}'" for body in lacking], 3)
         raise DeclarationError(
             f"{solution.case}: {what} shows the mechanism in motion, and there is no motion of"
-            f" {bodies}; want motion too"
+            f" {listed(lacking)}; want motion too"
         )
 
 
