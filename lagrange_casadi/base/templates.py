@@ -96,31 +96,30 @@ class Template(Graphs, Generic[Tree]):
     def at(self, p: Sequence[float] | Array) -> Tree:
         """Return the tree of numbers for parameters ``p``."""
         numbers = called(self.numbers, np.asarray(p, float)[:, None])[:, 0]
-        return cast(Tree, self._fill(numbers.tolist()))
+        return self._fill(numbers.tolist())
 
     @cached_property
-    def _fill(self) -> _Fill:
-        return _filler(self.content) or (lambda _: self.content)
+    def _fill(self) -> Callable[[_Numbers], Tree]:
+        return _filling(self.content)
 
     def each(self, content: Part, p: Array) -> Part:
         """Return a part of the content with numbers (n,) for parameters ``p`` (n, parameters), or
         with a number for ``p`` (parameters,).
         """
         numbers = self.numbers(p.T).full()
-        return _filled(content, numbers if p.ndim > 1 else numbers.ravel().tolist())
+        return _filling(content)(numbers if p.ndim > 1 else numbers.ravel().tolist())
 
     def placed(self, content: Part, p: Expression) -> Part:
         """Return a part of the content with expressions of parameters ``p``, and with numbers for
         constant ones.
         """
         numbers = [float(x) if x.is_constant() else x for x in ca.vertsplit(ca.SX(self.numbers(p)))]
-        return _filled(content, numbers)
+        return _filling(content)(numbers)
 
 
-def _filled(tree: Part, numbers: _Numbers) -> Part:
-    """Return a tree with ``numbers`` for its leaves."""
-    fill = _filler(tree)
-    return tree if fill is None else cast(Part, fill(numbers))
+def _filling(tree: Part) -> Callable[[_Numbers], Part]:
+    """Return the function that makes a tree with numbers for its leaves."""
+    return _filler(tree) or (lambda _: tree)
 
 
 def _filler(tree: Any) -> _Fill | None:

@@ -317,4 +317,4 @@ def replaced_lines(
     older = sorted(set(before) - set(drawn))
     if older:
         redraw = "" if drawn else f"; lagrange-casadi plot {file} --out {folder} draws them anew"
-        yield (f"note: figures in {folder}/ that are older than {file}: {listed(older)}{redraw}")
+        yield f"note: figures in {folder}/ that are older than {file}: {listed(older)}{redraw}"

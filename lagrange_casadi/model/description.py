@@ -259,7 +259,7 @@ class Description(Brief):
             motors={name: _drive(one) for name, one in mechanism.drives.items()},
             rows=rows,
             constraints=tuple(mechanism.constraints),
-            driven={name: kind_of(coordinates.get(name), name) for name in given},
+            driven={name: kind_of(coordinates, name) for name in given},
             drives=tuple(name for name in (drives or usual) if not drives or name in coordinates),
             outputs={name: output.unit for name, output in mechanism.outputs.items()},
             paths={name: _numbers(path.point.on_body) for name, path in mechanism.paths.items()},

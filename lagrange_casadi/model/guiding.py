@@ -77,7 +77,7 @@ def laws_of(
             check_kind(f"motion of {what} '{name}'", law, "a law of lagrange_casadi.motion", Motion)
         found |= zip(names, given, strict=True)
     for name, law in found.items():
-        unit = ANGLE if kind_of(coordinates.get(name), name) == "angle" else LENGTH
+        unit = ANGLE if kind_of(coordinates, name) == "angle" else LENGTH
         if law.unit not in ("", unit):
             raise DeclarationError(
                 f"motion of '{name}': the law is in {law.unit}, but the coordinate is in {unit}"
@@ -85,9 +85,12 @@ def laws_of(
     return found
 
 
-def kind_of(known: tuple[Joint, Axis] | None, coordinate: str) -> Literal["angle", "slide"]:
-    """The kind of a coordinate whose motion is given: of a joint that is known, or of a guide."""
-    return known[1].kind if known else "angle" if coordinate.endswith(".angle") else "slide"
+def kind_of(coordinates: Mapping[str, tuple[Joint, Axis]], name: str) -> Literal["angle", "slide"]:
+    """The kind of a coordinate whose motion is given: one of the ``coordinates`` of joints, or that
+    of a guide.
+    """
+    of_guide: Literal["angle", "slide"] = "angle" if name.endswith(".angle") else "slide"
+    return coordinates[name][1].kind if name in coordinates else of_guide
 
 
 def point_of(mechanism: Mechanism, name: str) -> Point:

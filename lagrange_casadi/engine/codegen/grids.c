@@ -29,9 +29,9 @@ static void stream(double* out, const double* tile, long long n) {
 }
 
 /* Of rows of n values each: the sum of columns[m][i]*basis[m][j] over terms, in this order, or the size of two planes' sums; the first
-   function is one, and is not read. Compiled
-   for numbers of planes and terms that are known, so that a row is written once: roots, or memory, are then all that takes time. A
-   row that another one follows goes on to a whole number of LINEs, as functions do: what is too much there that row replaces. */
+   function is one, and is not read. Compiled for numbers of planes and terms that are known, so that a row is written once: roots, or
+   memory, are then all that takes time. A row that another one follows goes on to a whole number of LINEs, as functions do: what is too
+   much there that row replaces. */
 static inline __attribute__((always_inline)) void combine(long long many, long long n, const int planes, const int terms,
                                                           const double* const* columns, long long i, const double* const* basis,
                                                           double* restrict row) {

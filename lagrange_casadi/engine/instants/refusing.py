@@ -159,18 +159,18 @@ def first_broken(
     ``most`` are the limits, ``beside`` (bounds, t) the values beside checks, ``status`` (t,) that
     of iterated loops.
     """
-    checks, limits = out[[bound.column for bound in program.bounds]], np.array(most, float)
+    checks, limits = out[[one.column for one in program.bounds]], np.array(most, float)[:, None]
     if not status.any():
         # A rule is kept within an interval: if the least and the largest keep it, all do.
         few, near = (
             np.array([rows.min(axis=1), rows.max(axis=1)], float).T for rows in (checks, beside)
         )
         if not np.isnan([few, near]).any():
-            broken = called(program.status, few, limits[:, None], near, np.zeros((1, 2)))
+            broken = called(program.status, few, limits, near, np.zeros((1, 2)))
             if not broken.any():
                 return np.zeros(status.shape, np.intp)
-    given = (checks, limits[:, None], beside, np.asarray(status, float)[None])
-    return np.asarray(called(program.status, *given)[0], np.intp)
+    iterated = np.asarray(status, float)[None]
+    return np.asarray(called(program.status, checks, limits, beside, iterated)[0], np.intp)
 
 
 def _beside(
